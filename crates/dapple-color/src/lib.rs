@@ -1,0 +1,1 @@
+//! sRGB and linear color, color ramps, and normal maps from heights.

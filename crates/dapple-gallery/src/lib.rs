@@ -1,0 +1,1 @@
+//! The figures of the papers, one file each, and the page that shows them.

@@ -1,0 +1,44 @@
+//! The two mixing functions under everything else in this crate.
+//!
+//! [`mix64`] is David Stafford's thirteenth variant of the MurmurHash3 finalizer ("Better Bit Mixing", 2011), as used
+//! by SplitMix64. [`absorb`] and [`finish`] work on two 32-bit lanes, with multiplications that keep the low half
+//! only: eight of them run side by side in an AVX2 register, and a shading language has them too.
+
+/// The increment of SplitMix64: the golden ratio as a 64-bit fraction, made odd.
+pub(crate) const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+
+// Odd multipliers with about half of their bits set; the avalanche test decides whether they are good enough.
+const M0: u32 = 0x9E37_79B1;
+const M1: u32 = 0x85EB_CA6B;
+const M2: u32 = 0xC2B2_AE35;
+const M3: u32 = 0x27D4_EB2F;
+
+/// A bijection of 64 bits in which every input bit flips every output bit about half of the time.
+pub(crate) const fn mix64(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
+
+/// Takes one word into the state. For a fixed word it is a bijection of the state, so no state is ever lost.
+#[inline(always)]
+pub(crate) const fn absorb([mut a, mut b]: [u32; 2], word: u32) -> [u32; 2] {
+    a = (a ^ word).wrapping_mul(M0);
+    a ^= a >> 15;
+    b = (b ^ a).wrapping_mul(M1);
+    b ^= b >> 13;
+    [a.wrapping_add(b.rotate_left(11)), b]
+}
+
+/// Spreads the last absorbed words over all 64 bits.
+#[inline(always)]
+pub(crate) const fn finish([mut a, mut b]: [u32; 2]) -> [u32; 2] {
+    a = (a ^ (a >> 16)).wrapping_mul(M2);
+    b = b.wrapping_add(a ^ (a >> 15)).wrapping_mul(M3);
+    b ^= b >> 15;
+    a = a.wrapping_add(b).wrapping_mul(M1);
+    a ^= a >> 13;
+    b = (b ^ a).wrapping_mul(M0);
+    b ^= b >> 16;
+    [a ^ b.rotate_left(7), b]
+}

@@ -1,0 +1,189 @@
+//! A rectangle whose opposite sides may be joined.
+
+use crate::{PointsError, PointsErrorKind};
+use glam::DVec2;
+
+/// The rectangle from `origin` with the given `size`, which wraps around along the axes that say so.
+///
+/// With both axes wrapped it is a torus, with one a cylinder, with none a plain rectangle. Along a wrapped axis the
+/// start belongs to the domain and the end does not: the end is the start again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Domain {
+    /// The corner with the smallest coordinates.
+    pub origin: DVec2,
+    /// Width and height, both above zero.
+    pub size: DVec2,
+    /// Whether x and y wrap around.
+    pub wrap: [bool; 2],
+}
+
+impl Domain {
+    /// The rectangle from `origin` with the given `size`, without wrapping.
+    #[must_use]
+    pub const fn rectangle(origin: DVec2, size: DVec2) -> Self {
+        Self {
+            origin,
+            size,
+            wrap: [false, false],
+        }
+    }
+
+    /// The torus from `origin` with the given periods: what is placed on it repeats along both axes.
+    #[must_use]
+    pub const fn torus(origin: DVec2, size: DVec2) -> Self {
+        Self {
+            origin,
+            size,
+            wrap: [true, true],
+        }
+    }
+
+    /// The square `[-1, 1]²`, wrapped along both axes: the domain of Caron and Mould's figures.
+    #[must_use]
+    pub const fn paper_torus() -> Self {
+        Self::torus(DVec2::NEG_ONE, DVec2::splat(2.0))
+    }
+
+    /// Returns the domain if it can hold points.
+    ///
+    /// # Errors
+    ///
+    /// [`PointsErrorKind::Domain`] if the origin is not finite or a side is not above zero and finite.
+    pub fn checked(self) -> Result<Self, PointsError> {
+        let valid =
+            self.origin.is_finite() && self.size.is_finite() && self.size.min_element() > 0.0;
+        if valid {
+            Ok(self)
+        } else {
+            Err(PointsError::new(PointsErrorKind::Domain { domain: self }))
+        }
+    }
+
+    /// Width times height.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.size.x * self.size.y
+    }
+
+    /// The corner with the largest coordinates.
+    #[must_use]
+    pub fn end(&self) -> DVec2 {
+        self.origin + self.size
+    }
+
+    /// Whether the position lies in the domain.
+    #[must_use]
+    pub fn contains(&self, position: DVec2) -> bool {
+        let end = self.end();
+        let inside = |axis: usize| {
+            let below =
+                position[axis] < end[axis] || (!self.wrap[axis] && position[axis] == end[axis]);
+            position[axis] >= self.origin[axis] && below
+        };
+        inside(0) && inside(1)
+    }
+
+    /// The same place with its coordinates brought into the domain along the wrapped axes.
+    ///
+    /// A position that lies in the domain comes back unchanged, to the last bit.
+    #[must_use]
+    #[inline]
+    pub fn wrap(&self, position: DVec2) -> DVec2 {
+        DVec2::new(self.wrap_axis(0, position.x), self.wrap_axis(1, position.y))
+    }
+
+    /// One coordinate of [`wrap`](Self::wrap), for axis 0 or 1.
+    #[must_use]
+    #[inline]
+    pub fn wrap_axis(&self, axis: usize, coordinate: f64) -> f64 {
+        let (origin, size) = (self.origin[axis], self.size[axis]);
+        let end = origin + size;
+        if !self.wrap[axis] || (coordinate >= origin && coordinate < end) {
+            return coordinate;
+        }
+        let wrapped = coordinate - ((coordinate - origin) / size).floor() * size;
+        // Rounding may leave the result a hair outside; both ends are the same place.
+        if wrapped >= origin && wrapped < end {
+            wrapped
+        } else {
+            origin
+        }
+    }
+
+    /// The shortest way from `from` to `to`, around the wrapped axes where that is shorter.
+    ///
+    /// Both positions lie in the domain.
+    #[must_use]
+    #[inline]
+    pub fn delta(&self, from: DVec2, to: DVec2) -> DVec2 {
+        let along = |axis: usize| {
+            let delta = to[axis] - from[axis];
+            if !self.wrap[axis] || delta.abs() * 2.0 <= self.size[axis] {
+                delta
+            } else if delta > 0.0 {
+                delta - self.size[axis]
+            } else {
+                delta + self.size[axis]
+            }
+        };
+        DVec2::new(along(0), along(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Domain;
+    use glam::DVec2;
+
+    #[test]
+    fn positions_wrap_into_the_domain_per_axis() {
+        let cylinder = Domain {
+            wrap: [false, true],
+            ..Domain::paper_torus()
+        };
+        assert_eq!(cylinder.wrap(DVec2::new(5.0, 5.0)), DVec2::new(5.0, -1.0));
+        assert_eq!(cylinder.wrap(DVec2::new(0.3, -1.25)), DVec2::new(0.3, 0.75));
+        let torus = Domain::paper_torus();
+        for far in [1e300, -1e300, 1.0, -1.0 - f64::EPSILON, 0.999_999, -1e-300] {
+            assert!(
+                torus.contains(torus.wrap(DVec2::splat(far))),
+                "{far} stayed outside"
+            );
+        }
+    }
+
+    #[test]
+    fn the_shortest_way_may_go_around() {
+        let torus = Domain::paper_torus();
+        let delta = torus.delta(DVec2::new(0.75, -0.75), DVec2::new(-0.75, 0.5));
+        assert_eq!(delta, DVec2::new(0.5, -0.75));
+        let rectangle = Domain {
+            wrap: [false; 2],
+            ..torus
+        };
+        assert_eq!(
+            rectangle.delta(DVec2::new(0.75, -0.75), DVec2::new(-0.75, 0.5)),
+            DVec2::new(-1.5, 1.25)
+        );
+    }
+
+    #[test]
+    fn domains_without_area_are_refused() {
+        for size in [
+            DVec2::ZERO,
+            DVec2::new(1.0, -1.0),
+            DVec2::new(f64::NAN, 1.0),
+            DVec2::INFINITY,
+        ] {
+            assert!(
+                Domain::torus(DVec2::ZERO, size).checked().is_err(),
+                "{size} was accepted"
+            );
+        }
+        assert!(
+            Domain::torus(DVec2::NAN, DVec2::ONE).checked().is_err(),
+            "a NaN origin was accepted"
+        );
+    }
+}

@@ -1,0 +1,76 @@
+//! Why points were refused.
+
+use crate::{Domain, PointIdx};
+use core::fmt;
+use glam::DVec2;
+
+/// Why a point set was refused, or could not be made.
+///
+/// Match on [`kind`](Self::kind); the text is for people.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointsError {
+    kind: PointsErrorKind,
+}
+
+/// The limit that was broken.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum PointsErrorKind {
+    /// The origin of the domain is not finite, or a side is not above zero and finite.
+    Domain {
+        /// The domain.
+        domain: Domain,
+    },
+    /// A position is not finite, or lies outside of the domain along an axis that does not wrap.
+    Outside {
+        /// Which point it is.
+        point: PointIdx,
+        /// Its position.
+        position: DVec2,
+    },
+    /// More points would be needed than the limit allows.
+    TooMany {
+        /// About how many would be needed.
+        needed: f64,
+        /// How many are allowed.
+        limit: u64,
+    },
+}
+
+impl PointsError {
+    pub(crate) fn new(kind: PointsErrorKind) -> Self {
+        Self { kind }
+    }
+
+    /// The limit that was broken.
+    #[must_use]
+    pub fn kind(&self) -> &PointsErrorKind {
+        &self.kind
+    }
+}
+
+impl fmt::Display for PointsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.kind {
+            PointsErrorKind::Domain {
+                domain: Domain { origin, size, .. },
+            } => {
+                write!(
+                    f,
+                    "the domain from {origin} has size {size}, but both sides must be above 0 and finite"
+                )
+            }
+            PointsErrorKind::Outside { point, position } => {
+                write!(f, "point {} at {position} is not in the domain", point.0)
+            }
+            PointsErrorKind::TooMany { needed, limit } => {
+                write!(
+                    f,
+                    "about {needed:.0} points would be needed, but the limit is {limit}"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for PointsError {}

@@ -1,0 +1,20 @@
+//! Point sets on domains that wrap per axis: maximal Poisson disk, variable density, nested; and their statistics.
+//!
+//! A [`Domain`] is a rectangle whose left and right, and top and bottom, may be joined. A [`PointSet`] is a list of
+//! positions in a domain; whatever makes points returns one, whatever uses them takes one.
+//!
+//! Positions are `f64` in the units of the caller. Every set is a function of its options and its seed, the same on
+//! every machine and for any number of threads.
+
+#![forbid(unsafe_code)]
+
+mod domain;
+mod error;
+mod set;
+
+pub use dapple_hash as hash;
+pub use dapple_raster as raster;
+pub use domain::Domain;
+pub use error::{PointsError, PointsErrorKind};
+pub use glam;
+pub use set::{PointIdx, PointSet};

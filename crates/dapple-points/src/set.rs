@@ -1,0 +1,123 @@
+//! A list of positions in a domain.
+
+use crate::{Domain, PointsError, PointsErrorKind};
+use glam::DVec2;
+
+/// The number of a point within its set, from 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PointIdx(pub u32);
+
+impl PointIdx {
+    /// The number as an index into a column.
+    #[must_use]
+    #[inline]
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Points in a domain, in an order that means something to whoever made them and stays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointSet {
+    domain: Domain,
+    positions: Vec<DVec2>,
+}
+
+impl PointSet {
+    /// The points at `positions`; along wrapped axes they are brought into the domain.
+    ///
+    /// Any number of points is accepted, none too, and points may coincide.
+    ///
+    /// # Errors
+    ///
+    /// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::Outside`] for a position that is not
+    /// finite or lies outside along an axis that does not wrap, [`PointsErrorKind::TooMany`] past 2^31 points.
+    pub fn new(domain: Domain, mut positions: Vec<DVec2>) -> Result<Self, PointsError> {
+        let domain = domain.checked()?;
+        if positions.len() > 1 << 31 {
+            return Err(PointsError::new(PointsErrorKind::TooMany {
+                needed: positions.len() as f64,
+                limit: 1 << 31,
+            }));
+        }
+        for (point, position) in (0..).map(PointIdx).zip(&mut positions) {
+            let wrapped = domain.wrap(*position);
+            if !position.is_finite() || !domain.contains(wrapped) {
+                return Err(PointsError::new(PointsErrorKind::Outside {
+                    point,
+                    position: *position,
+                }));
+            }
+            *position = wrapped;
+        }
+        Ok(Self { domain, positions })
+    }
+
+    /// The domain that the points lie in.
+    #[must_use]
+    pub fn domain(&self) -> &Domain {
+        &self.domain
+    }
+
+    /// The number of points.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there is no point.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// The positions, indexed by [`PointIdx`].
+    #[must_use]
+    pub fn positions(&self) -> &[DVec2] {
+        &self.positions
+    }
+
+    /// The position of a point.
+    ///
+    /// # Panics
+    ///
+    /// If the set has no such point.
+    #[must_use]
+    pub fn position(&self, point: PointIdx) -> DVec2 {
+        self.positions[point.index()]
+    }
+
+    /// The points and their positions, in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (PointIdx, DVec2)> + '_ {
+        // A set has at most 2^31 points, so the index fits.
+        self.positions
+            .iter()
+            .enumerate()
+            .map(|(index, &position)| (PointIdx(index as u32), position))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PointSet;
+    use crate::{Domain, PointsErrorKind};
+    use glam::DVec2;
+
+    #[test]
+    fn positions_are_wrapped_and_checked() {
+        let torus = Domain::paper_torus();
+        let set = PointSet::new(torus, vec![DVec2::new(1.5, 0.0), DVec2::ZERO]).unwrap();
+        assert_eq!(set.positions(), [DVec2::new(-0.5, 0.0), DVec2::ZERO]);
+        let rectangle = Domain {
+            wrap: [false; 2],
+            ..torus
+        };
+        for bad in [DVec2::new(1.5, 0.0), DVec2::NAN, DVec2::INFINITY] {
+            let error = PointSet::new(rectangle, vec![DVec2::ZERO, bad]).unwrap_err();
+            assert!(
+                matches!(error.kind(), PointsErrorKind::Outside { point, .. } if point.0 == 1),
+                "{error}"
+            );
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! Partition-of-unity parametrics for texture synthesis: values, orientations, labels and the texture recipes.

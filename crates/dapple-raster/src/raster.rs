@@ -1,0 +1,273 @@
+//! Pixels that own their memory.
+
+use crate::window::check_size;
+use crate::{RasterError, RasterErrorKind, RasterView, RasterViewMut, Window, Wrap};
+use glam::DVec2;
+
+/// An image: `width × height` values, row by row from the top, without gaps.
+///
+/// A raster is never empty and has at most 2^31 pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Raster<T> {
+    data: Vec<T>,
+    size: [u32; 2],
+}
+
+impl<T> Raster<T> {
+    /// A raster of `size` pixels from their values, row by row.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for a bad size, [`RasterErrorKind::Length`] if the
+    /// number of values is not the number of pixels.
+    pub fn from_vec(size: [u32; 2], data: Vec<T>) -> Result<Self, RasterError> {
+        check_size(size)?;
+        let needed = size[0] as usize * size[1] as usize;
+        if data.len() != needed {
+            return Err(RasterError::new(RasterErrorKind::Length {
+                length: data.len(),
+                needed,
+            }));
+        }
+        Ok(Self { data, size })
+    }
+
+    /// A raster of `size` pixels whose values are `value(column, row)`.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for a bad size.
+    pub fn from_fn(
+        size: [u32; 2],
+        mut value: impl FnMut(u32, u32) -> T,
+    ) -> Result<Self, RasterError> {
+        check_size(size)?;
+        let pixels = (0..size[1]).flat_map(|row| (0..size[0]).map(move |column| (column, row)));
+        Ok(Self {
+            data: pixels.map(|(column, row)| value(column, row)).collect(),
+            size,
+        })
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The number of columns.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.size[0]
+    }
+
+    /// The number of rows.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.size[1]
+    }
+
+    /// The values, row by row from the top.
+    #[must_use]
+    pub fn pixels(&self) -> &[T] {
+        &self.data
+    }
+
+    /// The values, row by row from the top.
+    #[must_use]
+    pub fn pixels_mut(&mut self) -> &mut [T] {
+        &mut self.data
+    }
+
+    /// The values, row by row from the top.
+    #[must_use]
+    pub fn into_pixels(self) -> Vec<T> {
+        self.data
+    }
+
+    /// The pixels of a row, from left to right.
+    ///
+    /// # Panics
+    ///
+    /// If `row` is not below the height.
+    #[must_use]
+    pub fn row(&self, row: u32) -> &[T] {
+        self.view().row(row)
+    }
+
+    /// All pixels, for reading.
+    #[must_use]
+    pub fn view(&self) -> RasterView<'_, T> {
+        RasterView::whole(&self.data, self.size)
+    }
+
+    /// All pixels, for writing.
+    #[must_use]
+    pub fn view_mut(&mut self) -> RasterViewMut<'_, T> {
+        RasterViewMut::whole(&mut self.data, self.size)
+    }
+
+    /// A raster of the same size with every value changed by `change`.
+    #[must_use]
+    pub fn map<U>(&self, change: impl FnMut(&T) -> U) -> Raster<U> {
+        Raster {
+            data: self.data.iter().map(change).collect(),
+            size: self.size,
+        }
+    }
+
+    /// A raster that combines two of the same size, pixel by pixel.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::SizeMismatch`] if the sizes differ.
+    pub fn zip_map<U, V>(
+        &self,
+        other: &Raster<U>,
+        mut combine: impl FnMut(&T, &U) -> V,
+    ) -> Result<Raster<V>, RasterError> {
+        self.check_same_size(other.size)?;
+        let data = self
+            .data
+            .iter()
+            .zip(&other.data)
+            .map(|(a, b)| combine(a, b))
+            .collect();
+        Ok(Raster {
+            data,
+            size: self.size,
+        })
+    }
+
+    /// Refuses a size that is not this raster's.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::SizeMismatch`] if it is another.
+    pub fn check_same_size(&self, size: [u32; 2]) -> Result<(), RasterError> {
+        check_same_size(size, self.size)
+    }
+
+    /// The pixel that stands for `[column, row]`, which may lie outside, with the given wrap for each axis.
+    #[must_use]
+    #[inline]
+    pub fn at(&self, column: i64, row: i64, wrap: [Wrap; 2]) -> &T {
+        let [x, y] = [
+            wrap[0].index(column, self.size[0]),
+            wrap[1].index(row, self.size[1]),
+        ];
+        &self.data[y as usize * self.size[0] as usize + x as usize]
+    }
+}
+
+impl<T: Copy> Raster<T> {
+    /// A raster of `size` pixels that all have the same value.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for a bad size.
+    pub fn filled(size: [u32; 2], value: T) -> Result<Self, RasterError> {
+        check_size(size)?;
+        Ok(Self {
+            data: vec![value; size[0] as usize * size[1] as usize],
+            size,
+        })
+    }
+
+    /// The pixels of a view, copied.
+    #[must_use]
+    pub fn from_view(view: RasterView<'_, T>) -> Self {
+        let mut data = Vec::with_capacity(view.size()[0] as usize * view.size()[1] as usize);
+        view.rows().for_each(|row| data.extend_from_slice(row));
+        Self {
+            data,
+            size: view.size(),
+        }
+    }
+
+    /// The rectangle of `size` pixels from `first`, copied.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::OutOfBounds`] if it reaches past the raster, [`RasterErrorKind::Empty`] if it has no pixel.
+    pub fn crop(&self, first: [u32; 2], size: [u32; 2]) -> Result<Self, RasterError> {
+        Ok(Self::from_view(self.view().crop(first, size)?))
+    }
+
+    /// `count[0] × count[1]` copies of the raster side by side: what shows a seam.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for the size that results.
+    pub fn tile(&self, count: [u32; 2]) -> Result<Self, RasterError> {
+        let size = [
+            self.size[0].saturating_mul(count[0]),
+            self.size[1].saturating_mul(count[1]),
+        ];
+        check_size(size)?;
+        let row = |row: u32| self.row(row % self.size[1]).repeat(count[0] as usize);
+        Ok(Self {
+            data: (0..size[1]).flat_map(row).collect(),
+            size,
+        })
+    }
+}
+
+impl<T: Send> Raster<T> {
+    /// A raster whose values are those of `value` at the pixel centers of `window`, on all cores where the feature
+    /// `rayon` is on.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for a bad size.
+    pub fn from_window(
+        window: &Window,
+        value: impl Fn(DVec2) -> T + Sync,
+    ) -> Result<Self, RasterError> {
+        Self::from_rows(window.size, |row| {
+            let y = window.row_y(row);
+            let value = &value;
+            (0..window.size[0]).map(move |column| value(DVec2::new(window.column_x(column), y)))
+        })
+    }
+
+    /// A raster from its rows, each made on its own, on all cores where the feature `rayon` is on.
+    ///
+    /// `row` gives the values of a row from left to right; what is past the width is not used.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] for a bad size, [`RasterErrorKind::Length`] if a
+    /// row is too short.
+    pub fn from_rows<I>(size: [u32; 2], row: impl Fn(u32) -> I + Sync) -> Result<Self, RasterError>
+    where
+        I: IntoIterator<Item = T>,
+    {
+        check_size(size)?;
+        let width = size[0] as usize;
+        let values = |index: u32| row(index).into_iter().take(width);
+        #[cfg(feature = "rayon")]
+        let data: Vec<T> = {
+            use rayon::prelude::*;
+            (0..size[1]).into_par_iter().flat_map_iter(values).collect()
+        };
+        #[cfg(not(feature = "rayon"))]
+        let data: Vec<T> = (0..size[1]).flat_map(values).collect();
+        Self::from_vec(size, data)
+    }
+}
+
+/// Refuses a size that is not the one needed.
+pub(crate) fn check_same_size(size: [u32; 2], needed: [u32; 2]) -> Result<(), RasterError> {
+    if size == needed {
+        Ok(())
+    } else {
+        Err(RasterError::new(RasterErrorKind::SizeMismatch {
+            size,
+            needed,
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,193 @@
+//! Where pixels lie in the plane.
+
+use crate::{RasterError, RasterErrorKind};
+use glam::DVec2;
+
+/// A grid of pixels in the plane: the pixel `[i, j]` has its center at `origin + (first + [i, j] + ½) · pixel`.
+///
+/// `first` counts whole pixels from the origin, so a part of a window keeps the origin and the pixel of the whole and
+/// has the same positions to the last bit: see [`crop`](Self::crop).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Window {
+    /// The corner from which pixels are counted.
+    pub origin: DVec2,
+    /// The width and height of a pixel. A negative height makes rows go up.
+    pub pixel: DVec2,
+    /// The column and row of the first pixel, counted from the origin.
+    pub first: [i64; 2],
+    /// Columns and rows.
+    pub size: [u32; 2],
+}
+
+impl Window {
+    /// The window of `size` pixels that covers the rectangle from `origin` with the given `extent`.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::Empty`] if a side of `size` is zero, [`RasterErrorKind::TooLarge`] past 2^31 pixels,
+    /// [`RasterErrorKind::NotFinite`] if the origin or the extent is not finite or the extent is zero.
+    pub fn new(origin: DVec2, extent: DVec2, size: [u32; 2]) -> Result<Self, RasterError> {
+        check_size(size)?;
+        for (what, value, zero) in [
+            ("origin of the window", origin.x, true),
+            ("origin of the window", origin.y, true),
+            ("extent of the window", extent.x, false),
+            ("extent of the window", extent.y, false),
+        ] {
+            if !value.is_finite() || (!zero && value == 0.0) {
+                return Err(RasterError::new(RasterErrorKind::NotFinite { what, value }));
+            }
+        }
+        let pixel = extent / DVec2::new(f64::from(size[0]), f64::from(size[1]));
+        Ok(Self {
+            origin,
+            pixel,
+            first: [0, 0],
+            size,
+        })
+    }
+
+    /// The window of `size` pixels that covers the unit square.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new) for `size`.
+    pub fn unit(size: [u32; 2]) -> Result<Self, RasterError> {
+        Self::new(DVec2::ZERO, DVec2::ONE, size)
+    }
+
+    /// The part of `size` pixels that begins `first` pixels into this window (before it, if negative).
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`], as in [`new`](Self::new).
+    pub fn crop(&self, first: [i64; 2], size: [u32; 2]) -> Result<Self, RasterError> {
+        check_size(size)?;
+        let first = [
+            self.first[0].saturating_add(first[0]),
+            self.first[1].saturating_add(first[1]),
+        ];
+        Ok(Self {
+            first,
+            size,
+            ..*self
+        })
+    }
+
+    /// The x coordinate of the centers of column `column`, counted within the window.
+    #[must_use]
+    #[inline]
+    pub fn column_x(&self, column: u32) -> f64 {
+        center(self.origin.x, self.pixel.x, self.first[0], column)
+    }
+
+    /// The y coordinate of the centers of row `row`, counted within the window.
+    #[must_use]
+    #[inline]
+    pub fn row_y(&self, row: u32) -> f64 {
+        center(self.origin.y, self.pixel.y, self.first[1], row)
+    }
+
+    /// The center of a pixel.
+    #[must_use]
+    #[inline]
+    pub fn position(&self, column: u32, row: u32) -> DVec2 {
+        DVec2::new(self.column_x(column), self.row_y(row))
+    }
+
+    /// The number of pixels.
+    #[must_use]
+    pub fn n_pixels(&self) -> usize {
+        self.size[0] as usize * self.size[1] as usize
+    }
+}
+
+/// The whole-number part is exact as long as it stays below 2^52; one product and one sum are rounded.
+#[inline]
+fn center(origin: f64, pixel: f64, first: i64, index: u32) -> f64 {
+    origin + (first.saturating_add(i64::from(index)) as f64 + 0.5) * pixel
+}
+
+/// Refuses sizes without pixels and sizes past the limit.
+pub(crate) fn check_size(size: [u32; 2]) -> Result<(), RasterError> {
+    let pixels = u64::from(size[0]) * u64::from(size[1]);
+    if pixels == 0 {
+        return Err(RasterError::new(RasterErrorKind::Empty { size }));
+    }
+    if pixels > 1 << 31 {
+        return Err(RasterError::new(RasterErrorKind::TooLarge { size }));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Window;
+    use crate::RasterErrorKind;
+    use glam::DVec2;
+
+    #[test]
+    fn a_crop_has_the_positions_of_the_whole_bit_for_bit() {
+        let whole =
+            Window::new(DVec2::new(1e9 + 0.1, -0.3), DVec2::new(0.7, 1.3), [101, 57]).unwrap();
+        let part = whole
+            .crop([13, 8], [40, 30])
+            .unwrap()
+            .crop([2, 3], [5, 6])
+            .unwrap();
+        for row in 0..6 {
+            for column in 0..5 {
+                let [here, there] = [
+                    part.position(column, row),
+                    whole.position(column + 15, row + 11),
+                ];
+                assert_eq!(
+                    here.to_array().map(f64::to_bits),
+                    there.to_array().map(f64::to_bits)
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn windows_without_pixels_or_extent_are_refused() {
+        let kind = |extent: DVec2, size| {
+            Window::new(DVec2::ZERO, extent, size)
+                .unwrap_err()
+                .kind()
+                .clone()
+        };
+        assert!(matches!(
+            kind(DVec2::ONE, [0, 5]),
+            RasterErrorKind::Empty { size: [0, 5] }
+        ));
+        assert!(matches!(
+            kind(DVec2::ONE, [u32::MAX, 5]),
+            RasterErrorKind::TooLarge { .. }
+        ));
+        assert!(matches!(
+            kind(DVec2::new(0.0, 1.0), [5, 5]),
+            RasterErrorKind::NotFinite { .. }
+        ));
+        assert!(matches!(
+            kind(DVec2::new(1.0, f64::NAN), [5, 5]),
+            RasterErrorKind::NotFinite { .. }
+        ));
+    }
+
+    #[test]
+    fn far_crops_do_not_overflow() {
+        let window = Window::unit([4, 4])
+            .unwrap()
+            .crop([i64::MAX, i64::MIN], [2, 2])
+            .unwrap();
+        assert!(
+            window
+                .crop([1, -1], [2, 2])
+                .unwrap()
+                .position(1, 1)
+                .is_finite()
+        );
+    }
+}

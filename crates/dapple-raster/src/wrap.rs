@@ -1,0 +1,54 @@
+//! What lies past the edge.
+
+/// How an index past the end of an axis is brought back, for each axis on its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Wrap {
+    /// The picture repeats.
+    #[default]
+    Repeat,
+    /// The last pixel goes on forever.
+    Clamp,
+    /// The picture repeats, every second time mirrored, with the edge pixel twice.
+    Mirror,
+}
+
+impl Wrap {
+    /// The index in `0..length` that stands for `index`. `length` is at least 1.
+    #[must_use]
+    #[inline]
+    pub fn index(self, index: i64, length: u32) -> u32 {
+        let length = i64::from(length.max(1));
+        let wrapped = match self {
+            Self::Repeat => index.rem_euclid(length),
+            Self::Clamp => index.clamp(0, length - 1),
+            Self::Mirror => {
+                let folded = index.rem_euclid(2 * length);
+                folded.min(2 * length - 1 - folded)
+            }
+        };
+        // Between zero and `length - 1`, so the cast loses nothing.
+        wrapped as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Wrap;
+
+    #[test]
+    fn indices_come_back_into_the_raster() {
+        let wrapped = |wrap: Wrap| [-4, -3, -1, 0, 2, 3, 5, 6].map(|index| wrap.index(index, 3));
+        assert_eq!(wrapped(Wrap::Repeat), [2, 0, 2, 0, 2, 0, 2, 0]);
+        assert_eq!(wrapped(Wrap::Clamp), [0, 0, 0, 0, 2, 2, 2, 2]);
+        assert_eq!(wrapped(Wrap::Mirror), [2, 2, 0, 0, 2, 2, 0, 0]);
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            assert_eq!(wrap.index(i64::MIN, 1), 0);
+            assert!(wrap.index(i64::MAX, 7) < 7);
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! Workspace-wide tests; they live in the test binary `it`.
