@@ -35,6 +35,29 @@ pub enum PointsErrorKind {
         /// How many are allowed.
         limit: u64,
     },
+    /// A number that must be above zero and finite is not.
+    NotPositive {
+        /// What the number is.
+        what: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// There is no set, or a set without points, where points are needed.
+    NoPoints,
+    /// Sets that must share one domain do not.
+    DifferentDomains {
+        /// The domain of the first set.
+        first: Domain,
+        /// The domain of another one.
+        other: Domain,
+    },
+    /// A spectrum would have more frequencies, or rings, than the limit allows.
+    TooManyFrequencies {
+        /// About how many it would have.
+        needed: f64,
+        /// How many are allowed.
+        limit: u64,
+    },
 }
 
 impl PointsError {
@@ -67,6 +90,24 @@ impl fmt::Display for PointsError {
                 write!(
                     f,
                     "about {needed:.0} points would be needed, but the limit is {limit}"
+                )
+            }
+            PointsErrorKind::NotPositive { what, value } => {
+                write!(f, "{what} is {value}, but it must be above 0 and finite")
+            }
+            PointsErrorKind::NoPoints => {
+                f.write_str("there is no point, but at least one is needed")
+            }
+            PointsErrorKind::DifferentDomains { first, other } => {
+                write!(
+                    f,
+                    "one set is in {other:?}, but the first one is in {first:?}"
+                )
+            }
+            PointsErrorKind::TooManyFrequencies { needed, limit } => {
+                write!(
+                    f,
+                    "the spectrum would have about {needed:.0} frequencies or rings, but the limit is {limit}"
                 )
             }
         }

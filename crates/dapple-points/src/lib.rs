@@ -11,6 +11,7 @@
 mod domain;
 mod error;
 mod set;
+mod statistics;
 
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
@@ -18,3 +19,4 @@ pub use domain::Domain;
 pub use error::{PointsError, PointsErrorKind};
 pub use glam;
 pub use set::{PointIdx, PointSet};
+pub use statistics::{EmptyCircle, Spectrum, SpectrumOptions, SpectrumRing, spectrum};

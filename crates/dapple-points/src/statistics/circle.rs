@@ -1,0 +1,144 @@
+//! The largest circle without a point in it.
+//!
+//! The place farthest from all points is a corner of a Voronoi cell, cut off at the sides of the domain. Each cell is
+//! cut out by the bisectors to the points around it, nearest ring of the grid first, until no farther point can
+//! touch it. Corners are kept relative to the cell's point, so a far origin costs no digits.
+
+use super::grid::{Grid, Images};
+use crate::PointSet;
+use glam::DVec2;
+
+/// A circle without a point inside of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EmptyCircle {
+    /// The center, in the domain.
+    pub center: DVec2,
+    /// The distance from the center to the nearest points.
+    pub radius: f64,
+}
+
+impl PointSet {
+    /// The largest empty circle with its center in the domain, or none for a set without points.
+    ///
+    /// Its radius is how far one can get from all points. Around wrapped axes every copy of every point counts, the
+    /// only point's own copies too. Along the other axes the circle may stick out of the domain, its center may not.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_points::{Domain, PointSet, glam::DVec2};
+    ///
+    /// let set = PointSet::new(Domain::torus(DVec2::ZERO, DVec2::new(8.0, 6.0)), vec![DVec2::ONE])?;
+    /// let circle = set.largest_empty_circle().expect("there is a point");
+    /// assert_eq!(circle.radius, 5.0);
+    /// # Ok::<(), dapple_points::PointsError>(())
+    /// ```
+    #[must_use]
+    pub fn largest_empty_circle(&self) -> Option<EmptyCircle> {
+        let grid = Grid::new(self);
+        let mut cell = VoronoiCell::default();
+        let (mut best, mut best_sq) = (None, -1.0);
+        for (_, position) in self.iter() {
+            cell.cut_out(self, &grid, position);
+            for &corner in &cell.corners {
+                if corner.length_squared() > best_sq {
+                    best_sq = corner.length_squared();
+                    best = Some(position + corner);
+                }
+            }
+        }
+        let domain = self.domain();
+        best.map(|center| EmptyCircle {
+            // Rounding may leave a corner on the border a hair outside.
+            center: domain.wrap(center).clamp(domain.origin, domain.end()),
+            radius: best_sq.sqrt(),
+        })
+    }
+}
+
+/// The corners of a convex polygon around a point, relative to it.
+#[derive(Debug, Default)]
+struct VoronoiCell {
+    corners: Vec<DVec2>,
+    scratch: Vec<DVec2>,
+    /// The largest squared distance of a corner.
+    reach_sq: f64,
+}
+
+impl VoronoiCell {
+    /// Becomes the cell of the point at `position`.
+    fn cut_out(&mut self, set: &PointSet, grid: &Grid, position: DVec2) {
+        self.start(set, position);
+        let center = grid.cell(position);
+        for ring in 0.. {
+            let distance = grid.distance_to_ring(ring);
+            if distance > 0.0 && distance * distance > 4.0 * self.reach_sq {
+                return;
+            }
+            grid.visit_ring(center, ring, Images::All, |other, shift| {
+                self.clip(set.positions()[other] - position + shift);
+            });
+        }
+    }
+
+    /// The part of the plane that is nearer to the point than to its own copies, and in the domain.
+    fn start(&mut self, set: &PointSet, position: DVec2) {
+        let domain = set.domain();
+        let half = domain.size * 0.5;
+        let low = DVec2::from_array([0, 1].map(|axis| match domain.wrap[axis] {
+            true => -half[axis],
+            false => domain.origin[axis] - position[axis],
+        }));
+        let high = DVec2::from_array([0, 1].map(|axis| match domain.wrap[axis] {
+            true => half[axis],
+            false => domain.end()[axis] - position[axis],
+        }));
+        self.corners.clear();
+        self.corners.extend([
+            low,
+            DVec2::new(high.x, low.y),
+            high,
+            DVec2::new(low.x, high.y),
+        ]);
+        self.measure();
+    }
+
+    /// Keeps what is nearer to the point than to the one at `other` from it.
+    fn clip(&mut self, other: DVec2) {
+        let other_sq = other.length_squared();
+        // A point in the same place takes nothing away; one too far off does not reach the cell.
+        if other_sq == 0.0 || other_sq > 4.0 * self.reach_sq {
+            return;
+        }
+        let excess = |corner: DVec2| corner.dot(other) - 0.5 * other_sq;
+        self.scratch.clear();
+        let Some(&last) = self.corners.last() else {
+            return;
+        };
+        let (mut from, mut from_excess) = (last, excess(last));
+        for &to in &self.corners {
+            let to_excess = excess(to);
+            if (from_excess > 0.0) != (to_excess > 0.0) {
+                let share = from_excess / (from_excess - to_excess);
+                self.scratch.push(from + (to - from) * share);
+            }
+            if to_excess <= 0.0 {
+                self.scratch.push(to);
+            }
+            (from, from_excess) = (to, to_excess);
+        }
+        core::mem::swap(&mut self.corners, &mut self.scratch);
+        self.measure();
+    }
+
+    fn measure(&mut self) {
+        self.reach_sq = self
+            .corners
+            .iter()
+            .map(|corner| corner.length_squared())
+            .fold(0.0, f64::max);
+    }
+}
+
+#[cfg(test)]
+mod tests;

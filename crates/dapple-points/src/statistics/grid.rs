@@ -1,0 +1,138 @@
+//! Points sorted into square cells, searched ring by ring.
+
+use crate::{Domain, PointSet};
+use glam::DVec2;
+
+/// Mean number of points per cell: few enough to skip most of the far ones, enough to walk few empty cells.
+const POINTS_PER_CELL: f64 = 2.0;
+
+/// The share of a cell by which rounding may put a point into the wrong one, with much to spare.
+const ROUNDING: f64 = 1e-6;
+
+/// How often a search may meet the cells of a domain that wraps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Images {
+    /// Each cell once, by the shortest way.
+    Nearest,
+    /// Each cell as often as it repeats.
+    All,
+}
+
+/// The points of a set by cell, in rows of cells.
+#[derive(Debug)]
+pub(super) struct Grid {
+    domain: Domain,
+    /// Columns and rows.
+    counts: [i64; 2],
+    /// The shorter side of a cell.
+    side: f64,
+    /// `starts[cell]..starts[cell + 1]` are the places of a cell's points in `order`.
+    starts: Vec<u32>,
+    order: Vec<u32>,
+}
+
+impl Grid {
+    pub(super) fn new(set: &PointSet) -> Self {
+        let domain = *set.domain();
+        let n_points = set.len().max(1);
+        let side = (domain.area() * POINTS_PER_CELL / n_points as f64).sqrt();
+        // The cast saturates, and no side has more cells than there are points.
+        let counts =
+            [0, 1].map(|axis| ((domain.size[axis] / side) as i64).clamp(1, n_points as i64));
+        let side = (domain.size.x / counts[0] as f64).min(domain.size.y / counts[1] as f64);
+        let mut grid = Self {
+            domain,
+            counts,
+            side,
+            starts: vec![0; (counts[0] * counts[1]) as usize + 1],
+            order: vec![0; set.len()],
+        };
+        grid.sort(set);
+        grid
+    }
+
+    /// Sorts the points by cell, stable within each.
+    fn sort(&mut self, set: &PointSet) {
+        let columns = self.counts[0];
+        let cells = set.iter().map(|(_, position)| self.cell(position));
+        let cells: Vec<usize> = cells
+            .map(|[column, row]| (row * columns + column) as usize)
+            .collect();
+        for &cell in &cells {
+            self.starts[cell + 1] += 1;
+        }
+        for cell in 1..self.starts.len() {
+            self.starts[cell] += self.starts[cell - 1];
+        }
+        let mut next = self.starts.clone();
+        for (point, cell) in (0..).zip(cells) {
+            self.order[next[cell] as usize] = point;
+            next[cell] += 1;
+        }
+    }
+
+    /// The column and row of a position.
+    pub(super) fn cell(&self, position: DVec2) -> [i64; 2] {
+        [0, 1].map(|axis| {
+            let fraction = (position[axis] - self.domain.origin[axis]) / self.domain.size[axis];
+            let cell = (fraction * self.counts[axis] as f64) as i64;
+            cell.clamp(0, self.counts[axis] - 1)
+        })
+    }
+
+    /// A distance that nothing in ring `ring`, or in a later one, falls below.
+    pub(super) fn distance_to_ring(&self, ring: i64) -> f64 {
+        (ring as f64 - 1.0 - ROUNDING) * self.side
+    }
+
+    /// The last ring that holds anything within `distance`, or anything at all.
+    pub(super) fn last_ring(&self, distance: f64) -> i64 {
+        let reach = (distance / self.side + 1.0 + ROUNDING) as i64;
+        reach.clamp(0, self.counts[0].max(self.counts[1]))
+    }
+
+    /// Calls `visit` with each point in the cells at a distance of `ring` cells, and with what must be added to its
+    /// position to bring it there.
+    pub(super) fn visit_ring(
+        &self,
+        center: [i64; 2],
+        ring: i64,
+        images: Images,
+        mut visit: impl FnMut(usize, DVec2),
+    ) {
+        for dy in -ring..=ring {
+            let Some((row, shift_y)) = self.along(1, center[1], dy, images) else {
+                continue;
+            };
+            let on_edge = dy.abs() == ring;
+            let step = if on_edge { 1 } else { (2 * ring).max(1) };
+            for dx in (-ring..=ring).step_by(step as usize) {
+                let Some((column, shift_x)) = self.along(0, center[0], dx, images) else {
+                    continue;
+                };
+                let cell = (row * self.counts[0] + column) as usize;
+                for &point in
+                    &self.order[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+                {
+                    visit(point as usize, DVec2::new(shift_x, shift_y));
+                }
+            }
+        }
+    }
+
+    /// The column or row at `offset` from `center`, and how far it is shifted from the one in the domain.
+    fn along(&self, axis: usize, center: i64, offset: i64, images: Images) -> Option<(i64, f64)> {
+        let count = self.counts[axis];
+        if !self.domain.wrap[axis] {
+            let cell = center + offset;
+            return (0..count).contains(&cell).then_some((cell, 0.0));
+        }
+        let is_nearest = offset <= count / 2 && offset >= -((count - 1) / 2);
+        if images == Images::Nearest && !is_nearest {
+            return None;
+        }
+        let turns = (center + offset).div_euclid(count);
+        let cell = (center + offset).rem_euclid(count);
+        Some((cell, turns as f64 * self.domain.size[axis]))
+    }
+}
