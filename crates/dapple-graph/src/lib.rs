@@ -1,1 +1,23 @@
 //! Delaunay (planar and periodic), Yao, Gabriel and nearest-neighbor graphs of a point set, and their axes.
+//!
+//! A [`Graph`] holds, for each point of a set, its [`Axis`] list: which points it is connected to, and the vector that
+//! leads there. On a domain that wraps, the vector goes around where the edge does, an axis may lead to another image
+//! of the point itself, and several axes may lead to different images of the same point.
+//!
+//! Positions are snapped to a fine lattice first (2^-50 of the domain's larger side, see [`Graph`]). On the lattice
+//! every difference and every image is an exact number, and all decisions are made by exact predicates: the same
+//! graph on every machine, and the same axes on both ends of an edge.
+
+#![forbid(unsafe_code)]
+
+mod angle;
+mod delaunay;
+mod error;
+mod graph;
+mod lattice;
+
+pub use dapple_points as points;
+pub use dapple_points::{PointIdx, PointSet, glam};
+pub use delaunay::delaunay;
+pub use error::{GraphError, GraphErrorKind};
+pub use graph::{Axis, Graph};

@@ -1,0 +1,146 @@
+//! A graph in compressed rows: the axes of each point.
+
+use crate::angle::by_angle;
+use crate::lattice::Lattice;
+use crate::{GraphError, GraphErrorKind};
+use dapple_points::{PointIdx, PointSet};
+use glam::DVec2;
+
+/// One edge, seen from one of its ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis {
+    /// The point that the axis leads to.
+    pub to: PointIdx,
+    /// From the point to that image of `to`, in the units of the positions; never zero.
+    pub vector: DVec2,
+}
+
+/// A graph over a point set: for each point its axes.
+///
+/// Vectors are exact differences of the positions after these were snapped to the nearest multiple (from the origin
+/// of the domain) of a power of two between 2^-50 and 2^-49 of the domain's larger side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Graph {
+    pub(crate) lattice: Lattice,
+    pub(crate) sites: Vec<DVec2>,
+    pub(crate) offsets: Vec<u32>,
+    pub(crate) axes: Vec<Axis>,
+    pub(crate) symmetric: bool,
+}
+
+impl Graph {
+    /// The graph that the caller says: row `i` names the points that point `i` is connected to.
+    ///
+    /// Each axis takes the shortest way around the wrapped axes. A name that comes twice in a row counts once. Edges
+    /// are directed: name both ends in each other's rows for a symmetric graph.
+    ///
+    /// # Errors
+    ///
+    /// [`GraphErrorKind::Rows`] for another number of rows than points, [`GraphErrorKind::NoSuchPoint`] for an index
+    /// that is too large, [`GraphErrorKind::Coincident`] if a row names a point at the same place or its own point.
+    pub fn from_adjacency<R: AsRef<[PointIdx]>>(
+        points: &PointSet,
+        rows: &[R],
+    ) -> Result<Self, GraphError> {
+        let n_points = points.len();
+        if rows.len() != n_points {
+            return Err(GraphError::new(GraphErrorKind::Rows {
+                rows: rows.len(),
+                n_points,
+            }));
+        }
+        let lattice = Lattice::new(points.domain());
+        let sites = lattice.sites(points);
+        let mut offsets = vec![0];
+        let mut axes: Vec<Axis> = Vec::new();
+        for (from, row) in (0..).map(PointIdx).zip(rows) {
+            let start = axes.len();
+            for &to in row.as_ref() {
+                let site = *sites.get(to.index()).ok_or_else(|| {
+                    GraphError::new(GraphErrorKind::NoSuchPoint { from, to, n_points })
+                })?;
+                let vector = lattice.vector(lattice.delta(sites[from.index()], site));
+                if vector == DVec2::ZERO {
+                    return Err(GraphError::coincident(from, to));
+                }
+                axes.push(Axis { to, vector });
+            }
+            axes[start..].sort_unstable_by(Axis::order);
+            let mut kept = axes.split_off(start);
+            kept.dedup();
+            axes.append(&mut kept);
+            offsets.push(axes.len() as u32);
+        }
+        let mut graph = Self {
+            lattice,
+            sites,
+            offsets,
+            axes,
+            symmetric: false,
+        };
+        graph.symmetric = graph.every_axis_has_its_opposite();
+        Ok(graph)
+    }
+
+    /// The axes of a point, counterclockwise, from the smallest angle in `[0, 2π)` from the x axis towards y; those of
+    /// one angle by length, then by index.
+    ///
+    /// # Panics
+    ///
+    /// If the graph has no such point.
+    #[must_use]
+    #[inline]
+    pub fn axes(&self, point: PointIdx) -> &[Axis] {
+        let at = point.index();
+        &self.axes[self.offsets[at] as usize..self.offsets[at + 1] as usize]
+    }
+
+    /// The number of points.
+    #[must_use]
+    pub fn n_points(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// The number of axes: twice the number of edges if the graph is symmetric.
+    #[must_use]
+    pub fn n_axes(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// Where the axes of each point begin in [`all_axes`](Self::all_axes), and at the end where the last ones end.
+    #[must_use]
+    pub fn offsets(&self) -> &[u32] {
+        &self.offsets
+    }
+
+    /// The axes of all points, one point after another.
+    #[must_use]
+    pub fn all_axes(&self) -> &[Axis] {
+        &self.axes
+    }
+
+    /// Whether every axis has its opposite: from the other end back, with exactly the negated vector.
+    #[must_use]
+    pub fn is_symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    pub(crate) fn every_axis_has_its_opposite(&self) -> bool {
+        (0..self.n_points() as u32).map(PointIdx).all(|from| {
+            self.axes(from).iter().all(|axis| {
+                let back = Axis {
+                    to: from,
+                    vector: -axis.vector,
+                };
+                self.axes(axis.to).contains(&back)
+            })
+        })
+    }
+}
+
+impl Axis {
+    /// The order of a point's axes.
+    pub(crate) fn order(&self, other: &Self) -> core::cmp::Ordering {
+        by_angle(self.vector, other.vector).then(self.to.cmp(&other.to))
+    }
+}
