@@ -1,1 +1,34 @@
 //! Partition-of-unity parametrics for texture synthesis: values, orientations, labels and the texture recipes.
+//!
+//! Reference: Jack Caron and David Mould, "Partition of Unity Parametrics for Texture Synthesis", Graphics Interface
+//! 2013.
+//!
+//! Control points lie in the plane and are connected by a graph. The edges at a control point are its axes; a position
+//! is projected onto each of them, every projection gives an axial weight, and their product is the weight of the
+//! control point. [`Pups`] holds such a net. [`Texture`] gives the control points values and interpolates them;
+//! [`Pups::strongest`] gives every position the label of its strongest control point.
+
+#![forbid(unsafe_code)]
+
+mod error;
+mod kernel;
+mod net;
+mod options;
+mod power;
+mod pups;
+mod render;
+mod sample;
+mod simd;
+mod texture;
+mod weight;
+
+pub use dapple_graph as graph;
+pub use dapple_hash as hash;
+pub use dapple_points as points;
+pub use dapple_raster as raster;
+pub use error::{PupsError, PupsErrorKind};
+pub use glam;
+pub use options::{Orientation, PupsOptions};
+pub use pups::Pups;
+pub use texture::{Texture, VectorTexture};
+pub use weight::AxialWeight;

@@ -1,6 +1,5 @@
 //! The door that everything with a value at every position shares.
 
-use crate::raster::check_same_size;
 use crate::{Raster, RasterError, RasterErrorKind, RasterViewMut, Window};
 use glam::DVec2;
 
@@ -53,7 +52,7 @@ pub trait Field: Send + Sync {
     ///
     /// [`RasterErrorKind::SizeMismatch`] if `out` has another size than the window.
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        check_same_size(out.size(), window.size)?;
+        window.check_size(out.size())?;
         for (row, values) in (0..).zip(out.rows_mut()) {
             let y = window.row_y(row);
             for (column, value) in (0..).zip(values) {

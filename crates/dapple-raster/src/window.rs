@@ -1,5 +1,6 @@
 //! Where pixels lie in the plane.
 
+use crate::raster::check_same_size;
 use crate::{RasterError, RasterErrorKind};
 use glam::DVec2;
 
@@ -94,6 +95,15 @@ impl Window {
     #[inline]
     pub fn position(&self, column: u32, row: u32) -> DVec2 {
         DVec2::new(self.column_x(column), self.row_y(row))
+    }
+
+    /// Refuses memory that has not the size of this window.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::SizeMismatch`] if `size` is another.
+    pub fn check_size(&self, size: [u32; 2]) -> Result<(), RasterError> {
+        check_same_size(size, self.size)
     }
 
     /// The number of pixels.

@@ -1,0 +1,318 @@
+//! The control net: control points with their axes, made ready for evaluation.
+//!
+//! Reference: Jack Caron and David Mould, "Partition of Unity Parametrics for Texture Synthesis", Graphics Interface
+//! 2013, section 2.
+//!
+//! An axis `v` of a control point `c`, scaled by `s`, projects a position `x` to `p = (x − c)·v / (s |v|²)`. With
+//! `a = v / (s |v|²)` and `d = (x − c)` rounded to single precision, what the evaluation needs is `u = 1 − p`, computed
+//! as `(1 − a_y d_y) − a_x d_x`: that grouping is the frame rule of this crate, and every path keeps it.
+//!
+//! On a wrapped axis a control point acts through its periodic images as well. Each image whose support reaches into
+//! the domain is an [`Instance`]; positions are brought into the domain first, so that a texture repeats exactly.
+
+use crate::sample::Bins;
+use crate::{PupsError, PupsErrorKind, PupsOptions};
+use dapple_graph::{Axis, Graph, delaunay};
+use dapple_points::{Domain, PointIdx, PointSet};
+use glam::DVec2;
+use std::sync::OnceLock;
+
+/// How many axes are evaluated together.
+pub(crate) const BLOCK: usize = 8;
+
+/// On an axis that does not wrap, positions further out than this many domain sizes are evaluated at this distance,
+/// where the texture has long become constant along every ray that single precision can tell.
+const FAR: f64 = 1_048_576.0;
+
+/// No support reaches further than this many periods.
+const IMAGES_LIMIT: f64 = 64.0;
+
+/// Supports are taken this much larger than they are, so that rounding cannot put a weight outside of its box.
+const SLACK: f64 = 1e-5;
+
+/// Eight axes side by side; unused ones are zero, which projects every position to 0 and so weighs 1.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
+pub(crate) struct AxisBlock {
+    pub(crate) x: [f32; BLOCK],
+    pub(crate) y: [f32; BLOCK],
+}
+
+/// A control point, or one of its periodic images.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Instance {
+    /// Where it is.
+    pub(crate) center: DVec2,
+    /// The smallest box around its support; infinite where the support is.
+    pub(crate) min: DVec2,
+    pub(crate) max: DVec2,
+    /// The control point.
+    pub(crate) point: u32,
+}
+
+/// Everything that the weights depend on.
+#[derive(Debug)]
+pub(crate) struct Net {
+    pub(crate) domain: Domain,
+    pub(crate) options: PupsOptions,
+    /// Control points and their images, in the order in which weights are summed: by point, then by image.
+    pub(crate) instances: Vec<Instance>,
+    /// The axes of point `i` are the blocks from `first_block[i]` to `first_block[i + 1]`.
+    pub(crate) first_block: Vec<u32>,
+    pub(crate) blocks: Vec<AxisBlock>,
+    /// ε times the orientation in the plane, for each point; empty without orientations.
+    pub(crate) shifts: Vec<[f32; 2]>,
+    /// For single positions; made when the first is asked for.
+    bins: OnceLock<Bins>,
+}
+
+impl Net {
+    pub(crate) fn new(
+        points: &PointSet,
+        graph: &Graph,
+        options: PupsOptions,
+    ) -> Result<Self, PupsError> {
+        if points.is_empty() {
+            return Err(PupsError::new(PupsErrorKind::NoPoints));
+        }
+        PupsError::check_count("points in the graph", graph.n_points(), points.len())?;
+        options.check(points.len())?;
+        let size = points.domain().size;
+        let holds = size.min_element() >= 1e-18 && size.max_element() <= 1e18;
+        PupsError::check(
+            holds,
+            "size of the domain",
+            size.max_element(),
+            "from 1e-18 to 1e18",
+        )?;
+        let mut net = Self {
+            domain: *points.domain(),
+            instances: Vec::with_capacity(points.len() + points.len() / 4 + 16),
+            first_block: Vec::with_capacity(points.len() + 1),
+            blocks: Vec::with_capacity(points.len() + points.len() / 16),
+            shifts: options
+                .orientation
+                .iter()
+                .flat_map(|it| (0..points.len()).map(|index| it.shift(index)))
+                .collect(),
+            options,
+            bins: OnceLock::new(),
+        };
+        net.first_block.push(0);
+        let mut closing = None;
+        let mut axes = Vec::new();
+        for (point, center) in points.iter() {
+            axes.clear();
+            axes.extend_from_slice(graph.axes(point));
+            if has_gap(&axes) {
+                close_gap(point, &mut axes, points, &mut closing)?;
+            }
+            net.push_axes(point, &axes)?;
+            net.push_instances(point, center, &axes);
+        }
+        Ok(net)
+    }
+
+    /// Which control points can have a weight where.
+    #[inline]
+    pub(crate) fn bins(&self) -> &Bins {
+        self.bins.get_or_init(|| Bins::new(self))
+    }
+
+    /// The blocks of a control point.
+    #[inline(always)]
+    pub(crate) fn blocks(&self, point: u32) -> &[AxisBlock] {
+        let [start, end] =
+            [point, point + 1].map(|point| self.first_block[point as usize] as usize);
+        &self.blocks[start..end]
+    }
+
+    /// A coordinate along `axis` as the evaluation takes it: in the domain where it wraps, and not too far out where it
+    /// does not. What is not finite stays so.
+    #[inline]
+    pub(crate) fn local(&self, axis: usize, coordinate: f64) -> f64 {
+        if !coordinate.is_finite() {
+            return f64::NAN;
+        }
+        if self.domain.wrap[axis] {
+            return self.domain.wrap_axis(axis, coordinate);
+        }
+        let (origin, size) = (self.domain.origin[axis], self.domain.size[axis]);
+        coordinate.clamp(origin - FAR * size, origin + FAR * size)
+    }
+
+    /// Adds the axes of the next point, scaled.
+    fn push_axes(&mut self, point: PointIdx, axes: &[Axis]) -> Result<(), PupsError> {
+        // With this limit, no product of an axis and a position leaves the range of single precision.
+        let limit = self.domain.size.max_element() * 1e-9;
+        for chunk in axes.chunks(BLOCK) {
+            let mut block = AxisBlock::default();
+            for (slot, axis) in chunk.iter().enumerate() {
+                let length_sq = axis.vector.length_squared();
+                if length_sq < limit * limit {
+                    let length = length_sq.sqrt();
+                    return Err(PupsError::new(PupsErrorKind::ShortAxis {
+                        point: point.0,
+                        length,
+                        limit,
+                    }));
+                }
+                let scaled = axis.vector / (length_sq * self.options.axis_scale);
+                block.x[slot] = scaled.x as f32;
+                block.y[slot] = scaled.y as f32;
+            }
+            self.blocks.push(block);
+        }
+        // At most 2^31 points with few blocks each; a graph with more axes than that does not fit into memory.
+        self.first_block.push(self.blocks.len() as u32);
+        Ok(())
+    }
+
+    /// Adds the images of the next point whose supports reach into the domain.
+    fn push_instances(&mut self, point: PointIdx, center: DVec2, axes: &[Axis]) {
+        let (min, max) = support_box(axes, self.options.axis_scale);
+        let slack = (max - min) * SLACK;
+        let (min, max) = (min - slack, max + slack);
+        let [columns, rows] =
+            [0, 1].map(|axis| self.image_range(axis, center[axis], min[axis], max[axis]));
+        for row in rows {
+            for column in columns.clone() {
+                let center = center + self.domain.size * DVec2::new(column as f64, row as f64);
+                self.instances.push(Instance {
+                    center,
+                    min: center + min,
+                    max: center + max,
+                    point: point.0,
+                });
+            }
+        }
+    }
+
+    /// The periods by which a support can be moved and still reach into the domain.
+    fn image_range(
+        &self,
+        axis: usize,
+        center: f64,
+        min: f64,
+        max: f64,
+    ) -> core::ops::RangeInclusive<i64> {
+        if !self.domain.wrap[axis] {
+            return 0..=0;
+        }
+        let (origin, size) = (self.domain.origin[axis], self.domain.size[axis]);
+        // A support with an axis to the point's own image is at most two axis scales wide, in periods.
+        let first = ((origin - center - max) / size).ceil().max(-IMAGES_LIMIT);
+        let last = ((origin + size - center - min) / size)
+            .floor()
+            .min(IMAGES_LIMIT);
+        first as i64..=last as i64
+    }
+}
+
+/// Whether two neighboring axes, in their order around the point, are half a turn or more apart.
+fn has_gap(axes: &[Axis]) -> bool {
+    let next = axes.iter().cycle().skip(1);
+    axes.len() < 3
+        || axes
+            .iter()
+            .zip(next)
+            .any(|(axis, next)| axis.vector.perp_dot(next.vector) <= 0.0)
+}
+
+/// Adds the Delaunay axes of a point whose own axes leave its support open.
+///
+/// On the hull of points that do not wrap, the Delaunay axes leave it open too; there it stays so, and the point rules
+/// as far as the plane goes.
+fn close_gap(
+    point: PointIdx,
+    axes: &mut Vec<Axis>,
+    points: &PointSet,
+    closing: &mut Option<Graph>,
+) -> Result<(), PupsError> {
+    let graph = match closing {
+        Some(graph) => graph,
+        None => closing.insert(delaunay(points)?),
+    };
+    for axis in graph.axes(point) {
+        if !axes.contains(axis) {
+            axes.push(*axis);
+        }
+    }
+    Ok(())
+}
+
+/// The box around the support of a point, seen from the point: the polygon of all `d` with `d·v < s |v|²` for every
+/// axis `v`. A side is infinite where the polygon is not bounded.
+fn support_box(axes: &[Axis], scale: f64) -> (DVec2, DVec2) {
+    walk_support(axes, scale).unwrap_or_else(|| clip_support(axes, scale))
+}
+
+/// The box when every axis contributes an edge, as Delaunay axes do: its corners are where the borders of neighboring
+/// axes meet. Nothing if an axis has no edge or the polygon is open.
+fn walk_support(axes: &[Axis], scale: f64) -> Option<(DVec2, DVec2)> {
+    if has_gap(axes) {
+        return None;
+    }
+    let corner = |a: DVec2, b: DVec2| {
+        (b.perp() * a.length_squared() - a.perp() * b.length_squared()) * (-scale / a.perp_dot(b))
+    };
+    let vector = |index: usize| axes[index % axes.len()].vector;
+    let mut before = corner(vector(axes.len() - 1), vector(0));
+    let (mut min, mut max) = (before, before);
+    for index in 0..axes.len() {
+        let after = corner(vector(index), vector(index + 1));
+        if vector(index).perp_dot(after - before) < 0.0 {
+            return None;
+        }
+        (min, max) = (min.min(after), max.max(after));
+        before = after;
+    }
+    Some((min, max))
+}
+
+/// The box of any support, by clipping a very large square.
+fn clip_support(axes: &[Axis], scale: f64) -> (DVec2, DVec2) {
+    let longest = axes
+        .iter()
+        .map(|axis| axis.vector.length())
+        .fold(0.0, f64::max);
+    let far = (longest * scale).max(f64::MIN_POSITIVE) * 1e12;
+    let mut polygon = vec![
+        DVec2::new(far, far),
+        DVec2::new(-far, far),
+        DVec2::new(-far, -far),
+        DVec2::new(far, -far),
+    ];
+    for axis in axes {
+        let inside = |corner: DVec2| scale * axis.vector.length_squared() - corner.dot(axis.vector);
+        let mut clipped = Vec::with_capacity(polygon.len() + 1);
+        for (index, &corner) in polygon.iter().enumerate() {
+            let next = polygon[(index + 1) % polygon.len()];
+            let [here, there] = [inside(corner), inside(next)];
+            if here >= 0.0 {
+                clipped.push(corner);
+            }
+            if (here < 0.0) != (there < 0.0) {
+                clipped.push(corner + (next - corner) * (here / (here - there)));
+            }
+        }
+        polygon = clipped;
+    }
+    let min = polygon.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+    let max = polygon
+        .iter()
+        .copied()
+        .fold(DVec2::NEG_INFINITY, DVec2::max);
+    // What reaches far beyond every axis is cut by the square, not by an axis; a long wedge may as well be open.
+    let open = |side: f64| {
+        if side.abs() < far * 1e-3 {
+            side
+        } else {
+            f64::INFINITY.copysign(side)
+        }
+    };
+    (
+        DVec2::new(open(min.x), open(min.y)),
+        DVec2::new(open(max.x), open(max.y)),
+    )
+}

@@ -1,0 +1,156 @@
+//! What a texture is made with, beside its points.
+
+use crate::{AxialWeight, PupsError};
+use glam::DVec3;
+
+/// How the weights of control points are computed.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{Orientation, PupsOptions};
+///
+/// let figure_4b = PupsOptions { axis_scale: 2.0, ..PupsOptions::default() };
+/// assert!(figure_4b.check(700).is_ok());
+/// let too_short = PupsOptions { axis_scale: 0.5, ..PupsOptions::default() };
+/// assert!(too_short.check(700).is_err());
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct PupsOptions {
+    /// The length of every axis as a multiple of its edge: above ½, at most 16; 1 by default, 2 in figure 4b.
+    ///
+    /// Up to 1 the texture passes through the values of its control points; above it approximates them. The support of
+    /// a control point is its Voronoi cell scaled by twice this number, so on average `4 · axis_scale²` control points
+    /// have a weight at a position. At ½ the supports would be the Voronoi cells themselves, and on their borders
+    /// nothing would have a weight.
+    pub axis_scale: f64,
+    /// How the weight falls off along an axis; equation 1 by default.
+    pub weight: AxialWeight,
+    /// Orientations, which shift weights after equation 4; none by default.
+    pub orientation: Option<Orientation>,
+}
+
+/// The orientations of the control points, and how strongly they shift the weights (equation 4).
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Orientation {
+    /// ε, in `[0, 1)`; the paper's default is 0.5.
+    ///
+    /// Below ½ the texture keeps its continuous gradient. From ½ on it has a kink at the border of a support where the
+    /// orientation points straight away from the control point: there the weight falls like `(1 − p)^(2 − 2ε)`. Near 1
+    /// weights that look the other way all but vanish, and so does the denominator of equation 3: where it falls below
+    /// 1e-30, the value of the nearest control point is taken.
+    pub strength: f64,
+    /// One vector for each control point, or a single one for all. They are scaled to length 1; x and y lie in the
+    /// plane of the texture, and z takes strength away without a direction.
+    pub vectors: Vec<DVec3>,
+}
+
+impl Default for PupsOptions {
+    fn default() -> Self {
+        Self {
+            axis_scale: 1.0,
+            weight: AxialWeight::Cubic,
+            orientation: None,
+        }
+    }
+}
+
+impl Orientation {
+    /// Orientations with the paper's default strength of 0.5.
+    #[must_use]
+    pub fn new(vectors: Vec<DVec3>) -> Self {
+        Self {
+            strength: 0.5,
+            vectors,
+        }
+    }
+
+    /// The same orientations with another strength.
+    #[must_use]
+    pub fn with_strength(self, strength: f64) -> Self {
+        Self { strength, ..self }
+    }
+}
+
+impl PupsOptions {
+    /// Refuses options that break a limit, for a texture of `n_points` control points.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PupsErrorKind::Range) if the axis scale is not in `(½, 16]`, a weight's parameters or the
+    /// strength are outside of their ranges, or a vector has no length; [`Count`](crate::PupsErrorKind::Count) if the
+    /// number of vectors is neither 1 nor that of the points.
+    pub fn check(&self, n_points: usize) -> Result<(), PupsError> {
+        let scale = self.axis_scale;
+        PupsError::check(
+            scale > 0.5 && scale <= 16.0,
+            "axis scale",
+            scale,
+            "above 0.5 and at most 16",
+        )?;
+        if let AxialWeight::Oscillating { dips, depth } = self.weight {
+            PupsError::check(
+                (1..=16).contains(&dips),
+                "number of dips",
+                f64::from(dips),
+                "1 to 16",
+            )?;
+            let holds = (0.0..=0.99).contains(&depth);
+            PupsError::check(
+                holds,
+                "depth of the dips",
+                f64::from(depth),
+                "between 0 and 0.99",
+            )?;
+        }
+        let Some(orientation) = &self.orientation else {
+            return Ok(());
+        };
+        let strength = orientation.strength;
+        PupsError::check(
+            (0.0..1.0).contains(&strength),
+            "strength of the orientations",
+            strength,
+            "at least 0 and below 1",
+        )?;
+        let count = orientation.vectors.len();
+        if count != 1 {
+            PupsError::check_count("orientations", count, n_points)?;
+        }
+        for vector in &orientation.vectors {
+            let length = vector.length();
+            let holds = length > 0.0 && length.is_finite();
+            PupsError::check(
+                holds,
+                "length of an orientation",
+                length,
+                "above 0 and finite",
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl Orientation {
+    /// The largest length of a shift: with it no exponent of equation 4 divides by zero, even after rounding.
+    const LONGEST_SHIFT: f64 = 1.0 - 1e-6;
+
+    /// ε times the part of the orientation that lies in the plane, for point `index`.
+    pub(crate) fn shift(&self, index: usize) -> [f32; 2] {
+        let vector = self.vectors[if self.vectors.len() == 1 { 0 } else { index }];
+        let shift = vector.truncate() * (self.strength / vector.length());
+        let length = shift.length();
+        let shorten = if length > Self::LONGEST_SHIFT {
+            Self::LONGEST_SHIFT / length
+        } else {
+            1.0
+        };
+        (shift * shorten).as_vec2().to_array()
+    }
+}

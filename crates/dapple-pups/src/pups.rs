@@ -1,0 +1,254 @@
+//! The partition of unity over a control net: weights and labels.
+
+use crate::kernel::{Sink, TILE, TILE_PIXELS};
+use crate::net::Net;
+use crate::render::render;
+use crate::{PupsError, PupsOptions, Texture, VectorTexture};
+use dapple_graph::{Graph, delaunay};
+use dapple_points::{Domain, PointIdx, PointSet};
+use dapple_raster::{Raster, RasterViewMut, Window};
+use fearless_simd::prelude::*;
+use glam::DVec2;
+use std::sync::Arc;
+
+/// Control points, their axes, and with them a weight for every control point at every position.
+///
+/// Cheap to clone: clones share the net. [`texture`](Self::texture) gives the control points values.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{Pups, points::{Domain, white_noise}, hash::Seed, glam::DVec2};
+///
+/// let points = white_noise(Domain::paper_torus(), 50, Seed(1))?;
+/// let pups = Pups::delaunay(&points)?;
+/// let total: f32 = pups.weights(DVec2::new(0.3, -0.2)).iter().map(|(_, weight)| weight).sum();
+/// assert!((total - 1.0).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Pups {
+    pub(crate) net: Arc<Net>,
+    n_points: usize,
+}
+
+impl Pups {
+    /// The net of the Delaunay triangulation of `points`, with default options: the paper's own.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new), and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
+    pub fn delaunay(points: &PointSet) -> Result<Self, PupsError> {
+        Self::new(points, &delaunay(points)?, PupsOptions::default())
+    }
+
+    /// The net of any graph over `points`.
+    ///
+    /// With a graph that contains the Delaunay triangulation, the support of a control point is its Voronoi cell scaled
+    /// by `2 · axis_scale`. With another graph it is the polygon that the point's own axes leave, which still contains
+    /// that cell, so that every position has a weight. Where two neighboring axes of a point are half a turn or more
+    /// apart, its Delaunay axes are added, so that no support is open that need not be. On the hull of points on
+    /// axes that do not wrap, supports are open, and the texture is defined on all of the plane.
+    ///
+    /// # Errors
+    ///
+    /// [`NoPoints`](crate::PupsErrorKind::NoPoints) without points, [`Count`](crate::PupsErrorKind::Count) if the
+    /// graph has another number of points, [`ShortAxis`](crate::PupsErrorKind::ShortAxis) for points closer than 1e-9
+    /// of the domain's larger side, [`Range`](crate::PupsErrorKind::Range) if the domain is smaller than 1e-18 or larger
+    /// than 1e18, and what [`PupsOptions::check`] refuses.
+    pub fn new(points: &PointSet, graph: &Graph, options: PupsOptions) -> Result<Self, PupsError> {
+        let net = Arc::new(Net::new(points, graph, options)?);
+        Ok(Self {
+            net,
+            n_points: points.len(),
+        })
+    }
+
+    /// The number of control points.
+    #[must_use]
+    pub fn n_points(&self) -> usize {
+        self.n_points
+    }
+
+    /// The domain of the control points, which says where the texture repeats.
+    #[must_use]
+    pub fn domain(&self) -> &Domain {
+        &self.net.domain
+    }
+
+    /// The options that the net was made with.
+    #[must_use]
+    pub fn options(&self) -> &PupsOptions {
+        &self.net.options
+    }
+
+    /// A scalar texture: `values` holds the value of each control point.
+    ///
+    /// # Errors
+    ///
+    /// [`Count`](crate::PupsErrorKind::Count) if there is not one value for each control point,
+    /// [`Range`](crate::PupsErrorKind::Range) if one is not finite.
+    pub fn texture(&self, values: Vec<f32>) -> Result<Texture, PupsError> {
+        Texture::new(self.clone(), values)
+    }
+
+    /// A texture of vectors, such as colors: `values` holds the vector of each control point.
+    ///
+    /// # Errors
+    ///
+    /// As [`texture`](Self::texture).
+    pub fn vector_texture<const N: usize>(
+        &self,
+        values: Vec<[f32; N]>,
+    ) -> Result<VectorTexture<N>, PupsError> {
+        VectorTexture::new(self.clone(), values)
+    }
+
+    /// The control points with a weight at a position, and their weights, which sum to 1.
+    ///
+    /// They come in their order; on a small torus a control point may come more than once, for its images. Nothing
+    /// comes at a position that is not finite.
+    #[must_use]
+    pub fn weights(&self, position: DVec2) -> Vec<(PointIdx, f32)> {
+        let Some(position) = self.local(position) else {
+            return Vec::new();
+        };
+        let mut weights = Vec::new();
+        let mut total = 0.0;
+        self.net.for_each_weight(position, |instance, weight| {
+            weights.push((PointIdx(instance.point), weight));
+            total += weight;
+        });
+        if total < LEAST_TOTAL {
+            return vec![(PointIdx(self.net.nearest(position).point), 1.0)];
+        }
+        weights.iter_mut().for_each(|(_, weight)| *weight /= total);
+        weights
+    }
+
+    /// The control point with the largest weight at a position; of equals, the first. This is what gives a position
+    /// its label.
+    ///
+    /// Nothing at a position that is not finite.
+    #[must_use]
+    pub fn strongest(&self, position: DVec2) -> Option<PointIdx> {
+        let position = self.local(position)?;
+        let mut best = (0.0, None);
+        self.net.for_each_weight(position, |instance, weight| {
+            if weight > best.0 {
+                best = (weight, Some(instance.point));
+            }
+        });
+        let point = best.1.unwrap_or_else(|| self.net.nearest(position).point);
+        Some(PointIdx(point))
+    }
+
+    /// The control point with the largest weight at every pixel center of a window: [`strongest`](Self::strongest),
+    /// and `PointIdx(u32::MAX)` where a position is not finite.
+    ///
+    /// # Errors
+    ///
+    /// [`Raster`](crate::PupsErrorKind::Raster) if `out` has another size than the window.
+    pub fn render_strongest(
+        &self,
+        window: &Window,
+        mut out: RasterViewMut<'_, PointIdx>,
+    ) -> Result<(), PupsError> {
+        window.check_size(out.size())?;
+        render(&self.net, window, &Strongest, out.rows_mut().collect());
+        Ok(())
+    }
+
+    /// The labels of the pixels of a window, where `label` holds the label of each control point.
+    ///
+    /// # Errors
+    ///
+    /// [`Count`](crate::PupsErrorKind::Count) if there is not one label for each control point,
+    /// [`Raster`](crate::PupsErrorKind::Raster) for a window of a bad size or with positions that are not finite.
+    pub fn label_raster<L: Copy>(
+        &self,
+        window: &Window,
+        labels: &[L],
+    ) -> Result<Raster<L>, PupsError> {
+        PupsError::check_count("labels", labels.len(), self.n_points)?;
+        let mut strongest = Raster::filled(window.size, PointIdx(u32::MAX))?;
+        self.render_strongest(window, strongest.view_mut())?;
+        if let Some(at) = strongest
+            .pixels()
+            .iter()
+            .position(|point| point.index() >= labels.len())
+        {
+            let width = window.size[0] as usize;
+            let position = window.position((at % width) as u32, (at / width) as u32);
+            PupsError::check(
+                false,
+                "position of a pixel",
+                position.x + position.y,
+                "finite",
+            )?;
+        }
+        Ok(strongest.map(|point| labels[point.index()]))
+    }
+
+    /// The position as the evaluation takes it, or nothing if it is not finite.
+    #[inline]
+    pub(crate) fn local(&self, position: DVec2) -> Option<DVec2> {
+        let local = DVec2::new(self.net.local(0, position.x), self.net.local(1, position.y));
+        local.is_finite().then_some(local)
+    }
+}
+
+/// Where the weights sum to less than this, the nearest control point rules alone: with orientations near full
+/// strength, single precision may have nothing left to divide by.
+pub(crate) const LEAST_TOTAL: f32 = 1e-30;
+
+/// Keeps the largest weight and whose it is, as the bits of a number.
+struct Strongest;
+
+impl Sink for Strongest {
+    type Value = PointIdx;
+
+    fn n_planes(&self) -> usize {
+        2
+    }
+
+    fn per_pixel(&self) -> usize {
+        1
+    }
+
+    #[inline(always)]
+    fn add<S: Simd>(&self, simd: S, point: u32, weight: S::f32s, planes: &mut [f32], at: usize) {
+        let (weights, points) = planes.split_at_mut(TILE_PIXELS);
+        let range = at..at + S::f32s::LEN;
+        let best = S::f32s::from_slice(simd, &weights[range.clone()]);
+        let best_point = S::f32s::from_slice(simd, &points[range.clone()]);
+        let stronger = weight.simd_gt(best);
+        // Selecting moves bits and does not compute with them.
+        let point = S::f32s::splat(simd, f32::from_bits(point));
+        stronger
+            .select(weight, best)
+            .store_slice(&mut weights[range.clone()]);
+        stronger
+            .select(point, best_point)
+            .store_slice(&mut points[range]);
+    }
+
+    #[inline(always)]
+    fn resolve<S: Simd>(
+        &self,
+        _: S,
+        planes: &[f32],
+        values: &mut [PointIdx],
+        nearest: impl Fn(usize) -> u32,
+    ) {
+        let weights = &planes[..TILE.min(values.len())];
+        for (pixel, (value, weight)) in values.iter_mut().zip(weights).enumerate() {
+            let point = planes[TILE_PIXELS + pixel].to_bits();
+            *value = PointIdx(if *weight > 0.0 { point } else { nearest(pixel) });
+        }
+    }
+
+    fn undefined(&self) -> PointIdx {
+        PointIdx(u32::MAX)
+    }
+}

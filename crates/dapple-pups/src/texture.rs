@@ -1,0 +1,261 @@
+//! Values at the control points, interpolated (equation 3).
+
+use crate::kernel::{Sink, TILE_PIXELS};
+use crate::pups::LEAST_TOTAL;
+use crate::render::render;
+use crate::{Pups, PupsError};
+use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
+use fearless_simd::prelude::*;
+use glam::DVec2;
+
+/// A scalar texture: at every position the mean of the control points' values, weighted after equation 3.
+///
+/// Its values lie between the smallest and the largest value of a control point, but for the rounding of single
+/// precision. With an axis scale of at most 1 it has, at a control point, that point's value. At a position that is
+/// not finite it is NaN.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{Pups, points::{Domain, white_noise}, hash::Seed};
+/// use dapple_raster::{Field, Window};
+///
+/// let points = white_noise(Domain::paper_torus(), 50, Seed(1))?;
+/// let values = (0..50).map(|index| index as f32 / 49.0).collect();
+/// let texture = Pups::delaunay(&points)?.texture(values)?;
+/// let window = Window::new(points.domain().origin, points.domain().size, [64, 64])?;
+/// let raster = texture.to_raster(&window)?;
+/// assert_eq!(raster.row(7)[9], texture.sample(window.position(9, 7)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Texture {
+    pub(crate) pups: Pups,
+    pub(crate) values: Vec<f32>,
+}
+
+/// A texture of vectors, such as colors: [`Texture`] for `N` numbers at once.
+#[derive(Clone, Debug)]
+pub struct VectorTexture<const N: usize> {
+    pups: Pups,
+    values: Vec<[f32; N]>,
+}
+
+impl Texture {
+    pub(crate) fn new(pups: Pups, values: Vec<f32>) -> Result<Self, PupsError> {
+        check_values(&pups, values.len(), &values)?;
+        Ok(Self { pups, values })
+    }
+
+    /// The net that the values belong to.
+    #[must_use]
+    pub fn pups(&self) -> &Pups {
+        &self.pups
+    }
+
+    /// The values of the control points.
+    #[must_use]
+    pub fn values(&self) -> &[f32] {
+        &self.values
+    }
+}
+
+impl Field for Texture {
+    #[inline]
+    fn sample(&self, position: DVec2) -> f32 {
+        let [value] = sample(&self.pups, self.values.as_chunks().0, position);
+        value
+    }
+
+    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        window.check_size(out.size())?;
+        let sink = Mean {
+            values: &self.values,
+            n: 1,
+        };
+        render(&self.pups.net, window, &sink, out.rows_mut().collect());
+        Ok(())
+    }
+}
+
+impl<const N: usize> VectorTexture<N> {
+    pub(crate) fn new(pups: Pups, values: Vec<[f32; N]>) -> Result<Self, PupsError> {
+        check_values(&pups, values.len(), values.as_flattened())?;
+        Ok(Self { pups, values })
+    }
+
+    /// The net that the values belong to.
+    #[must_use]
+    pub fn pups(&self) -> &Pups {
+        &self.pups
+    }
+
+    /// The values of the control points.
+    #[must_use]
+    pub fn values(&self) -> &[[f32; N]] {
+        &self.values
+    }
+
+    /// The vector at a position.
+    #[must_use]
+    pub fn sample(&self, position: DVec2) -> [f32; N] {
+        sample(&self.pups, &self.values, position)
+    }
+
+    /// The vectors at the pixel centers of a window, into memory of its size.
+    ///
+    /// # Errors
+    ///
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if `out` has another size than the window.
+    pub fn render(
+        &self,
+        window: &Window,
+        mut out: RasterViewMut<'_, [f32; N]>,
+    ) -> Result<(), RasterError> {
+        window.check_size(out.size())?;
+        let sink = Mean {
+            values: self.values.as_flattened(),
+            n: N,
+        };
+        let rows = out.rows_mut().map(<[_]>::as_flattened_mut).collect();
+        render(&self.pups.net, window, &sink, rows);
+        Ok(())
+    }
+
+    /// The vectors at the pixel centers of a window, as a new raster.
+    ///
+    /// # Errors
+    ///
+    /// [`Empty`](dapple_raster::RasterErrorKind::Empty) or [`TooLarge`](dapple_raster::RasterErrorKind::TooLarge) if
+    /// the window has a bad size.
+    pub fn to_raster(&self, window: &Window) -> Result<Raster<[f32; N]>, RasterError> {
+        let mut raster = Raster::filled(window.size, [0.0; N])?;
+        self.render(window, raster.view_mut())?;
+        Ok(raster)
+    }
+}
+
+/// Refuses columns of another length, and numbers that are not finite.
+fn check_values(pups: &Pups, count: usize, numbers: &[f32]) -> Result<(), PupsError> {
+    PupsError::check_count("values", count, pups.n_points())?;
+    match numbers.iter().find(|number| !number.is_finite()) {
+        Some(&number) => PupsError::check(
+            false,
+            "value of a control point",
+            f64::from(number),
+            "finite",
+        ),
+        None => Ok(()),
+    }
+}
+
+/// The weighted mean at one position, summed as [`Mean`] does.
+#[inline]
+fn sample<const N: usize>(pups: &Pups, values: &[[f32; N]], position: DVec2) -> [f32; N] {
+    let Some(position) = pups.local(position) else {
+        return [f32::NAN; N];
+    };
+    let mut total = 0.0;
+    let mut sums = [0.0; N];
+    pups.net.for_each_weight(position, |instance, weight| {
+        total += weight;
+        for (sum, value) in sums.iter_mut().zip(values[instance.point as usize]) {
+            *sum += weight * value;
+        }
+    });
+    if total < LEAST_TOTAL {
+        return values[pups.net.nearest(position).point as usize];
+    }
+    sums.map(|sum| sum / total)
+}
+
+/// Sums up weights, and weights times values.
+struct Mean<'a> {
+    /// The values, `n` to a control point.
+    values: &'a [f32],
+    n: usize,
+}
+
+impl Sink for Mean<'_> {
+    type Value = f32;
+
+    fn n_planes(&self) -> usize {
+        1 + self.n
+    }
+
+    fn per_pixel(&self) -> usize {
+        self.n
+    }
+
+    #[inline(always)]
+    fn add<S: Simd>(&self, simd: S, point: u32, weight: S::f32s, planes: &mut [f32], at: usize) {
+        add_to(simd, planes, at, weight);
+        let values = &self.values[point as usize * self.n..][..self.n];
+        for (plane, &value) in (1..).zip(values) {
+            add_to(simd, planes, plane * TILE_PIXELS + at, weight * value);
+        }
+    }
+
+    #[inline(always)]
+    fn resolve<S: Simd>(
+        &self,
+        simd: S,
+        planes: &[f32],
+        values: &mut [f32],
+        nearest: impl Fn(usize) -> u32,
+    ) {
+        let n_pixels = values.len() / self.n;
+        let totals = &planes[..n_pixels];
+        if self.n == 1 {
+            divide(
+                simd,
+                &planes[TILE_PIXELS..TILE_PIXELS + n_pixels],
+                totals,
+                values,
+            );
+        } else {
+            for (pixel, vector) in values.chunks_exact_mut(self.n).enumerate() {
+                for (plane, value) in (1..).zip(vector) {
+                    *value = planes[plane * TILE_PIXELS + pixel] / totals[pixel];
+                }
+            }
+        }
+        if totals
+            .iter()
+            .fold(f32::INFINITY, |least, &total| least.min(total))
+            < LEAST_TOTAL
+        {
+            for (pixel, vector) in values.chunks_exact_mut(self.n).enumerate() {
+                if totals[pixel] < LEAST_TOTAL {
+                    let start = nearest(pixel) as usize * self.n;
+                    vector.copy_from_slice(&self.values[start..start + self.n]);
+                }
+            }
+        }
+    }
+
+    fn undefined(&self) -> f32 {
+        f32::NAN
+    }
+}
+
+#[inline(always)]
+fn add_to<S: Simd>(simd: S, plane: &mut [f32], at: usize, what: S::f32s) {
+    let pixels = &mut plane[at..at + S::f32s::LEN];
+    (S::f32s::from_slice(simd, pixels) + what).store_slice(pixels);
+}
+
+/// Divides number by number.
+#[inline(always)]
+fn divide<S: Simd>(simd: S, sums: &[f32], totals: &[f32], quotients: &mut [f32]) {
+    let whole = sums.len() / S::f32s::LEN * S::f32s::LEN;
+    for at in (0..whole).step_by(S::f32s::LEN) {
+        let range = at..at + S::f32s::LEN;
+        let [sum, total] =
+            [sums, totals].map(|plane| S::f32s::from_slice(simd, &plane[range.clone()]));
+        (sum / total).store_slice(&mut quotients[range]);
+    }
+    for at in whole..sums.len() {
+        quotients[at] = sums[at] / totals[at];
+    }
+}

@@ -1,0 +1,207 @@
+//! Axial weights (equation 1) and what replaces them.
+//!
+//! An axial weight is a function of `u = 1 − p`, where `p` is the projection of a position onto an axis as a fraction
+//! of the axis: 1 at the control point and behind it, 0 at the end of the axis and beyond. Whatever replaces the
+//! cubic keeps three promises, on which everything else rests:
+//!
+//! * it is 1 at `u = 1` and 0 at `u = 0`, *exactly, in the arithmetic used*: so the texture interpolates its control
+//!   points, a support ends where it should, and axes that lie behind can be left out without changing a bit;
+//! * it is positive in between: so the weights of a position never cancel, and the denominator of equation 3 is at
+//!   least the weight of the nearest control point, in which every factor is at least the weight at `u = 1 − 1/(2s)`
+//!   for an axis scale of `s`;
+//! * its slope is zero at both ends: so the clamps of the projection leave no crease.
+//!
+//! The functions are written once, for one number and for a register of them alike.
+
+use core::ops::{Add, Mul, Sub};
+
+/// How the weight of a control point falls off along one of its axes.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::AxialWeight;
+///
+/// let half = [AxialWeight::Cubic, AxialWeight::Quintic].map(|weight| weight.at(0.5));
+/// assert_eq!(half, [0.5, 0.5]);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum AxialWeight {
+    /// Equation 1, `(1 − p)² (1 + 2p)`: the texture has a continuous gradient.
+    #[default]
+    Cubic,
+    /// `(1 − p)³ (1 + 3p + 6p²)`: curvature is continuous as well.
+    Quintic,
+    /// The cubic with dips, for the finer features that the paper's discussion hopes for: `A(p) · (1 − d · (1 − T²)²)`
+    /// with the Chebyshev polynomial `T = T_n(1 − 2p)`, which swings between −1 and 1.
+    Oscillating {
+        /// The number `n` of dips along an axis, 1 to 16.
+        dips: u32,
+        /// Their depth `d`, from 0 (the cubic) to below 1 (at 1 the weight would vanish inside of the support, and
+        /// with it, possibly, the denominator). At most 0.99.
+        depth: f32,
+    },
+}
+
+impl AxialWeight {
+    /// The weight at projection `p`, which is clamped to `[0, 1]`.
+    #[must_use]
+    pub fn at(self, p: f32) -> f32 {
+        self.of_complement((1.0 - p).clamp(0.0, 1.0))
+    }
+
+    /// The weight at `u = 1 − p`, in `[0, 1]`.
+    #[inline(always)]
+    pub(crate) fn of_complement<V: Lane>(self, u: V) -> V {
+        match self {
+            Self::Cubic => cubic(u),
+            Self::Quintic => u * u * u * ((u * 6.0 - 15.0) * u + 10.0),
+            Self::Oscillating { dips, depth } => {
+                let swing = chebyshev(dips, u * 2.0 - 1.0);
+                let dip = swing * swing * -1.0 + 1.0;
+                cubic(u) * (dip * dip * -depth + 1.0)
+            }
+        }
+    }
+
+    /// The derivative of the weight by `u`, in `[0, 1]`.
+    pub(crate) fn slope(self, u: f32) -> f32 {
+        let cubic_slope = 6.0 * u * (1.0 - u);
+        match self {
+            Self::Cubic => cubic_slope,
+            Self::Quintic => 30.0 * u * u * (1.0 - u) * (1.0 - u),
+            Self::Oscillating { dips, depth } => {
+                let x = 2.0 * u - 1.0;
+                let swing = chebyshev(dips, x);
+                let dip = 1.0 - swing * swing;
+                let dip_slope = -4.0 * swing * chebyshev_slope(dips, x);
+                cubic_slope * (1.0 - depth * dip * dip) - cubic(u) * depth * 2.0 * dip * dip_slope
+            }
+        }
+    }
+}
+
+/// A number, or a register of numbers: what the formulas of this crate compute with.
+pub(crate) trait Lane:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Add<f32, Output = Self>
+    + Sub<f32, Output = Self>
+    + Mul<f32, Output = Self>
+{
+}
+
+impl<V> Lane for V where
+    V: Copy
+        + Add<Output = V>
+        + Sub<Output = V>
+        + Mul<Output = V>
+        + Add<f32, Output = V>
+        + Sub<f32, Output = V>
+        + Mul<f32, Output = V>
+{
+}
+
+/// `u² (3 − 2u)`, which is `(1 − p)² (1 + 2p)`.
+#[inline(always)]
+fn cubic<V: Lane>(u: V) -> V {
+    u * u * (u * -2.0 + 3.0)
+}
+
+/// `T_n(x)` by its recurrence. At 1 every step gives exactly 1, at −1 exactly ±1.
+#[inline(always)]
+fn chebyshev<V: Lane>(n: u32, x: V) -> V {
+    let mut former = x * 0.0 + 1.0;
+    let mut latter = x;
+    for _ in 1..n {
+        (former, latter) = (latter, x * latter * 2.0 - former);
+    }
+    latter
+}
+
+/// The derivative of `T_n` at `x`: `n` times the Chebyshev polynomial of the second kind of degree `n − 1`.
+fn chebyshev_slope(n: u32, x: f32) -> f32 {
+    let (mut former, mut latter) = (0.0, 1.0);
+    for _ in 1..n {
+        (former, latter) = (latter, 2.0 * x * latter - former);
+    }
+    n as f32 * latter
+}
+
+#[cfg(test)]
+mod tests {
+    use super::AxialWeight;
+
+    fn weights() -> Vec<AxialWeight> {
+        let oscillating = (1..=16).flat_map(|dips| {
+            [0.0, 0.5, 0.99].map(|depth| AxialWeight::Oscillating { dips, depth })
+        });
+        [AxialWeight::Cubic, AxialWeight::Quintic]
+            .into_iter()
+            .chain(oscillating)
+            .collect()
+    }
+
+    #[test]
+    fn weights_are_exact_at_the_ends_and_positive_in_between() {
+        for weight in weights() {
+            assert_eq!([weight.at(0.0), weight.at(1.0)], [1.0, 0.0], "{weight:?}");
+            assert_eq!(
+                [weight.at(-3.0), weight.at(7.0)],
+                [1.0, 0.0],
+                "{weight:?} is not clamped"
+            );
+            for step in 1..1000 {
+                let value = weight.at(step as f32 / 1000.0);
+                assert!(
+                    value > 0.0 && value <= 1.0 + 1e-6,
+                    "{weight:?} is {value} at step {step}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_are_the_differences_and_vanish_at_the_ends() {
+        for weight in weights() {
+            assert_eq!(
+                [weight.slope(0.0), weight.slope(1.0)].map(f32::abs),
+                [0.0, 0.0],
+                "{weight:?}"
+            );
+            for step in 1..200 {
+                let u = step as f32 / 200.0;
+                // A central difference in single precision: its own error is about 1e-7 / 1e-3 plus the third
+                // derivative, up to (2n)³, times 1e-6 / 6.
+                let difference =
+                    (weight.of_complement(u + 1e-3) - weight.of_complement(u - 1e-3)) / 2e-3;
+                let off = (difference - weight.slope(u)).abs();
+                assert!(
+                    off < 0.08,
+                    "{weight:?} at {u}: slope {} against {difference}",
+                    weight.slope(u)
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_cubic_is_equation_1() {
+        for step in 0..=100 {
+            let p = f64::from(step) / 100.0;
+            let exact = (1.0 - p) * (1.0 - p) * (1.0 + 2.0 * p);
+            // A few roundings of numbers up to 3.
+            assert!(
+                (f64::from(AxialWeight::Cubic.at(p as f32)) - exact).abs() < 4e-7,
+                "p = {p}"
+            );
+        }
+    }
+}
