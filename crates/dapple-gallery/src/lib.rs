@@ -1,1 +1,39 @@
 //! The figures of the papers, one file each, and the page that shows them.
+//!
+//! A [`Figure`] is a small file under `src/figures/<paper>/fig_<number>.rs`: its header is the caption, its body makes
+//! the pictures with the crates' public interfaces, short enough to learn from. [`PAPERS`] lists them all. The library
+//! renders figures in memory ([`Figure::render`]), hashes them ([`Figure::hash`]), compares the hashes with
+//! `figures.lock` ([`Lock`]) and writes the page as a string ([`page`]); the binary `dapple-gallery`, which
+//! `cargo xtask gallery` runs, puts files where a browser finds them.
+//!
+//! **A new figure** takes three steps:
+//!
+//! 1. write `src/figures/<paper>/fig_<number>.rs` with `pub(super) const FIGURE: Figure` (copy a neighbor);
+//! 2. add its `mod` and its `FIGURE` to `src/figures/<paper>.rs`;
+//! 3. run `cargo xtask gallery --bless`, look at the picture, and commit both files and `figures.lock`.
+//!
+//! ```
+//! use dapple_gallery::{LOCK_SIZE, figures};
+//!
+//! let card = figures().find(|figure| figure.name() == "house-fig-01").ok_or("no such figure")?;
+//! let panels = card.render(LOCK_SIZE)?;
+//! assert_eq!(panels[0].size(), [LOCK_SIZE; 2]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Figures are deterministic: the same bits on every machine and for any number of threads.
+
+#![forbid(unsafe_code)]
+
+mod figure;
+mod figures;
+mod panel;
+
+pub mod draw;
+pub mod lock;
+pub mod page;
+
+pub use figure::{Figure, Paper, Source};
+pub use figures::{PAPERS, figures, select};
+pub use lock::{LOCK_SIZE, Lock};
+pub use panel::{Panel, Picture};

@@ -1,0 +1,67 @@
+//! `--check` and `--bless`: the figures as they are now, beside `figures.lock`.
+#![expect(clippy::disallowed_methods, reason = "the lock is a file")]
+
+use crate::{progress, say};
+use anyhow::{Context, bail};
+use dapple_gallery::lock::Change;
+use dapple_gallery::{Figure, LOCK_SIZE, Lock, figures};
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// Fails if one of `selected` has another hash than its line, or a line is missing or left over.
+pub(crate) fn check(selected: &[&Figure], path: &Path) -> anyhow::Result<()> {
+    let old = read(path)?;
+    let changes = old.changes(&updated(&old, selected)?);
+    if changes.is_empty() {
+        say(&format!(
+            "{} figures are as in figures.lock",
+            selected.len()
+        ));
+        return Ok(());
+    }
+    changes.iter().for_each(|change| say(&change.to_string()));
+    bail!(
+        "{} figures differ from figures.lock; look at them with `cargo xtask gallery`, then accept them with \
+         `cargo xtask gallery --bless`",
+        changes.len()
+    )
+}
+
+/// Writes the hashes of `selected` into the lock, drops lines without a figure, and says what changed.
+pub(crate) fn bless(selected: &[&Figure], path: &Path) -> anyhow::Result<()> {
+    let old = read(path)?;
+    let new = updated(&old, selected)?;
+    let changes: Vec<Change> = old.changes(&new);
+    changes.iter().for_each(|change| say(&change.to_string()));
+    say(&format!(
+        "{} of {} figures changed",
+        changes.len(),
+        selected.len()
+    ));
+    fs::write(path, new.to_string()).with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// The old lock with the hashes of `selected` as they are now, and without the lines that have no figure.
+fn updated(old: &Lock, selected: &[&Figure]) -> anyhow::Result<Lock> {
+    let mut lock = old.clone();
+    let names: Vec<String> = figures().map(Figure::name).collect();
+    lock.retain(|name| names.iter().any(|figure| figure == name));
+    let bar = progress(selected);
+    for figure in selected {
+        bar.set_message(figure.name());
+        lock.insert(figure.name(), figure.hash(LOCK_SIZE)?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Ok(lock)
+}
+
+/// The lock; an empty one if there is no file yet.
+fn read(path: &Path) -> anyhow::Result<Lock> {
+    match fs::read_to_string(path) {
+        Ok(text) => Lock::parse(&text),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Lock::default()),
+        Err(error) => Err(error).with_context(|| format!("cannot read {}", path.display())),
+    }
+}

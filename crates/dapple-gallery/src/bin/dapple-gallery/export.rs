@@ -1,0 +1,108 @@
+//! The pictures as PNG files, and the page beside them.
+#![expect(
+    clippy::disallowed_methods,
+    reason = "files are written here, and the page says how long a figure took"
+)]
+
+use crate::{progress, root};
+use anyhow::{Context, ensure};
+use dapple_gallery::page::{self, Entry, Image};
+use dapple_gallery::{Figure, Panel, Picture};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+/// Renders `figures` one after another, each on all cores, into the folder `out`. Returns the path of the page.
+pub(crate) fn export(
+    figures: &[&'static Figure],
+    size: u32,
+    out: &Path,
+) -> anyhow::Result<PathBuf> {
+    fs::create_dir_all(out).with_context(|| format!("cannot make the folder {}", out.display()))?;
+    let bar = progress(figures);
+    let mut entries = Vec::new();
+    for figure in figures {
+        bar.set_message(figure.name());
+        entries.push(export_figure(figure, size, out)?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let page = out.join("index.html");
+    let html = page::html(&entries, &relative_root(out)?);
+    fs::write(&page, html).with_context(|| format!("cannot write {}", page.display()))?;
+    Ok(page)
+}
+
+fn export_figure(figure: &'static Figure, size: u32, out: &Path) -> anyhow::Result<Entry> {
+    let start = Instant::now();
+    let panels = figure.render(size)?;
+    let time = start.elapsed();
+    let mut images = Vec::new();
+    for (number, panel) in (1..).zip(&panels) {
+        let file = match panels.len() {
+            1 => format!("{}.png", figure.name()),
+            _ => format!("{}-{number}.png", figure.name()),
+        };
+        write_png(&out.join(&file), panel)?;
+        images.push(Image {
+            file,
+            label: panel.label.clone(),
+            size: panel.size(),
+        });
+    }
+    Ok(Entry {
+        figure,
+        images,
+        time,
+    })
+}
+
+fn write_png(path: &Path, panel: &Panel) -> anyhow::Result<()> {
+    let [width, height] = panel.size();
+    let color = match panel.picture {
+        Picture::Gray(_) => image::ExtendedColorType::L8,
+        Picture::Color(_) => image::ExtendedColorType::Rgb8,
+    };
+    image::save_buffer(path, &panel.bytes(), width, height, color)
+        .with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// The way from the folder `out` to the root of the workspace, as a link has it: `../../`.
+fn relative_root(out: &Path) -> anyhow::Result<String> {
+    let [out, root] = [out, root()].map(|path| {
+        path.canonicalize()
+            .with_context(|| format!("cannot find {}", path.display()))
+    });
+    let (out, root) = (out?, root?);
+    let shared = out
+        .components()
+        .zip(root.components())
+        .take_while(|(a, b)| a == b)
+        .count();
+    let up = "../".repeat(out.components().count() - shared);
+    let down = root
+        .components()
+        .skip(shared)
+        .map(|part| format!("{}/", part.as_os_str().to_string_lossy()));
+    Ok(up + &down.collect::<String>())
+}
+
+/// Opens a file with what the system has for it.
+pub(crate) fn open(page: &Path) -> anyhow::Result<()> {
+    let opener = match std::env::consts::OS {
+        "windows" => "explorer",
+        "macos" => "open",
+        _ => "xdg-open",
+    };
+    let status = Command::new(opener).arg(page).status();
+    let status =
+        status.with_context(|| format!("cannot run `{opener}` to open {}", page.display()))?;
+    // `explorer` reports failure even where it opened the page.
+    ensure!(
+        status.success() || opener == "explorer",
+        "`{opener}` could not open {}",
+        page.display()
+    );
+    Ok(())
+}

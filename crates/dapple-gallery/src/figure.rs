@@ -1,0 +1,148 @@
+//! What a figure is: a file that says which figure of which paper it makes, and how.
+
+use crate::Panel;
+use crate::lock::{Hash, hash_panels};
+use anyhow::{Context, ensure};
+
+/// A figure: a file under `src/figures/<paper>/` that renders one or several pictures.
+///
+/// The name and the caption are not repeated here; they come from the file's own name and header.
+#[derive(Clone, Copy, Debug)]
+pub struct Figure {
+    /// The number of the figure in the paper, such as `"3a"`; `"extra"` if the paper has none like it.
+    pub number: &'static str,
+    /// What the picture was made with, as the page shows it: pairs of a name and a value.
+    pub parameters: &'static [(&'static str, &'static str)],
+    /// The file that the figure is in: always `source!()`.
+    pub source: Source,
+    /// Makes the pictures, with `size` pixels along the longer side of each.
+    pub render: fn(size: u32) -> anyhow::Result<Vec<Panel>>,
+}
+
+/// A paper and its figures, in the paper's order.
+#[derive(Clone, Copy, Debug)]
+pub struct Paper {
+    /// The folder of its figures, and the first part of their names.
+    pub key: &'static str,
+    /// The title of the paper.
+    pub title: &'static str,
+    /// Who wrote it, where and when.
+    pub reference: &'static str,
+    /// Its figures.
+    pub figures: &'static [Figure],
+}
+
+/// A figure's own source file.
+#[derive(Clone, Copy)]
+pub struct Source {
+    /// The path from the root of the workspace.
+    pub path: &'static str,
+    /// The text of the file.
+    pub text: &'static str,
+}
+
+/// The [`Source`] of the file in which it is written.
+macro_rules! source {
+    () => {
+        $crate::Source {
+            path: file!(),
+            text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../", file!())),
+        }
+    };
+}
+pub(crate) use source;
+
+impl Figure {
+    /// The pictures, with `size` pixels along the longer side of each.
+    ///
+    /// # Errors
+    ///
+    /// What the figure's own code reports, with the name of the figure; or that it made no picture.
+    pub fn render(&self, size: u32) -> anyhow::Result<Vec<Panel>> {
+        let panels = (self.render)(size).with_context(|| format!("figure {}", self.name()))?;
+        ensure!(!panels.is_empty(), "figure {} made no picture", self.name());
+        Ok(panels)
+    }
+
+    /// The hash of the pictures at `size` pixels: what `figures.lock` holds for [`LOCK_SIZE`](crate::LOCK_SIZE).
+    ///
+    /// # Errors
+    ///
+    /// As [`render`](Self::render).
+    pub fn hash(&self, size: u32) -> anyhow::Result<Hash> {
+        Ok(hash_panels(&self.render(size)?))
+    }
+
+    /// The name of the figure, from its file: `figures/pups/fig_03a.rs` is `pups-fig-03a`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let stem = self.source.path.trim_end_matches(".rs");
+        let mut parts = stem.rsplit(['/', '\\']);
+        let (file, paper) = (
+            parts.next().unwrap_or_default(),
+            parts.next().unwrap_or_default(),
+        );
+        format!("{paper}-{file}").replace('_', "-")
+    }
+
+    /// The caption: the first paragraph of the file's `//!` header.
+    #[must_use]
+    pub fn caption(&self) -> String {
+        let header = self
+            .source
+            .text
+            .lines()
+            .map_while(|line| line.strip_prefix("//!"));
+        let paragraph: Vec<_> = header
+            .map(str::trim)
+            .take_while(|line| !line.is_empty())
+            .collect();
+        paragraph.join(" ")
+    }
+}
+
+impl core::fmt::Debug for Source {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_tuple("Source").field(&self.path).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Figure, Source};
+
+    fn figure(path: &'static str, text: &'static str) -> Figure {
+        Figure {
+            number: "1",
+            parameters: &[],
+            source: Source { path, text },
+            render: |_| Ok(Vec::new()),
+        }
+    }
+
+    #[test]
+    fn name_comes_from_the_path_with_either_separator() {
+        for path in [
+            "crates/dapple-gallery/src/figures/pups/fig_03a.rs",
+            r"crates\dapple-gallery\src\figures\pups\fig_03a.rs",
+        ] {
+            assert_eq!(figure(path, "").name(), "pups-fig-03a", "{path}");
+        }
+    }
+
+    #[test]
+    fn caption_is_the_first_paragraph_of_the_header() {
+        let text =
+            "//! The weight of a point,\n//! and more.\n//!\n//! Not this.\nuse x;\n//! Nor this.";
+        assert_eq!(
+            figure("a/b.rs", text).caption(),
+            "The weight of a point, and more."
+        );
+    }
+
+    #[test]
+    fn render_without_a_picture_is_an_error_that_names_the_figure() {
+        let error = figure("figures/pups/fig_99.rs", "").render(8).unwrap_err();
+        assert_eq!(error.to_string(), "figure pups-fig-99 made no picture");
+    }
+}

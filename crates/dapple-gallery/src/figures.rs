@@ -1,0 +1,25 @@
+//! The list of all figures, paper by paper.
+
+mod house;
+mod pups;
+
+use crate::{Figure, Paper};
+
+/// The papers, in the order of the page.
+pub const PAPERS: &[Paper] = &[pups::PAPER, house::PAPER];
+
+/// All figures, in the order of the page.
+pub fn figures() -> impl Iterator<Item = &'static Figure> {
+    PAPERS.iter().flat_map(|paper| paper.figures)
+}
+
+/// The figures whose name contains one of the filters; all of them if there is no filter.
+#[must_use]
+pub fn select(filters: &[String]) -> Vec<&'static Figure> {
+    figures()
+        .filter(|figure| {
+            let name = figure.name();
+            filters.is_empty() || filters.iter().any(|filter| name.contains(filter.as_str()))
+        })
+        .collect()
+}

@@ -1,0 +1,180 @@
+//! The page: one HTML file beside the pictures that needs nothing else.
+//!
+//! Thumbnails by paper; each leads to the picture in full, with its neighbors on the arrow keys and a switch that repeats
+//! it, which shows a seam where there is one. Without scripts the thumbnails are plain links.
+
+use crate::{Figure, PAPERS};
+use core::fmt::Write as _;
+use core::time::Duration;
+
+/// A figure that has been rendered, as the page shows it.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// The figure.
+    pub figure: &'static Figure,
+    /// Its pictures.
+    pub images: Vec<Image>,
+    /// How long it took to make them, without writing the files.
+    pub time: Duration,
+}
+
+/// A picture of a figure, as the page shows it.
+#[derive(Clone, Debug)]
+pub struct Image {
+    /// The name of the file beside the page.
+    pub file: String,
+    /// The label of the panel.
+    pub label: String,
+    /// Columns and rows.
+    pub size: [u32; 2],
+}
+
+/// The page of some figures. `root` leads from the page's folder to the root of the workspace, and may be empty.
+#[must_use]
+pub fn html(entries: &[Entry], root: &str) -> String {
+    let mut body = String::new();
+    for paper in PAPERS {
+        let of_paper = |entry: &&Entry| entry.figure.name().starts_with(&format!("{}-", paper.key));
+        let figures: String = entries
+            .iter()
+            .filter(of_paper)
+            .map(|entry| article(entry, root))
+            .collect();
+        if !figures.is_empty() {
+            let (title, reference) = (escape(paper.title), escape(paper.reference));
+            let _ = write!(
+                body,
+                "<section><h2>{title}</h2><p class=\"ref\">{reference}</p>\n{figures}</section>\n"
+            );
+        }
+    }
+    include_str!("page/template.html").replace("{{figures}}", &body)
+}
+
+fn article(entry: &Entry, root: &str) -> String {
+    let figure = entry.figure;
+    let name = escape(&figure.name());
+    let caption = escape(&figure.caption());
+    let number = match figure.number {
+        "extra" => "Extra".to_owned(),
+        number => format!("Figure {}", escape(number)),
+    };
+    let images: String = entry
+        .images
+        .iter()
+        .map(|image| thumbnail(image, &number))
+        .collect();
+    let parameters: String = figure
+        .parameters
+        .iter()
+        .map(|pair| parameter(*pair))
+        .collect();
+    let source = escape(&figure.source.path.replace('\\', "/"));
+    let code = escape(figure.source.text);
+    let time = milliseconds(entry.time);
+    format!(
+        "<article id=\"{name}\"><div class=\"images\">{images}</div>\
+         <div class=\"text\"><p><b>{number}.</b> {caption}</p><dl>{parameters}</dl>\
+         <p class=\"small\">{time} · <a href=\"#{name}\">{name}</a> · <a href=\"{root}{source}\">source</a></p>\
+         <details><summary>code</summary><pre>{code}</pre></details></div></article>\n"
+    )
+}
+
+fn thumbnail(image: &Image, number: &str) -> String {
+    let (file, label) = (escape(&image.file), escape(&image.label));
+    let [width, height] = image.size;
+    let alt = format!("{number} {label}");
+    let alt = alt.trim_end();
+    format!(
+        "<figure><a class=\"zoom\" href=\"{file}\"><img src=\"{file}\" alt=\"{alt}\" width=\"{width}\" height=\"{height}\" \
+         loading=\"lazy\"></a><figcaption>{label}</figcaption></figure>"
+    )
+}
+
+fn parameter((name, value): (&str, &str)) -> String {
+    format!(
+        "<div><dt>{}</dt><dd>{}</dd></div>",
+        escape(name),
+        escape(value)
+    )
+}
+
+fn milliseconds(time: Duration) -> String {
+    match time.as_millis() {
+        0 => format!("{} µs", time.as_micros()),
+        ms @ 1..=9999 => format!("{ms} ms"),
+        ms => format!("{}.{} s", ms / 1000, ms % 1000 / 100),
+    }
+}
+
+fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            other => escaped.push(other),
+        }
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Entry, Image, escape, html, milliseconds};
+    use crate::figures;
+    use core::time::Duration;
+
+    #[test]
+    fn page_names_every_picture_and_loads_nothing_from_elsewhere() {
+        let image = |file: String| Image {
+            file,
+            label: "a < b".into(),
+            size: [5, 4],
+        };
+        let entries: Vec<_> = figures()
+            .map(|figure| Entry {
+                figure,
+                images: vec![image(format!("{}.png", figure.name()))],
+                time: Duration::from_micros(1500),
+            })
+            .collect();
+        let page = html(&entries, "../../");
+        for figure in figures() {
+            assert!(
+                page.contains(&format!("src=\"{}.png\"", figure.name())),
+                "no picture of {}",
+                figure.name()
+            );
+            assert!(
+                page.contains(&format!("href=\"../../{}\"", figure.source.path)),
+                "no source of {}",
+                figure.name()
+            );
+        }
+        assert!(
+            page.contains("a &lt; b") && page.contains("1 ms"),
+            "label or time is missing"
+        );
+        let shell = html(&[], "");
+        for foreign in ["http:", "https:", "//", "@import", "src="] {
+            assert!(!shell.contains(foreign), "the page refers to `{foreign}`");
+        }
+    }
+
+    #[test]
+    fn papers_without_figures_have_no_section() {
+        assert!(!html(&[], "").contains("<section"), "an empty section");
+    }
+
+    #[test]
+    fn text_is_escaped_and_times_are_readable() {
+        assert_eq!(escape("a<b>&\"c\""), "a&lt;b&gt;&amp;&quot;c&quot;");
+        let times = [(700, "700 µs"), (12_345, "12 ms"), (12_345_678, "12.3 s")];
+        for (micros, text) in times {
+            assert_eq!(milliseconds(Duration::from_micros(micros)), text);
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! One picture of a figure, and the bytes that stand for it.
+
+use dapple_color::{Code, LinearRgb};
+use dapple_raster::Raster;
+
+/// One picture of a figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// What tells the picture from the figure's others; empty where there is one.
+    pub label: String,
+    /// The pixels.
+    pub picture: Picture,
+}
+
+/// The pixels of a panel.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Picture {
+    /// Shades from 0, black, to 1, white, which go to the file as they are (`round(255 · value)`).
+    Gray(Raster<f32>),
+    /// Linear color, which becomes sRGB in the file.
+    Color(Raster<LinearRgb>),
+}
+
+impl Panel {
+    /// A picture in shades of gray, from 0, black, to 1, white.
+    #[must_use]
+    pub fn gray(label: impl Into<String>, raster: Raster<f32>) -> Self {
+        Self {
+            label: label.into(),
+            picture: Picture::Gray(raster),
+        }
+    }
+
+    /// A picture in linear color.
+    #[must_use]
+    pub fn color(label: impl Into<String>, raster: Raster<LinearRgb>) -> Self {
+        Self {
+            label: label.into(),
+            picture: Picture::Color(raster),
+        }
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        match &self.picture {
+            Picture::Gray(raster) => raster.size(),
+            Picture::Color(raster) => raster.size(),
+        }
+    }
+
+    /// How many bytes a pixel has: 1 or 3.
+    #[must_use]
+    pub fn n_channels(&self) -> u8 {
+        match self.picture {
+            Picture::Gray(_) => 1,
+            Picture::Color(_) => 3,
+        }
+    }
+
+    /// The pixels as they are in an 8-bit file, row by row from the top.
+    #[must_use]
+    pub fn bytes(&self) -> Vec<u8> {
+        match &self.picture {
+            Picture::Gray(raster) => raster
+                .pixels()
+                .iter()
+                .map(|&value| u8::from_unit(value))
+                .collect(),
+            Picture::Color(raster) => raster
+                .pixels()
+                .iter()
+                .flat_map(|color| color.to_srgb())
+                .collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Panel;
+    use dapple_color::LinearRgb;
+    use dapple_raster::Raster;
+
+    #[test]
+    fn bytes_are_linear_for_gray_and_srgb_for_color() {
+        let shades = Raster::from_vec([4, 1], vec![-1.0, 0.5, 2.0, f32::NAN]).unwrap();
+        assert_eq!(Panel::gray("", shades).bytes(), [0, 128, 255, 0]);
+        let color = Raster::filled([1, 1], LinearRgb::new(0.0, 0.5, 1.0)).unwrap();
+        assert_eq!(Panel::color("", color).bytes(), [0, 188, 255]);
+    }
+}
