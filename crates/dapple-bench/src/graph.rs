@@ -1,0 +1,89 @@
+//! The graph group: the periodic Delaunay graph beside `spade`'s plain, bounded triangulation of the same points.
+//!
+//! Ours starts from a point set and ends with the axes of every point in compressed rows; `spade`'s starts from a list
+//! of positions that is ready for it. Both are freed outside the clock. Confirmed: every point is a vertex, and the
+//! axes of a periodic triangulation are six for each point on average, exactly.
+
+use crate::harness::Bench;
+use anyhow::Result;
+
+/// Measures the rows of the group.
+pub(crate) fn run(bench: &mut Bench) -> Result<()> {
+    #[cfg(feature = "peers")]
+    beside_spade::run(bench)?;
+    #[cfg(not(feature = "peers"))]
+    let _ = bench;
+    Ok(())
+}
+
+/// The rows beside `spade`.
+#[cfg(feature = "peers")]
+mod beside_spade {
+    use crate::harness::{Bench, Done, Side};
+    use crate::row::{Case, Must, Unit};
+    use crate::{peers, sets};
+    use anyhow::{Result, ensure};
+    use dapple_graph::{Graph, delaunay};
+
+    const PERIODIC_700: Case = Case {
+        group: "graph",
+        case: "periodic Delaunay, 700 points",
+        peer: "spade bulk_load, not periodic",
+        unit: Unit::NsPerPoint,
+        must: Must::CostAtMost(1.4),
+        note: "",
+    };
+
+    const PERIODIC_1M: Case = Case {
+        case: "periodic Delaunay, 1 M points",
+        must: Must::CostAtMost(1.5),
+        ..PERIODIC_700
+    };
+
+    pub(super) fn run(bench: &mut Bench) -> Result<()> {
+        row(bench, &PERIODIC_700, 700, 300)?;
+        row(bench, &PERIODIC_1M, 1_000_000, 11)
+    }
+
+    fn row(bench: &mut Bench, case: &Case, n_points: u32, turns: u32) -> Result<()> {
+        if !bench.wants(case) {
+            return Ok(());
+        }
+        let points = sets::poisson_disk(n_points)?;
+        let positions = peers::spade_positions(points.positions());
+        let ours = Side::new(None, |out: &mut Option<Result<Graph, _>>| {
+            *out = Some(delaunay(&points))
+        })
+        .prepared(|out| *out = None);
+        let theirs = Side::new((Vec::new(), None), |(input, out)| {
+            *out = Some(peers::spade_bulk_load(std::mem::take(input)));
+        })
+        .prepared(|(input, out)| {
+            *out = None;
+            input.clone_from(&positions);
+        });
+        bench.beside(case, turns, ours, theirs, |graph, (_, triangulation)| {
+            let graph = graph
+                .as_ref()
+                .expect("a side ran")
+                .as_ref()
+                .map_err(Clone::clone)?;
+            let n_vertices = triangulation.as_ref().map_or(0, peers::n_vertices);
+            ensure!(
+                graph.n_points() == points.len(),
+                "{} points in the graph",
+                graph.n_points()
+            );
+            ensure!(
+                n_vertices == points.len(),
+                "{n_vertices} vertices in the triangulation"
+            );
+            ensure!(
+                graph.n_axes() == 6 * points.len(),
+                "{} axes, not six for each point",
+                graph.n_axes()
+            );
+            Ok(Done::both(points.len()))
+        })
+    }
+}

@@ -1,0 +1,79 @@
+//! Side-by-side benchmarks against the peers: `cargo xtask bench [filter…] [--json FILE] [--check]`.
+//!
+//! Every row sets a job of ours beside the same job of somebody else (a peer) or of ourselves under other
+//! conditions, in one run, and says what the ratio must be. A filter is the name of a group, which selects its rows,
+//! or a part of a case's or peer's name.
+//!
+//! How rows are measured is in `harness`, how peers are used at their best in `peers`, and what each group sets side by
+//! side in `pups`, `points` and `graph`. The peers are built only with the feature `peers`, which
+//! `cargo xtask bench` turns on; without it the rows of ours alone run.
+
+#![forbid(unsafe_code)]
+
+mod row;
+
+mod harness;
+
+mod machine;
+
+mod report;
+
+mod naive;
+
+mod sets;
+
+#[cfg(feature = "peers")]
+mod peers;
+
+mod graph;
+mod points;
+mod pups;
+
+use anyhow::{Context, Result, ensure};
+use clap::Parser;
+use harness::Bench;
+use machine::Machine;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Benchmarks beside the peers, one row for each bar that the library sets itself.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask bench")]
+struct Arguments {
+    /// Groups (pups, points, graph), or parts of the names of cases or peers; all of them by default.
+    filters: Vec<String>,
+    /// Writes the rows as JSON to this file.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Fails when a row does not hold.
+    #[arg(long)]
+    check: bool,
+    /// Keeps the table in `crates/dapple-bench/RESULTS.md`.
+    #[arg(long)]
+    write_results: bool,
+}
+
+fn main() -> Result<ExitCode> {
+    let arguments = Arguments::parse();
+    if cfg!(not(feature = "peers")) {
+        eprintln!("built without the feature `peers`: only the rows of ours alone run");
+    }
+    let mut bench = Bench::new(arguments.filters.clone())?;
+    pups::run(&mut bench)?;
+    points::run(&mut bench)?;
+    graph::run(&mut bench)?;
+    let rows = bench.into_rows();
+    ensure!(!rows.is_empty(), "no case matches {:?}", arguments.filters);
+
+    let table = report::markdown(&Machine::this(), &arguments.filters, &rows);
+    report::print(&table);
+    if let Some(path) = &arguments.json {
+        let json = serde_json::to_string_pretty(&rows)?;
+        report::write(path, &json).with_context(|| format!("writing {}", path.display()))?;
+    }
+    if arguments.write_results {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("RESULTS.md");
+        report::write(&path, &table).with_context(|| format!("writing {}", path.display()))?;
+    }
+    Ok(report::exit_code(&rows, arguments.check))
+}

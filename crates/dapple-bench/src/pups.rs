@@ -1,0 +1,115 @@
+//! The pups group: rasters and single positions of a scalar texture on the unit torus.
+//!
+//! An image is 1000×1000 pixels of the unit square, in memory that is there already. What is set up before (points,
+//! graph, net; the triangulation of the peer) is outside the clock, except in the whole chain. Confirmed: every pixel
+//! of a peer has a value, and ours is the naive evaluation of the paper's formulas up to the rounding of `f32`; that naive
+//! evaluation is itself a peer, on some rows of the image, since all of them would take seconds.
+
+mod alone;
+#[cfg(feature = "peers")]
+mod beside_spade;
+
+use crate::harness::Bench;
+use crate::naive::Naive;
+use crate::sets;
+use anyhow::{Result, ensure};
+use dapple_graph::{Graph, delaunay};
+use dapple_points::PointSet;
+use dapple_pups::{Pups, PupsOptions, Texture};
+use dapple_raster::{Raster, Window};
+
+/// Measures the rows of the group.
+pub(crate) fn run(bench: &mut Bench) -> Result<()> {
+    #[cfg(feature = "peers")]
+    beside_spade::run(bench)?;
+    alone::run(bench)
+}
+
+/// Columns and rows of the images.
+const SIDE: u32 = 1000;
+
+/// Everything about a texture of about so many control points.
+struct Scene {
+    points: PointSet,
+    graph: Graph,
+    values: Vec<f32>,
+    texture: Texture,
+}
+
+impl Scene {
+    /// About `n_points` maximal Poisson-disk points with values, on the unit torus.
+    fn new(n_points: u32) -> Result<Self> {
+        let points = sets::poisson_disk(n_points)?;
+        let graph = delaunay(&points)?;
+        let values = sets::values(points.len());
+        let texture =
+            Pups::new(&points, &graph, PupsOptions::default())?.texture(values.clone())?;
+        Ok(Self {
+            points,
+            graph,
+            values,
+            texture,
+        })
+    }
+
+    /// The naive evaluation of the same texture.
+    fn naive(&self) -> Naive {
+        let mut naive = Naive::default();
+        for ((point, center), &value) in self.points.iter().zip(&self.values) {
+            let axes = self
+                .graph
+                .axes(point)
+                .iter()
+                .map(|axis| axis.vector.to_array());
+            naive.push(center.to_array(), value, axes);
+        }
+        naive
+    }
+
+    /// Checks some rows of an image of the unit square beside the naive evaluation.
+    fn confirm(&self, image: &Raster<f32>) -> Result<()> {
+        let naive = self.naive();
+        let [width, height] = image.size();
+        let mut expected = vec![0.0; width as usize];
+        for row in [0, height / 3, height - 1] {
+            naive.row((f64::from(row) + 0.5) / f64::from(height), &mut expected);
+            self.confirm_values(image.row(row), &expected)?;
+        }
+        Ok(())
+    }
+
+    /// Checks that values are those of the naive evaluation up to [`tolerance`](Self::tolerance).
+    fn confirm_values(&self, found: &[f32], expected: &[f32]) -> Result<()> {
+        let tolerance = self.tolerance();
+        for (index, (found, expected)) in found.iter().zip(expected).enumerate() {
+            // A difference that is not a number fails too.
+            let near = (found - expected).abs() <= tolerance;
+            ensure!(
+                near,
+                "value {index} is {found}, and {expected} by the formulas, up to {tolerance}"
+            );
+        }
+        Ok(())
+    }
+
+    /// How far apart `f32` may take two evaluations of the same formulas.
+    ///
+    /// Some 25 products and sums of numbers up to one lose up to 6e-8 each, and not all the same way: 5e-7. An offset
+    /// that is rounded in the unit torus, as the naive evaluation does, is up to 1.2e-7 off; that moves the weight of
+    /// each of about four supports by the steepest slope of equation 1, which is 1.5 over an axis no shorter than the
+    /// radius.
+    fn tolerance(&self) -> f32 {
+        let radius = sets::radius_of(self.points.len() as u32) as f32;
+        5e-7 + 4.0 * 1.2e-7 * 1.5 / radius
+    }
+}
+
+/// The window of an image of the unit square.
+fn window(side: u32) -> Result<Window> {
+    Ok(Window::unit([side, side])?)
+}
+
+/// An image, black so far.
+fn image(side: u32) -> Result<Raster<f32>> {
+    Ok(Raster::filled([side, side], 0.0)?)
+}

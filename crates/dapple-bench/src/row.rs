@@ -1,0 +1,258 @@
+//! One line of the table: what was set side by side, what it took, and whether the bar is met.
+
+use serde::Serialize;
+
+/// Which way a ratio is read, and its bar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Must {
+    /// The time of the other side over the time of ours is at least this: ours is that many times faster.
+    Faster(f64),
+    /// The time of ours over the time of the other side is at most this: ours costs that many times as much.
+    CostAtMost(f64),
+    /// The time of the other side over the time of ours, without a bar: the row is there to be read.
+    Told,
+}
+
+impl Must {
+    /// The ratio of two times in this reading.
+    pub(crate) fn ratio(self, ours: f64, theirs: f64) -> f64 {
+        match self {
+            Self::Faster(_) | Self::Told => theirs / ours,
+            Self::CostAtMost(_) => ours / theirs,
+        }
+    }
+
+    /// Whether a ratio meets the bar. A ratio that is not a number meets none.
+    pub(crate) fn holds(self, ratio: f64) -> bool {
+        match self {
+            Self::Faster(bar) => ratio >= bar,
+            Self::CostAtMost(bar) => ratio <= bar,
+            Self::Told => true,
+        }
+    }
+}
+
+/// What a row sets side by side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Case {
+    /// The group, which is also a filter: `pups`, `points` or `graph`.
+    pub(crate) group: &'static str,
+    /// The job.
+    pub(crate) case: &'static str,
+    /// Whom ours is set beside.
+    pub(crate) peer: &'static str,
+    /// The unit of both times, see [`Unit`].
+    pub(crate) unit: Unit,
+    /// The bar.
+    pub(crate) must: Must,
+    /// What a reader has to know to read the row, or nothing.
+    pub(crate) note: &'static str,
+}
+
+impl Case {
+    /// Whether one of the filters selects this case, or there is none.
+    ///
+    /// The name of a group selects its cases; any other filter selects the cases that have it in their name or in
+    /// their peer's.
+    pub(crate) fn is_wanted(&self, filters: &[String]) -> bool {
+        let is_group = |filter: &str| GROUPS.contains(&filter);
+        filters.is_empty()
+            || filters.iter().any(|filter| {
+                if is_group(filter) {
+                    self.group == filter
+                } else {
+                    self.case.contains(filter.as_str()) || self.peer.contains(filter.as_str())
+                }
+            })
+    }
+
+    /// The row of this case from the seconds that one unit of work took each side.
+    pub(crate) fn row(&self, ours: f64, theirs: f64) -> Row {
+        let ratio = self.must.ratio(ours, theirs);
+        let (must, at) = match self.must {
+            Must::Faster(bar) => (Some(bar), Some("least")),
+            Must::CostAtMost(bar) => (Some(bar), Some("most")),
+            Must::Told => (None, None),
+        };
+        Row {
+            group: self.group,
+            case: self.case,
+            peer: self.peer,
+            unit: self.unit.name(),
+            ours: ours * self.unit.per_second(),
+            theirs: theirs * self.unit.per_second(),
+            ratio,
+            must,
+            at,
+            holds: self.must.holds(ratio),
+            note: self.note.to_owned(),
+        }
+    }
+}
+
+/// The groups, in the order of the table.
+pub(crate) const GROUPS: [&str; 3] = ["pups", "points", "graph"];
+
+/// The unit of a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Unit {
+    /// Nanoseconds for each pixel of the image.
+    NsPerPixel,
+    /// Nanoseconds for each point of the set that came out.
+    NsPerPoint,
+    /// Nanoseconds for each position asked.
+    NsPerPosition,
+    /// Milliseconds for the whole job.
+    Ms,
+}
+
+impl Unit {
+    /// As it is printed.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::NsPerPixel => "ns/pixel",
+            Self::NsPerPoint => "ns/point",
+            Self::NsPerPosition => "ns/position",
+            Self::Ms => "ms",
+        }
+    }
+
+    /// How many of this unit a second has.
+    pub(crate) const fn per_second(self) -> f64 {
+        match self {
+            Self::NsPerPixel | Self::NsPerPoint | Self::NsPerPosition => 1e9,
+            Self::Ms => 1e3,
+        }
+    }
+}
+
+/// A measured row, as it is printed and written to JSON.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Row {
+    /// See [`Case::group`].
+    pub(crate) group: &'static str,
+    /// See [`Case::case`].
+    pub(crate) case: &'static str,
+    /// See [`Case::peer`].
+    pub(crate) peer: &'static str,
+    /// The unit of `ours` and `theirs`.
+    pub(crate) unit: &'static str,
+    /// The time of our side.
+    pub(crate) ours: f64,
+    /// The time of the other side.
+    pub(crate) theirs: f64,
+    /// Theirs over ours where the bar is `least`, ours over theirs where it is `most`.
+    pub(crate) ratio: f64,
+    /// The bar, if the row has one.
+    pub(crate) must: Option<f64>,
+    /// Whether the ratio is to be at `least` or at `most` the bar.
+    pub(crate) at: Option<&'static str>,
+    /// Whether the ratio meets the bar.
+    pub(crate) holds: bool,
+    /// What a reader has to know to read the row.
+    pub(crate) note: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CASE: Case = Case {
+        group: "points",
+        case: "raster of 700 points",
+        peer: "spade",
+        unit: Unit::NsPerPixel,
+        must: Must::Faster(10.0),
+        note: "",
+    };
+
+    #[test]
+    fn faster_divides_theirs_by_ours_and_needs_at_least_the_bar() {
+        let row = CASE.row(2e-9, 20e-9);
+        assert!(
+            (row.ratio - 10.0).abs() < 1e-12,
+            "20 ns is ten times 2 ns, not {}",
+            row.ratio
+        );
+        assert!(row.holds, "exactly ten times faster meets a bar of ten");
+        assert!(!CASE.row(2.1e-9, 20e-9).holds, "9.5 times faster does not");
+    }
+
+    #[test]
+    fn cost_divides_ours_by_theirs_and_needs_at_most_the_bar() {
+        let case = Case {
+            must: Must::CostAtMost(1.5),
+            ..CASE
+        };
+        let row = case.row(3.0, 2.0);
+        assert!(
+            (row.ratio - 1.5).abs() < 1e-12,
+            "3 s is 1.5 times 2 s, not {}",
+            row.ratio
+        );
+        assert!(row.holds, "exactly the bar is met");
+        assert!(!case.row(3.2, 2.0).holds, "1.6 times the cost is too much");
+    }
+
+    #[test]
+    fn ratio_that_is_not_a_number_holds_no_bar() {
+        assert!(!Must::Faster(1.0).holds(f64::NAN), "0 / 0 is not fast");
+        assert!(!Must::CostAtMost(1.0).holds(f64::NAN), "0 / 0 is not cheap");
+    }
+
+    #[test]
+    fn row_without_a_bar_holds_and_has_none() {
+        let row = Case {
+            must: Must::Told,
+            ..CASE
+        }
+        .row(1.0, 0.5);
+        assert!(
+            row.holds && row.must.is_none(),
+            "a row that is only told cannot fail"
+        );
+    }
+
+    #[test]
+    fn times_are_in_the_unit_of_the_case() {
+        let row = CASE.row(2e-9, 20e-9);
+        assert!(
+            (row.ours - 2.0).abs() < 1e-12,
+            "2e-9 s are 2 ns, not {}",
+            row.ours
+        );
+        let row = Case {
+            unit: Unit::Ms,
+            ..CASE
+        }
+        .row(0.25, 1.0);
+        assert!(
+            (row.ours - 250.0).abs() < 1e-12,
+            "0.25 s are 250 ms, not {}",
+            row.ours
+        );
+    }
+
+    #[test]
+    fn filter_selects_a_group_or_a_part_of_a_name() {
+        let wanted = |filters: &[&str]| {
+            CASE.is_wanted(&filters.iter().map(ToString::to_string).collect::<Vec<_>>())
+        };
+        assert!(wanted(&[]), "no filter selects all");
+        assert!(wanted(&["points"]), "the case is of the group points");
+        assert!(!wanted(&["pups"]), "a group selects only its own cases");
+        assert!(
+            wanted(&["pups", "raster"]),
+            "one filter that fits is enough"
+        );
+        assert!(wanted(&["spade"]), "the name of the peer counts");
+        let other = Case {
+            group: "pups",
+            ..CASE
+        };
+        assert!(
+            !other.is_wanted(&["points".to_owned()]),
+            "`points` is a group, though the case has it in its name"
+        );
+    }
+}

@@ -1,0 +1,55 @@
+//! The inputs that groups share: point sets of the unit torus, values for them, and positions to ask for.
+
+use anyhow::Result;
+use dapple_hash::{Seed, hash1, unit_f32, unit_f64};
+use dapple_points::glam::DVec2;
+use dapple_points::{Domain, PointSet};
+
+/// The seed of every set.
+pub(crate) const SEED: Seed = Seed(2013);
+
+/// The unit torus.
+pub(crate) const UNIT_TORUS: Domain = Domain::torus(DVec2::ZERO, DVec2::ONE);
+
+/// Points times squared radius of a maximal Poisson-disk set of the unit torus.
+pub(crate) const NORMALIZED_DENSITY: f64 = 0.697;
+
+/// The radius at which the unit torus holds about `n_points` maximal Poisson-disk points.
+pub(crate) fn radius_of(n_points: u32) -> f64 {
+    (NORMALIZED_DENSITY / f64::from(n_points)).sqrt()
+}
+
+/// About `n_points` maximal Poisson-disk points of the unit torus.
+pub(crate) fn poisson_disk(n_points: u32) -> Result<PointSet> {
+    poisson_disk_from(SEED, n_points)
+}
+
+/// The same from a seed.
+pub(crate) fn poisson_disk_from(seed: Seed, n_points: u32) -> Result<PointSet> {
+    // STAND-IN
+    let side = f64::from(n_points).sqrt() as i64;
+    let mut positions = Vec::new();
+    for i in 0..side * side {
+        let unit = |index| unit_f64(hash1(seed, [i], index)) * 0.7 + 0.15;
+        let cell = DVec2::new((i % side) as f64, (i / side) as f64);
+        positions.push((cell + DVec2::new(unit(0), unit(1))) / side as f64);
+    }
+    Ok(PointSet::new(UNIT_TORUS, positions)?)
+}
+
+/// A value in [0, 1) for each of `n` points.
+pub(crate) fn values(n: usize) -> Vec<f32> {
+    let seed = SEED.child("bench values", 0);
+    (0..n as i64)
+        .map(|index| unit_f32((hash1(seed, [index], 0) >> 32) as u32))
+        .collect()
+}
+
+/// `n` positions anywhere in the unit square.
+pub(crate) fn positions(n: usize) -> Vec<DVec2> {
+    let seed = SEED.child("bench positions", 0);
+    let unit = |index, axis| unit_f64(hash1(seed, [index], axis));
+    (0..n as i64)
+        .map(|index| DVec2::new(unit(index, 0), unit(index, 1)))
+        .collect()
+}
