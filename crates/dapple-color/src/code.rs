@@ -1,0 +1,100 @@
+//! Whole numbers that stand for values in a file: quantizing, and the sRGB curve by exact tables.
+//!
+//! Data (heights, masks, normals) is quantized with `round(value · max)`. Color goes through the sRGB transfer
+//! function of IEC 61966-2-1, whose two directions are in [`crate::srgb`].
+
+use crate::srgb;
+
+/// A whole number that stands for a value from 0 to 1 in a file: `u8` or `u16`.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::Code;
+///
+/// assert_eq!(u8::from_unit(0.5), 128);
+/// assert_eq!(u16::from_unit(0.5), 32768);
+/// assert_eq!(u8::srgb_from_linear(0.5), 188);
+/// ```
+pub trait Code: Copy + Send + Sync + sealed::Sealed + 'static {
+    /// The largest code, which stands for 1.
+    const MAX: u16;
+
+    /// The code nearest to a value: `round(value · max)`, halves up.
+    ///
+    /// Values below 0 become 0, values above 1 the largest code, and NaN becomes 0.
+    #[must_use]
+    fn from_unit(value: f32) -> Self;
+
+    /// The value that a code stands for, from 0 to 1: `code / max`, correctly rounded.
+    #[must_use]
+    fn to_unit(self) -> f32;
+
+    /// The code of a linear value under the sRGB curve: the true curve, times the largest code, rounded.
+    ///
+    /// The result is that of exact arithmetic, for every `f32`. Values below 0 become 0, values above 1 the largest
+    /// code, and NaN becomes 0.
+    #[must_use]
+    fn srgb_from_linear(linear: f32) -> Self;
+
+    /// The linear value, from 0 to 1, of a code under the sRGB curve: the `f32` nearest to the true value.
+    #[must_use]
+    fn linear_from_srgb(self) -> f32;
+}
+
+impl Code for u8 {
+    const MAX: u16 = 255;
+
+    #[inline]
+    fn from_unit(value: f32) -> Self {
+        // The product and the sum are exact in `f64`; the cast truncates, saturates, and takes NaN to zero.
+        (f64::from(value) * 255.0 + 0.5) as Self
+    }
+
+    #[inline]
+    fn to_unit(self) -> f32 {
+        f32::from(self) / 255.0
+    }
+
+    #[inline]
+    fn srgb_from_linear(linear: f32) -> Self {
+        // The table of this depth has no larger code.
+        srgb::curve_u8().encode(linear) as Self
+    }
+
+    #[inline]
+    fn linear_from_srgb(self) -> f32 {
+        srgb::curve_u8().decode(self.into())
+    }
+}
+
+impl Code for u16 {
+    const MAX: u16 = 65535;
+
+    #[inline]
+    fn from_unit(value: f32) -> Self {
+        (f64::from(value) * 65535.0 + 0.5) as Self
+    }
+
+    #[inline]
+    fn to_unit(self) -> f32 {
+        f32::from(self) / 65535.0
+    }
+
+    #[inline]
+    fn srgb_from_linear(linear: f32) -> Self {
+        srgb::curve_u16().encode(linear)
+    }
+
+    #[inline]
+    fn linear_from_srgb(self) -> f32 {
+        srgb::curve_u16().decode(self)
+    }
+}
+
+mod sealed {
+    /// Keeps [`super::Code`] to the two depths that files have.
+    pub trait Sealed {}
+    impl Sealed for u8 {}
+    impl Sealed for u16 {}
+}

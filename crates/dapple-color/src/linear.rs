@@ -1,0 +1,205 @@
+//! Colors in linear light.
+
+use crate::Code;
+use core::ops::{Add, Mul, Sub};
+
+/// A color in linear light with the primaries and the white of sRGB.
+///
+/// Each part is 0 for none and 1 for the most that a screen shows; more, less and NaN are allowed in between steps. The
+/// color can be added and scaled, so a `Raster<LinearRgb>` can be read between its pixels.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::LinearRgb;
+///
+/// let middle = (LinearRgb::BLACK + LinearRgb::WHITE) * 0.5;
+/// assert_eq!(middle.to_srgb::<u8>(), [188, 188, 188]);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LinearRgb {
+    /// Red, linear.
+    pub r: f32,
+    /// Green, linear.
+    pub g: f32,
+    /// Blue, linear.
+    pub b: f32,
+}
+
+/// A color in linear light with a coverage that is *not* multiplied into it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LinearRgba {
+    /// The color where it covers.
+    pub color: LinearRgb,
+    /// How much it covers, from 0 (nothing) to 1 (all). It is linear in files, too.
+    pub alpha: f32,
+}
+
+impl LinearRgb {
+    /// No light.
+    pub const BLACK: Self = Self::gray(0.0);
+    /// The most light that a screen shows.
+    pub const WHITE: Self = Self::gray(1.0);
+
+    /// A color from its linear parts.
+    #[must_use]
+    pub const fn new(r: f32, g: f32, b: f32) -> Self {
+        Self { r, g, b }
+    }
+
+    /// A gray of the given linear value.
+    #[must_use]
+    pub const fn gray(value: f32) -> Self {
+        Self::new(value, value, value)
+    }
+
+    /// The color that a file means with these sRGB codes, red first.
+    #[must_use]
+    pub fn from_srgb<C: Code>(codes: [C; 3]) -> Self {
+        codes.map(C::linear_from_srgb).into()
+    }
+
+    /// The nearest sRGB codes, red first; parts below 0 or above 1 are clamped, NaN becomes 0.
+    #[must_use]
+    pub fn to_srgb<C: Code>(self) -> [C; 3] {
+        self.to_array().map(C::srgb_from_linear)
+    }
+
+    /// Red, green and blue.
+    #[must_use]
+    pub const fn to_array(self) -> [f32; 3] {
+        [self.r, self.g, self.b]
+    }
+
+    /// The light that an eye sees: the Y of CIE XYZ under ITU-R BT.709 primaries, linear, 1 for white.
+    ///
+    /// `0.2126 r + 0.7152 g + 0.0722 b`, as BT.709-6 item 3.2 has it.
+    #[must_use]
+    pub fn luminance(self) -> f32 {
+        0.2126 * self.r + 0.7152 * self.g + 0.0722 * self.b
+    }
+
+    /// The color a part of the way to another one: this one at 0, `other` at 1, and beyond for numbers beyond.
+    #[must_use]
+    pub fn lerp(self, other: Self, part: f32) -> Self {
+        // In this form both ends are exact.
+        self * (1.0 - part) + other * part
+    }
+}
+
+impl LinearRgba {
+    /// A color that covers all.
+    #[must_use]
+    pub const fn opaque(color: LinearRgb) -> Self {
+        Self { color, alpha: 1.0 }
+    }
+
+    /// The color that a file means with these codes: red, green and blue under the sRGB curve, then alpha, linear.
+    #[must_use]
+    pub fn from_srgb<C: Code>([r, g, b, alpha]: [C; 4]) -> Self {
+        Self {
+            color: LinearRgb::from_srgb([r, g, b]),
+            alpha: alpha.to_unit(),
+        }
+    }
+
+    /// The nearest codes: red, green and blue under the sRGB curve, then alpha, linear.
+    #[must_use]
+    pub fn to_srgb<C: Code>(self) -> [C; 4] {
+        let [r, g, b] = self.color.to_srgb();
+        [r, g, b, C::from_unit(self.alpha)]
+    }
+
+    /// What is seen with this color in front of an opaque one.
+    #[must_use]
+    pub fn over(self, background: LinearRgb) -> LinearRgb {
+        background.lerp(self.color, self.alpha)
+    }
+}
+
+impl From<[f32; 3]> for LinearRgb {
+    fn from([r, g, b]: [f32; 3]) -> Self {
+        Self { r, g, b }
+    }
+}
+
+impl From<LinearRgb> for [f32; 3] {
+    fn from(color: LinearRgb) -> Self {
+        color.to_array()
+    }
+}
+
+impl Add for LinearRgb {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.r + other.r, self.g + other.g, self.b + other.b)
+    }
+}
+
+impl Sub for LinearRgb {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.r - other.r, self.g - other.g, self.b - other.b)
+    }
+}
+
+impl Mul<f32> for LinearRgb {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, factor: f32) -> Self {
+        Self::new(self.r * factor, self.g * factor, self.b * factor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LinearRgb, LinearRgba};
+
+    #[test]
+    fn lerp_is_exact_at_both_ends() {
+        let [a, b] = [
+            LinearRgb::new(0.1, 0.7, 1e6),
+            LinearRgb::new(0.3, 1e-9, 0.2),
+        ];
+        assert_eq!([a.lerp(b, 0.0), a.lerp(b, 1.0)], [a, b], "the ends");
+    }
+
+    #[test]
+    fn codes_survive_the_way_through_linear_light() {
+        let codes = [0_u16, 12_345, 65_535, 40_000];
+        let [r, g, b, _] = codes;
+        assert_eq!(
+            LinearRgb::from_srgb([r, g, b]).to_srgb::<u16>(),
+            [r, g, b],
+            "color"
+        );
+        assert_eq!(
+            LinearRgba::from_srgb(codes).to_srgb::<u16>(),
+            codes,
+            "with alpha"
+        );
+    }
+
+    #[test]
+    fn the_luminance_of_white_is_one() {
+        // The three factors sum to 1 in decimal; in `f32` one rounding of 6e-8 may remain.
+        let luminance = LinearRgb::WHITE.luminance();
+        assert!((luminance - 1.0).abs() < 1e-6, "{luminance}");
+    }
+
+    #[test]
+    fn alpha_mixes_with_the_background() {
+        let half = LinearRgba {
+            color: LinearRgb::WHITE,
+            alpha: 0.5,
+        };
+        assert_eq!(half.over(LinearRgb::BLACK), LinearRgb::gray(0.5), "half");
+    }
+}

@@ -1,0 +1,178 @@
+//! Why an image was not read or written.
+
+use core::fmt;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+/// Why an image was not read or written.
+///
+/// Match on [`kind`](Self::kind); the text is for people. Where a file or a codec refused, [`source`](Error::source)
+/// holds what it said.
+#[derive(Debug)]
+pub struct ImageError {
+    kind: ImageErrorKind,
+    path: Option<PathBuf>,
+    source: Option<Box<dyn Error + Send + Sync>>,
+}
+
+/// What went wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ImageErrorKind {
+    /// The operating system refused to read or write; the source says why.
+    Io,
+    /// The bytes begin neither like PNG nor like OpenEXR, or not like the format that was asked for.
+    UnknownFormat,
+    /// The bytes break the rules of their format, or end too soon.
+    Damaged {
+        /// The format that they seemed to have.
+        format: &'static str,
+    },
+    /// The file uses a feature of its format that is not read.
+    Unsupported {
+        /// What is not read.
+        feature: &'static str,
+    },
+    /// The image has no pixel.
+    Empty {
+        /// Columns and rows.
+        size: [u64; 2],
+    },
+    /// The image has more pixels than the limit.
+    TooManyPixels {
+        /// Columns and rows.
+        size: [u64; 2],
+        /// The limit.
+        limit: u64,
+    },
+    /// The image takes more memory than the limit, in bytes.
+    TooManyBytes {
+        /// How many it takes, as far as that is known.
+        bytes: u64,
+        /// The limit.
+        limit: u64,
+    },
+    /// The image has other channels than what was asked for.
+    Channels {
+        /// The channels of the image.
+        found: &'static str,
+        /// The channels that were asked for.
+        needed: &'static str,
+    },
+    /// The file has no plane of this name.
+    MissingPlane {
+        /// The name.
+        name: String,
+    },
+    /// The names of the planes to be written are empty, too long, or not different.
+    PlaneName {
+        /// The first name that is wrong.
+        name: String,
+    },
+    /// Two planes of one image have different sizes.
+    SizeMismatch {
+        /// The size of the plane, in pixels.
+        size: [u32; 2],
+        /// The size of the planes before it.
+        needed: [u32; 2],
+    },
+}
+
+impl ImageError {
+    pub(crate) fn new(kind: ImageErrorKind) -> Self {
+        Self {
+            kind,
+            path: None,
+            source: None,
+        }
+    }
+
+    /// The bytes break the rules of `format`, as `source` says.
+    pub(crate) fn damaged(
+        format: &'static str,
+        source: impl Into<Box<dyn Error + Send + Sync>>,
+    ) -> Self {
+        Self::new(ImageErrorKind::Damaged { format }).because(source)
+    }
+
+    /// The same with what a file or a codec said.
+    pub(crate) fn because(mut self, source: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
+        self.source = Some(source.into());
+        self
+    }
+
+    /// The same with the file that was read or written.
+    pub(crate) fn at(mut self, path: &Path) -> Self {
+        self.path = Some(path.to_owned());
+        self
+    }
+
+    /// What went wrong.
+    #[must_use]
+    pub fn kind(&self) -> &ImageErrorKind {
+        &self.kind
+    }
+
+    /// The file that was read or written, if there was one.
+    #[must_use]
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+}
+
+impl fmt::Display for ImageError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(path) = &self.path {
+            write!(f, "{}: ", path.display())?;
+        }
+        write!(f, "{}", self.kind)?;
+        match &self.source {
+            Some(source) => write!(f, ": {source}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl fmt::Display for ImageErrorKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Io => f.write_str("the file cannot be read or written"),
+            Self::UnknownFormat => f.write_str("the bytes are of no format that is known here"),
+            Self::Damaged { format } => write!(f, "the {format} data is damaged"),
+            Self::Unsupported { feature } => write!(f, "{feature} is not supported"),
+            Self::Empty { size: [w, h] } => write!(f, "an image of {w} × {h} pixels is empty"),
+            Self::TooManyPixels {
+                size: [w, h],
+                limit,
+            } => write!(
+                f,
+                "an image of {w} × {h} pixels is larger than the limit of {limit} pixels"
+            ),
+            Self::TooManyBytes { bytes, limit } => write!(
+                f,
+                "the image takes {bytes} bytes or more, but the limit is {limit}"
+            ),
+            Self::Channels { found, needed } => {
+                write!(f, "the image is {found}, but {needed} is needed")
+            }
+            Self::MissingPlane { name } => write!(f, "there is no plane named {name:?}"),
+            Self::PlaneName { name } => write!(
+                f,
+                "the plane name {name:?} is empty, longer than 255 bytes, or used twice"
+            ),
+            Self::SizeMismatch {
+                size: [w, h],
+                needed: [nw, nh],
+            } => write!(
+                f,
+                "the plane has {w} × {h} pixels, but the planes before it have {nw} × {nh}"
+            ),
+        }
+    }
+}
+
+impl Error for ImageError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.source.as_deref().map(|source| source as _)
+    }
+}

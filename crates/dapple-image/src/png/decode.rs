@@ -1,0 +1,151 @@
+//! Reading PNG.
+//!
+//! Palettes, 1, 2 and 4 bits, the transparent color (`tRNS`) and interlacing are all resolved into the eight kinds of
+//! [`PngPixels`]; of an animation the first picture is read. The size is held against the limits before memory for the
+//! pixels is asked for.
+
+use super::{PngPixel, Transfer};
+use crate::{ImageError, ImageErrorKind, Limits};
+use dapple_raster::Raster;
+use png::{BitDepth, ColorType, DecodingError};
+use std::io::Cursor;
+
+/// What a PNG file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PngImage {
+    /// The pixels.
+    pub pixels: PngPixels,
+    /// [`Transfer::Srgb`] if the file says so (with the chunk `sRGB`, or a `gAMA` of 0.45455), else
+    /// [`Transfer::Data`], which for a file that says nothing may be color all the same.
+    pub transfer: Transfer,
+}
+
+/// Pixels of one of the kinds that PNG has; alpha comes last.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PngPixels {
+    /// Gray, 8 bits.
+    Gray8(Raster<u8>),
+    /// Gray, 16 bits.
+    Gray16(Raster<u16>),
+    /// Gray and alpha, 8 bits.
+    GrayAlpha8(Raster<[u8; 2]>),
+    /// Gray and alpha, 16 bits.
+    GrayAlpha16(Raster<[u16; 2]>),
+    /// Red, green and blue, 8 bits.
+    Rgb8(Raster<[u8; 3]>),
+    /// Red, green and blue, 16 bits.
+    Rgb16(Raster<[u16; 3]>),
+    /// Red, green, blue and alpha, 8 bits.
+    Rgba8(Raster<[u8; 4]>),
+    /// Red, green, blue and alpha, 16 bits.
+    Rgba16(Raster<[u16; 4]>),
+}
+
+/// The image in the bytes of a PNG file.
+///
+/// # Errors
+///
+/// [`ImageErrorKind::UnknownFormat`] if the bytes do not begin like PNG, [`ImageErrorKind::Damaged`] if they break its
+/// rules or end too soon, [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit.
+pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
+    if !bytes.starts_with(&super::SIGNATURE) {
+        return Err(ImageError::new(ImageErrorKind::UnknownFormat));
+    }
+    let mut decoder = png::Decoder::new_with_options(Cursor::new(bytes), options());
+    decoder.set_limits(png::Limits {
+        bytes: usize::try_from(limits.bytes).unwrap_or(usize::MAX),
+    });
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let refuse = |error| refusal(error, limits);
+    let header = decoder.read_header_info().map_err(refuse)?;
+    let size = [header.width, header.height];
+    limits.check_pixels(size.map(u64::from))?;
+    let mut reader = decoder.read_info().map_err(refuse)?;
+    let length = reader.output_buffer_size().unwrap_or(usize::MAX);
+    limits.check_bytes(length as u64)?;
+    let mut samples = vec![0; length];
+    reader.next_frame(&mut samples).map_err(refuse)?;
+    let transfer = transfer_of(reader.info());
+    let pixels = PngPixels::from_samples(size, reader.output_color_type(), &samples)?;
+    Ok(PngImage { pixels, transfer })
+}
+
+/// Checks everything that the format lets check, and skips what is never used.
+fn options() -> png::DecodeOptions {
+    let mut options = png::DecodeOptions::default();
+    options.set_ignore_checksums(false);
+    options.set_ignore_text_chunk(true);
+    options.set_ignore_iccp_chunk(true);
+    options
+}
+
+fn refusal(error: DecodingError, limits: &Limits) -> ImageError {
+    match error {
+        DecodingError::LimitsExceeded => {
+            let limit = limits.bytes;
+            ImageError::new(ImageErrorKind::TooManyBytes {
+                bytes: limit.saturating_add(1),
+                limit,
+            })
+        }
+        other => ImageError::damaged("PNG", other),
+    }
+}
+
+fn transfer_of(info: &png::Info<'_>) -> Transfer {
+    let gamma = info.gama_chunk.map(png::ScaledFloat::into_scaled);
+    if info.srgb.is_some() || gamma == Some(super::GAMMA_OF_SRGB) {
+        Transfer::Srgb
+    } else {
+        Transfer::Data
+    }
+}
+
+impl PngPixels {
+    fn from_samples(
+        size: [u32; 2],
+        format: (ColorType, BitDepth),
+        samples: &[u8],
+    ) -> Result<Self, ImageError> {
+        use BitDepth::{Eight, Sixteen};
+        use ColorType::{Grayscale, GrayscaleAlpha, Rgb, Rgba};
+        Ok(match format {
+            (Grayscale, Eight) => Self::Gray8(raster(size, samples)?),
+            (Grayscale, Sixteen) => Self::Gray16(raster(size, samples)?),
+            (GrayscaleAlpha, Eight) => Self::GrayAlpha8(raster(size, samples)?),
+            (GrayscaleAlpha, Sixteen) => Self::GrayAlpha16(raster(size, samples)?),
+            (Rgb, Eight) => Self::Rgb8(raster(size, samples)?),
+            (Rgb, Sixteen) => Self::Rgb16(raster(size, samples)?),
+            (Rgba, Eight) => Self::Rgba8(raster(size, samples)?),
+            (Rgba, Sixteen) => Self::Rgba16(raster(size, samples)?),
+            // The codec was asked to resolve these.
+            _ => {
+                let feature = "this kind of PNG pixel";
+                return Err(ImageError::new(ImageErrorKind::Unsupported { feature }));
+            }
+        })
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        match self {
+            Self::Gray8(raster) => raster.size(),
+            Self::Gray16(raster) => raster.size(),
+            Self::GrayAlpha8(raster) => raster.size(),
+            Self::GrayAlpha16(raster) => raster.size(),
+            Self::Rgb8(raster) => raster.size(),
+            Self::Rgb16(raster) => raster.size(),
+            Self::Rgba8(raster) => raster.size(),
+            Self::Rgba16(raster) => raster.size(),
+        }
+    }
+}
+
+fn raster<P: PngPixel>(size: [u32; 2], samples: &[u8]) -> Result<Raster<P>, ImageError> {
+    let pixels = samples
+        .chunks_exact(size_of::<P>())
+        .map(P::from_bytes)
+        .collect();
+    Raster::from_vec(size, pixels).map_err(|error| ImageError::damaged("PNG", error))
+}

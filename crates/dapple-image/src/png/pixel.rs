@@ -1,0 +1,87 @@
+//! The pixels that a PNG file can have.
+
+use png::{BitDepth, ColorType};
+
+/// A pixel of 8 or 16 bits per channel: gray, gray with alpha, red-green-blue, or that with alpha.
+///
+/// It is implemented for `u8` and `u16` and for arrays of two, three and four of them. Alpha comes last and is not
+/// multiplied into the color.
+pub trait PngPixel: Copy + sealed::Sealed {
+    /// What the codec calls this kind of pixel.
+    #[doc(hidden)]
+    const FORMAT: (ColorType, BitDepth);
+
+    /// Appends the samples as the file has them.
+    #[doc(hidden)]
+    fn push_bytes(&self, bytes: &mut Vec<u8>);
+
+    /// The pixel of these samples, which are of its length.
+    #[doc(hidden)]
+    fn from_bytes(bytes: &[u8]) -> Self;
+}
+
+macro_rules! png_pixel {
+    ($($channels:literal $color:ident),*) => {$(
+        impl PngPixel for [u8; $channels] {
+            const FORMAT: (ColorType, BitDepth) = (ColorType::$color, BitDepth::Eight);
+
+            fn push_bytes(&self, bytes: &mut Vec<u8>) {
+                bytes.extend_from_slice(self);
+            }
+
+            fn from_bytes(bytes: &[u8]) -> Self {
+                core::array::from_fn(|channel| bytes[channel])
+            }
+        }
+
+        impl PngPixel for [u16; $channels] {
+            const FORMAT: (ColorType, BitDepth) = (ColorType::$color, BitDepth::Sixteen);
+
+            fn push_bytes(&self, bytes: &mut Vec<u8>) {
+                self.iter().for_each(|sample| bytes.extend_from_slice(&sample.to_be_bytes()));
+            }
+
+            fn from_bytes(bytes: &[u8]) -> Self {
+                core::array::from_fn(|channel| {
+                    u16::from_be_bytes([bytes[2 * channel], bytes[2 * channel + 1]])
+                })
+            }
+        }
+
+        impl sealed::Sealed for [u8; $channels] {}
+        impl sealed::Sealed for [u16; $channels] {}
+    )*};
+}
+
+png_pixel!(2 GrayscaleAlpha, 3 Rgb, 4 Rgba);
+
+impl PngPixel for u8 {
+    const FORMAT: (ColorType, BitDepth) = (ColorType::Grayscale, BitDepth::Eight);
+
+    fn push_bytes(&self, bytes: &mut Vec<u8>) {
+        bytes.push(*self);
+    }
+
+    fn from_bytes(bytes: &[u8]) -> Self {
+        bytes[0]
+    }
+}
+
+impl PngPixel for u16 {
+    const FORMAT: (ColorType, BitDepth) = (ColorType::Grayscale, BitDepth::Sixteen);
+
+    fn push_bytes(&self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(&self.to_be_bytes());
+    }
+
+    fn from_bytes(bytes: &[u8]) -> Self {
+        Self::from_be_bytes([bytes[0], bytes[1]])
+    }
+}
+
+mod sealed {
+    /// Keeps [`super::PngPixel`] to what the format has.
+    pub trait Sealed {}
+    impl Sealed for u8 {}
+    impl Sealed for u16 {}
+}
