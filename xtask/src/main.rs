@@ -1,2 +1,52 @@
-//! The chores of the workspace.
-fn main() {}
+//! The chores of the workspace: `cargo xtask gallery`, `bench`, `golden`, `tidy` and `ci`.
+//!
+//! It depends on no crate of ours, so that it starts at once; what needs them runs through `cargo run --release`.
+
+#![forbid(unsafe_code)]
+
+mod ci;
+mod command;
+mod run;
+mod tidy;
+
+use command::{Command, HELP};
+use std::path::Path;
+use std::process::ExitCode;
+use xshell::Shell;
+
+fn main() -> ExitCode {
+    match command::parse(lexopt::Parser::from_env()).and_then(|command| perform(&command)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn perform(command: &Command) -> anyhow::Result<()> {
+    let shell = Shell::new()?;
+    shell.change_dir(root());
+    match command {
+        Command::Gallery(arguments) => run::gallery(&shell, arguments),
+        Command::Bench(arguments) => run::bench(&shell, arguments),
+        Command::Golden { bless } => run::golden(&shell, *bless),
+        Command::Tidy => tidy::tidy(&shell),
+        Command::Ci(steps) => ci::ci(&shell, steps),
+        Command::Help => {
+            say(HELP);
+            Ok(())
+        }
+    }
+}
+
+/// The root of the workspace.
+fn root() -> &'static Path {
+    let xtask = Path::new(env!("CARGO_MANIFEST_DIR"));
+    xtask.parent().unwrap_or(xtask)
+}
+
+#[expect(clippy::print_stdout, reason = "this is what the program says")]
+fn say(text: &str) {
+    println!("{text}");
+}

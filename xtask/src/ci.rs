@@ -1,0 +1,116 @@
+//! What CI runs, step by step; `.ci/run` installs what is missing and then comes here.
+
+use crate::tidy;
+use crate::tidy::workspace::{Member, Workspace};
+use anyhow::Context;
+use xshell::{Shell, cmd};
+
+/// A step of CI.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// All tests, by the command that the README names.
+    Test,
+    /// The formatting.
+    Fmt,
+    /// The lints, without a warning.
+    Clippy,
+    /// The documentation, without a warning.
+    Doc,
+    /// The house rules.
+    Tidy,
+    /// Every library crate alone: without features, and with each of them; its values without threads.
+    Features,
+}
+
+impl Step {
+    /// The steps, in the order in which CI runs them.
+    pub(crate) const ALL: [Self; 6] = [
+        Self::Test,
+        Self::Fmt,
+        Self::Clippy,
+        Self::Doc,
+        Self::Tidy,
+        Self::Features,
+    ];
+
+    /// What the command line calls the step.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Test => "test",
+            Self::Fmt => "fmt",
+            Self::Clippy => "clippy",
+            Self::Doc => "doc",
+            Self::Tidy => "tidy",
+            Self::Features => "features",
+        }
+    }
+
+    /// The names of all steps, for a message.
+    pub(crate) fn names() -> String {
+        Self::ALL.map(Self::name).join(", ")
+    }
+}
+
+/// Runs steps, and stops at the first that fails.
+pub(crate) fn ci(shell: &Shell, steps: &[Step]) -> anyhow::Result<()> {
+    for &step in steps {
+        crate::say(&format!("== {}", step.name()));
+        run(shell, step).with_context(|| format!("the step `{}` failed", step.name()))?;
+    }
+    Ok(())
+}
+
+fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
+    let command = match step {
+        Step::Test => cmd!(shell, "cargo test --workspace"),
+        Step::Fmt => cmd!(shell, "cargo fmt --all --check"),
+        Step::Clippy => cmd!(
+            shell,
+            "cargo clippy --workspace --all-targets -- -D warnings"
+        ),
+        Step::Doc => {
+            cmd!(shell, "cargo doc --workspace --no-deps").env("RUSTDOCFLAGS", "-D warnings")
+        }
+        Step::Tidy => return tidy::tidy(shell),
+        Step::Features => return features(shell),
+    };
+    Ok(command.run()?)
+}
+
+/// Builds every published crate alone with no feature and with each of its features, and tests without threads those
+/// that can use them.
+fn features(shell: &Shell) -> anyhow::Result<()> {
+    let workspace = Workspace::read(shell)?;
+    for member in workspace.members.iter().filter(|member| member.published) {
+        let package = &member.name;
+        for set in feature_sets(member) {
+            cmd!(
+                shell,
+                "cargo clippy --quiet --package {package} --no-default-features --features {set} -- -D warnings"
+            )
+            .run()?;
+        }
+        if member.features.iter().any(|feature| feature == "rayon") {
+            cmd!(
+                shell,
+                "cargo test --quiet --package {package} --no-default-features --lib"
+            )
+            .run()?;
+        }
+    }
+    Ok(())
+}
+
+/// No feature, each feature alone, and all of them.
+fn feature_sets(member: &Member) -> Vec<String> {
+    let own = member
+        .features
+        .iter()
+        .filter(|feature| *feature != "default");
+    let mut sets = vec![String::new()];
+    sets.extend(own.clone().cloned());
+    if own.clone().count() > 1 {
+        sets.push(own.cloned().collect::<Vec<_>>().join(","));
+    }
+    sets
+}

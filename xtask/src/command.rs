@@ -1,0 +1,150 @@
+//! The command line.
+
+use crate::ci::Step;
+use anyhow::{anyhow, bail};
+use lexopt::{Arg, Parser};
+use std::ffi::OsString;
+
+/// What `cargo xtask` prints without a command.
+pub(crate) const HELP: &str = "\
+The chores of dapple.
+
+Usage: cargo xtask <command>
+
+  gallery [filter...]   render the figures, or those with a filter in their name, into target/gallery/
+      --size N            pixels along the longer side of a picture (512)
+      --out DIR           another folder
+      --open              open the page in the browser
+      --check             compare with crates/dapple-gallery/figures.lock instead
+      --bless             accept the figures as they are now into figures.lock
+      --list              print the names of the figures
+  bench [filter...]     measure beside the peers, and print a table
+      --json FILE         write the rows to a file, too
+      --check             fail when a row misses its bar
+  golden [--bless]      compare the golden images of tests/golden/, or rewrite them
+  tidy                  check the house rules: layers, lints, headers, lengths, figures.lock
+  ci [step...]          what CI runs, or some of its steps: test fmt clippy doc tidy features";
+
+/// What is to be done.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Command {
+    /// Render figures; the arguments are those of the binary `dapple-gallery`.
+    Gallery(Vec<OsString>),
+    /// Measure; the arguments are those of the binary `dapple-bench`.
+    Bench(Vec<OsString>),
+    /// Compare or rewrite the golden images.
+    Golden {
+        /// Rewrite them.
+        bless: bool,
+    },
+    /// Check the house rules.
+    Tidy,
+    /// Run steps of CI.
+    Ci(Vec<Step>),
+    /// Print the help.
+    Help,
+}
+
+/// The command that some arguments ask for.
+pub(crate) fn parse(mut parser: Parser) -> anyhow::Result<Command> {
+    let name = match parser.next()? {
+        None | Some(Arg::Long("help") | Arg::Short('h')) => return Ok(Command::Help),
+        Some(Arg::Value(name)) => name.to_string_lossy().into_owned(),
+        Some(other) => bail!("{}; see `cargo xtask help`", other.unexpected()),
+    };
+    match name.as_str() {
+        "gallery" => Ok(Command::Gallery(parser.raw_args()?.collect())),
+        "bench" => Ok(Command::Bench(parser.raw_args()?.collect())),
+        "golden" => golden(parser),
+        "tidy" => nothing_more(parser, Command::Tidy),
+        "ci" => ci(parser),
+        "help" => nothing_more(parser, Command::Help),
+        _ => bail!(
+            "there is no command `{name}`; there are gallery, bench, golden, tidy, ci and help"
+        ),
+    }
+}
+
+fn golden(mut parser: Parser) -> anyhow::Result<Command> {
+    let mut bless = false;
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Arg::Long("bless") => bless = true,
+            other => bail!(
+                "{}; `golden` takes `--bless` and nothing else",
+                other.unexpected()
+            ),
+        }
+    }
+    Ok(Command::Golden { bless })
+}
+
+fn ci(mut parser: Parser) -> anyhow::Result<Command> {
+    let mut steps = Vec::new();
+    while let Some(argument) = parser.next()? {
+        let Arg::Value(name) = argument else {
+            bail!("{}; `ci` takes the names of steps", argument.unexpected());
+        };
+        let name = name.to_string_lossy();
+        let step = Step::ALL.into_iter().find(|step| step.name() == name);
+        steps.push(
+            step.ok_or_else(|| anyhow!("CI has no step `{name}`; it has {}", Step::names()))?,
+        );
+    }
+    if steps.is_empty() {
+        steps = Step::ALL.to_vec();
+    }
+    Ok(Command::Ci(steps))
+}
+
+fn nothing_more(mut parser: Parser, command: Command) -> anyhow::Result<Command> {
+    match parser.next()? {
+        None => Ok(command),
+        Some(argument) => bail!("{}; this command takes no arguments", argument.unexpected()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Command, parse};
+    use crate::ci::Step;
+    use lexopt::Parser;
+
+    fn command(arguments: &[&str]) -> Result<Command, String> {
+        parse(Parser::from_args(arguments)).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn commands_are_understood() {
+        let filtered = ["gallery", "pups", "--size", "64"];
+        let rest = filtered[1..].iter().map(Into::into).collect();
+        assert_eq!(command(&filtered), Ok(Command::Gallery(rest)));
+        assert_eq!(
+            command(&["golden", "--bless"]),
+            Ok(Command::Golden { bless: true })
+        );
+        assert_eq!(command(&["golden"]), Ok(Command::Golden { bless: false }));
+        assert_eq!(
+            command(&["ci", "fmt", "tidy"]),
+            Ok(Command::Ci(vec![Step::Fmt, Step::Tidy]))
+        );
+        assert_eq!(command(&["ci"]), Ok(Command::Ci(Step::ALL.to_vec())));
+        for help in [&[][..], &["help"], &["--help"], &["-h"]] {
+            assert_eq!(command(help), Ok(Command::Help));
+        }
+    }
+
+    #[test]
+    fn unknown_words_are_answered_with_what_there_is() {
+        for (arguments, hint) in [
+            (&["galery"][..], "there are gallery, bench"),
+            (&["--chek"], "cargo xtask help"),
+            (&["golden", "--check"], "takes `--bless`"),
+            (&["tidy", "now"], "takes no arguments"),
+            (&["ci", "lint"], "clippy"),
+        ] {
+            let error = command(arguments).unwrap_err();
+            assert!(error.contains(hint), "{arguments:?} gives: {error}");
+        }
+    }
+}

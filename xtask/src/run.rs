@@ -1,0 +1,37 @@
+//! The commands that run our own crates.
+
+use std::ffi::OsString;
+use xshell::{Shell, cmd};
+
+/// Renders the figures.
+pub(crate) fn gallery(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()> {
+    let run = cmd!(
+        shell,
+        "cargo run --quiet --release --package dapple-gallery -- {arguments...}"
+    );
+    Ok(run.quiet().run()?)
+}
+
+/// Measures beside the peers.
+pub(crate) fn bench(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()> {
+    let run = cmd!(
+        shell,
+        "cargo run --release --package dapple-bench --features peers -- {arguments...}"
+    );
+    Ok(run.quiet().run()?)
+}
+
+/// Compares or rewrites the golden images, which a test of the crate `dapple-tests` draws.
+pub(crate) fn golden(shell: &Shell, bless: bool) -> anyhow::Result<()> {
+    let test = cmd!(
+        shell,
+        "cargo test --quiet --package dapple-tests --test it golden"
+    );
+    Ok(if bless {
+        test.env("DAPPLE_BLESS", "1")
+    } else {
+        test
+    }
+    .quiet()
+    .run()?)
+}
