@@ -1,6 +1,9 @@
 //! Positions as whole numbers, so that differences and images are exact.
+//!
+//! Unit: one step, a power of two of the caller's unit.
 
-use dapple_points::{Domain, PointSet};
+use crate::GraphError;
+use dapple_points::{Domain, PointIdx, PointSet};
 use glam::DVec2;
 
 /// The lattice of a domain: its larger side has between 2^49 and 2^50 steps.
@@ -10,7 +13,7 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lattice {
     origin: DVec2,
-    /// One step in the caller's unit, a power of two.
+    /// One step in the caller's unit.
     step: f64,
     /// Width and height in steps.
     pub(crate) size: DVec2,
@@ -20,12 +23,12 @@ pub(crate) struct Lattice {
 
 impl Lattice {
     pub(crate) fn new(domain: &Domain) -> Self {
-        let step = power_of_two_below(domain.size.max_element());
+        let step = step_of(domain.size.max_element());
         Self {
             origin: domain.origin,
             step,
             // A side that is tiny beside the other one still has a length.
-            size: (domain.size / step + 0.5).floor().max(DVec2::ONE),
+            size: round(domain.size / step).max(DVec2::ONE),
             wrap: domain.wrap,
         }
     }
@@ -35,8 +38,9 @@ impl Lattice {
         points.positions().iter().map(|&p| self.site(p)).collect()
     }
 
-    fn site(&self, position: DVec2) -> DVec2 {
-        let mut site = ((position - self.origin) / self.step + 0.5).floor();
+    /// Where a position lies in steps, in the domain along the wrapped axes.
+    pub(crate) fn site(&self, position: DVec2) -> DVec2 {
+        let mut site = round((position - self.origin) / self.step);
         for axis in 0..2 {
             if self.wrap[axis] && site[axis] >= self.size[axis] {
                 site[axis] -= self.size[axis];
@@ -51,6 +55,12 @@ impl Lattice {
         steps * self.step
     }
 
+    /// A vector of the caller's unit, in steps.
+    #[cfg(test)]
+    pub(crate) fn steps(&self, vector: DVec2) -> DVec2 {
+        vector / self.step
+    }
+
     /// The shortest way from one site to an image of the other; of two equally long ones the one without wrapping.
     pub(crate) fn delta(&self, from: DVec2, to: DVec2) -> DVec2 {
         let mut delta = to - from;
@@ -61,10 +71,46 @@ impl Lattice {
         }
         delta
     }
+
+    /// The first and the last image of the domain that an interval along an axis touches.
+    pub(crate) fn images(&self, axis: usize, low: f64, high: f64) -> (f64, f64) {
+        if self.wrap[axis] {
+            let size = self.size[axis];
+            ((low / size).floor(), (high / size).floor())
+        } else {
+            (0.0, 0.0)
+        }
+    }
+
+    /// Whether either axis wraps.
+    pub(crate) fn wraps(&self) -> bool {
+        self.wrap[0] || self.wrap[1]
+    }
 }
 
-/// The power of two that goes into `side` between 2^49 and 2^50 times.
-fn power_of_two_below(side: f64) -> f64 {
-    let power = f64::from_bits(side.to_bits() & f64::INFINITY.to_bits());
-    (power / (1_u64 << 49) as f64).max(f64::MIN_POSITIVE)
+/// Names the first two points that share a site, if any do.
+pub(crate) fn check_distinct(sites: &[DVec2]) -> Result<(), GraphError> {
+    let key = |&index: &u32| {
+        let site = sites[index as usize];
+        (site.x as i64, site.y as i64, index)
+    };
+    let mut order: Vec<u32> = (0..sites.len() as u32).collect();
+    order.sort_unstable_by_key(key);
+    let coincident = order
+        .windows(2)
+        .filter(|pair| sites[pair[0] as usize] == sites[pair[1] as usize])
+        .map(|pair| (PointIdx(pair[0]), PointIdx(pair[1])))
+        .min();
+    coincident.map_or(Ok(()), |(a, b)| Err(GraphError::coincident(a, b)))
+}
+
+/// The power of two that goes into `side` between 2^49 and 2^50 times, if it is not too small to be one.
+fn step_of(side: f64) -> f64 {
+    let exponent_only = f64::from_bits(side.to_bits() & f64::INFINITY.to_bits());
+    (exponent_only / (1_u64 << 49) as f64).max(f64::MIN_POSITIVE)
+}
+
+/// To the nearest whole number.
+fn round(v: DVec2) -> DVec2 {
+    (v + 0.5).floor()
 }

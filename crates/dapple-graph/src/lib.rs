@@ -14,6 +14,7 @@ mod angle;
 mod delaunay;
 mod error;
 mod graph;
+mod grid;
 mod lattice;
 
 pub use dapple_points as points;

@@ -1,0 +1,234 @@
+//! Which images of the points a patch needs.
+
+use super::patch::Image;
+use super::star::Star;
+use crate::grid::LazyGrid;
+use crate::lattice::Lattice;
+use glam::DVec2;
+use robust::{Coord, incircle};
+use std::collections::BTreeSet;
+
+/// The rectangle whose images are all in a patch; without bounds along the axes that do not wrap.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cover {
+    low: DVec2,
+    high: DVec2,
+}
+
+impl Cover {
+    /// The rectangle from `low` to `high` and a margin around it.
+    pub(super) fn new(lattice: &Lattice, low: DVec2, high: DVec2, margin: f64) -> Self {
+        let margin = lattice
+            .wrap
+            .map(|wraps| if wraps { margin } else { f64::INFINITY });
+        let margin = DVec2::from(margin);
+        Self {
+            low: low - margin,
+            high: high + margin,
+        }
+    }
+
+    /// How far a place in the rectangle is from its border.
+    #[inline]
+    pub(super) fn depth(&self, at: DVec2) -> f64 {
+        (at - self.low).min(self.high - at).min_element()
+    }
+
+    /// All images of all points in the rectangle; those in the domain itself have a row.
+    pub(super) fn images(&self, lattice: &Lattice, sites: &[DVec2]) -> Vec<Image> {
+        let size = lattice.size;
+        let mut images = Vec::with_capacity(sites.len() + sites.len() / 2);
+        for (point, &site) in (0..).zip(sites) {
+            images.push(Image::new(site, point, point));
+            let [xs, ys] = [0, 1].map(|axis| {
+                let (mut first, mut last) = (0_i32, 0_i32);
+                while site[axis] + f64::from(first - 1) * size[axis] >= self.low[axis]
+                    && lattice.wrap[axis]
+                {
+                    first -= 1;
+                }
+                while site[axis] + f64::from(last + 1) * size[axis] <= self.high[axis]
+                    && lattice.wrap[axis]
+                {
+                    last += 1;
+                }
+                first..=last
+            });
+            for y in ys {
+                for x in xs.clone() {
+                    if (x, y) != (0, 0) {
+                        let image = DVec2::new(f64::from(x), f64::from(y));
+                        images.push(Image::new(site + image * size, point, Image::FOREIGN));
+                    }
+                }
+            }
+        }
+        images
+    }
+}
+
+/// Searches the images that a patch lacks.
+pub(super) struct Missing<'g, 'a> {
+    lattice: &'a Lattice,
+    cover: Cover,
+    grid: &'g LazyGrid<'a>,
+    /// Farther than this from a point no circumcircle of its true triangles reaches (inside of the domain's strip).
+    reach: DVec2,
+    /// Where images were found before.
+    known: BTreeSet<(i64, i64)>,
+    /// The images to insert next.
+    pub(super) found: Vec<Image>,
+    scaffolded: bool,
+}
+
+impl<'g, 'a> Missing<'g, 'a> {
+    pub(super) fn new(lattice: &'a Lattice, cover: Cover, grid: &'g LazyGrid<'a>) -> Self {
+        let size = lattice.size;
+        Self {
+            lattice,
+            cover,
+            grid,
+            // On a torus an empty disc has at most the domain's diagonal for a diameter. On a cylinder it may be larger,
+            // but both borders of the strip hold a point in each period; width and height change places for the
+            // two kinds of cylinder.
+            reach: 1.01 * (2.0 * size.element_sum() - size),
+            known: BTreeSet::new(),
+            found: Vec::new(),
+            scaffolded: false,
+        }
+    }
+
+    /// Adds for each circumcircle of the star at `center` that holds a missing image the one that is nearest to its
+    /// center.
+    pub(super) fn search(&mut self, center: DVec2, star: &Star) {
+        if star.len() < 2 {
+            return self.scaffold();
+        }
+        for (a, b, gap) in star.wedges() {
+            if gap {
+                for vector in [a, b] {
+                    self.search_border(center, vector);
+                }
+            } else {
+                self.search_circle(center, a, b);
+            }
+        }
+    }
+
+    /// Adds the nearest missing image on an edge beside a gap, or the scaffold if there should be no gap.
+    fn search_border(&mut self, p: DVec2, vector: DVec2) {
+        // On a cylinder, only the borders of the strip that it becomes when it is unrolled have a gap beside them.
+        let is_border = match self.lattice.wrap {
+            [true, false] => vector.y == 0.0,
+            [false, true] => vector.x == 0.0,
+            _ => false,
+        };
+        if !is_border {
+            return self.scaffold();
+        }
+        let (low, high) = (p.min(p + vector), p.max(p + vector));
+        let mut nearest: Option<(f64, u32, DVec2)> = None;
+        self.grid.get().visit_box(low, high, |point, at| {
+            let between = at.cmpge(low).all() && at.cmple(high).all() && at != p;
+            let distance = (at - p).abs().element_sum();
+            if between && nearest.is_none_or(|(best, ..)| distance < best) {
+                nearest = Some((distance, point, at));
+            }
+        });
+        if let Some((_, point, at)) = nearest {
+            self.add(point, at);
+        }
+    }
+
+    /// Adds images around the domain that close all stars in it.
+    fn scaffold(&mut self) {
+        if core::mem::replace(&mut self.scaffolded, true) {
+            return;
+        }
+        let sites = self.grid.sites();
+        let size = self.lattice.size;
+        let across = usize::from(self.lattice.wrap[0]);
+        let along = |&a: &u32, &b: &u32| {
+            let [a, b] = [a, b].map(|point| sites[point as usize][across]);
+            a.total_cmp(&b)
+        };
+        let points = || 0..sites.len() as u32;
+        let ends = if self.lattice.wrap == [true, true] {
+            [Some(0), None]
+        } else {
+            [points().min_by(along), points().max_by(along)]
+        };
+        let images = |axis: usize| {
+            if self.lattice.wrap[axis] {
+                -2..=2
+            } else {
+                0..=0
+            }
+        };
+        for point in ends.into_iter().flatten() {
+            for y in images(1) {
+                for x in images(0) {
+                    let image = DVec2::new(f64::from(x), f64::from(y));
+                    self.add(point, sites[point as usize] + image * size);
+                }
+            }
+        }
+    }
+
+    fn search_circle(&mut self, p: DVec2, a: DVec2, b: DVec2) {
+        let circle = Circle::new(a, b);
+        let depth = self.cover;
+        let low = p + (circle.center - circle.radius);
+        let high = p + (circle.center + circle.radius);
+        if low.cmpgt(depth.low).all() && high.cmplt(depth.high).all() {
+            return;
+        }
+        // Comparisons with a center that is not a number are false, so that the whole reach is searched then.
+        let low = (p - self.reach).max(low);
+        let high = (p + self.reach).min(high);
+        let mut nearest: Option<(f64, u32, DVec2)> = None;
+        let coord = |at: DVec2| Coord { x: at.x, y: at.y };
+        self.grid.get().visit_box(low, high, |point, at| {
+            if self.cover.depth(at) >= 0.0 || self.known.contains(&key(at)) {
+                return;
+            }
+            let distance_sq = (at - p - circle.center).length_squared();
+            let nearer = nearest.is_none_or(|(best, ..)| distance_sq < best);
+            if nearer && incircle(coord(p), coord(p + a), coord(p + b), coord(at)) >= 0.0 {
+                nearest = Some((distance_sq, point, at));
+            }
+        });
+        if let Some((_, point, at)) = nearest {
+            self.add(point, at);
+        }
+    }
+
+    fn add(&mut self, point: u32, at: DVec2) {
+        if self.cover.depth(at) < 0.0 && self.known.insert(key(at)) {
+            self.found.push(Image::new(at, point, Image::FOREIGN));
+        }
+    }
+}
+
+/// A site as whole numbers, which have an order.
+fn key(at: DVec2) -> (i64, i64) {
+    (at.x as i64, at.y as i64)
+}
+
+/// The circle through the origin and two other places, a little enlarged for rounding.
+struct Circle {
+    center: DVec2,
+    radius: f64,
+}
+
+impl Circle {
+    fn new(a: DVec2, b: DVec2) -> Self {
+        let cross = 2.0 * a.perp_dot(b);
+        let (a_sq, b_sq) = (a.length_squared(), b.length_squared());
+        let center = DVec2::new(b.y * a_sq - a.y * b_sq, a.x * b_sq - b.x * a_sq) / cross;
+        Self {
+            center,
+            radius: center.length() * (1.0 + 1e-9),
+        }
+    }
+}

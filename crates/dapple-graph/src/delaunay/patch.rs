@@ -1,0 +1,164 @@
+//! A triangulated part of the periodic plane, and the rows of the graph for the points that it is made for.
+
+use super::images::{Cover, Missing};
+use super::star::Star;
+use crate::Axis;
+use crate::grid::LazyGrid;
+use crate::lattice::Lattice;
+use glam::DVec2;
+use spade::handles::{FixedVertexHandle, VertexHandle};
+use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
+
+/// An image of a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Image {
+    pub(super) position: Point2<f64>,
+    /// The number of the point.
+    pub(super) point: u32,
+    /// Which row of the patch is its, or [`Image::FOREIGN`].
+    pub(super) row: u32,
+}
+
+impl Image {
+    /// The row of an image whose axes nobody asks for.
+    pub(super) const FOREIGN: u32 = u32::MAX;
+
+    pub(super) fn new(at: DVec2, point: u32, row: u32) -> Self {
+        Self {
+            position: Point2::new(at.x, at.y),
+            point,
+            row,
+        }
+    }
+}
+
+impl HasPosition for Image {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        self.position
+    }
+}
+
+/// A vertex of a patch.
+pub(super) type Vertex<'a> = VertexHandle<'a, Image>;
+
+/// Compressed rows.
+#[derive(Debug)]
+pub(super) struct Rows {
+    pub(super) offsets: Vec<u32>,
+    pub(super) axes: Vec<Axis>,
+}
+
+/// The triangulation of all images in a rectangle, and of some outside of it.
+pub(super) struct Patch<'a> {
+    lattice: &'a Lattice,
+    cover: Cover,
+    triangulation: DelaunayTriangulation<Image>,
+    /// The vertex of each row.
+    vertices: Vec<FixedVertexHandle>,
+}
+
+impl<'a> Patch<'a> {
+    /// Triangulates the images, of which `n_rows` have a row; all images in `cover` must be there.
+    ///
+    /// `None` if two of them coincide.
+    pub(super) fn new(
+        lattice: &'a Lattice,
+        cover: Cover,
+        images: Vec<Image>,
+        n_rows: usize,
+    ) -> Option<Self> {
+        let n_images = images.len();
+        let triangulation = DelaunayTriangulation::<Image>::bulk_load(images).ok()?;
+        if triangulation.num_vertices() < n_images {
+            return None;
+        }
+        let mut vertices = vec![FixedVertexHandle::from_index(0); n_rows];
+        for vertex in triangulation.vertices() {
+            let row = vertex.data().row;
+            if row != Image::FOREIGN {
+                vertices[row as usize] = vertex.fix();
+            }
+        }
+        Some(Self {
+            lattice,
+            cover,
+            triangulation,
+            vertices,
+        })
+    }
+
+    /// The axes of all points that have a row, after inserting the images that are missing for them.
+    pub(super) fn rows(&mut self, grid: &LazyGrid<'a>) -> Rows {
+        let mut star = Star::default();
+        let mut rows = Rows {
+            offsets: Vec::with_capacity(self.vertices.len() + 1),
+            // In a triangulation the mean number of neighbors is below six.
+            axes: Vec::with_capacity(6 * self.vertices.len() + 6),
+        };
+        rows.offsets.push(0);
+        let mut doubtful = Vec::new();
+        for (row, &vertex) in (0..).zip(&self.vertices) {
+            let vertex = self.triangulation.vertex(vertex);
+            star.read(vertex);
+            let position = vertex.position();
+            let findings = star.look(self.cover.depth(DVec2::new(position.x, position.y)));
+            if self.lattice.wraps() && (findings.far || !star.is_closed()) {
+                doubtful.push(row);
+            }
+            star.push_axes(self.lattice, findings.co_circular, &mut rows.axes);
+            rows.offsets.push(rows.axes.len() as u32);
+        }
+        if self.complete(&doubtful, grid) {
+            rows = self.replaced(&rows, &doubtful);
+        }
+        rows
+    }
+
+    /// Inserts images until the stars of the given rows are true. Whether there were any to insert.
+    fn complete(&mut self, doubtful: &[u32], grid: &LazyGrid<'a>) -> bool {
+        let mut star = Star::default();
+        let mut missing = Missing::new(self.lattice, self.cover, grid);
+        let mut changed = false;
+        loop {
+            for &row in doubtful {
+                let vertex = self.triangulation.vertex(self.vertices[row as usize]);
+                star.read(vertex);
+                let position = vertex.position();
+                missing.search(DVec2::new(position.x, position.y), &star);
+            }
+            if missing.found.is_empty() {
+                return changed;
+            }
+            changed = true;
+            for image in missing.found.drain(..) {
+                // Sites are finite whole numbers, which are always accepted.
+                let _ = self.triangulation.insert(image);
+            }
+        }
+    }
+
+    /// The rows with the given ones read again.
+    fn replaced(&self, rows: &Rows, again: &[u32]) -> Rows {
+        let mut star = Star::default();
+        let mut result = Rows {
+            offsets: vec![0],
+            axes: Vec::with_capacity(rows.axes.len()),
+        };
+        let mut again = again.iter().copied().peekable();
+        for (row, &vertex) in (0..).zip(&self.vertices) {
+            if again.next_if_eq(&row).is_some() {
+                star.read(self.triangulation.vertex(vertex));
+                star.push_axes(self.lattice, true, &mut result.axes);
+            } else {
+                let [start, end] = [row as usize, row as usize + 1].map(|at| rows.offsets[at]);
+                result
+                    .axes
+                    .extend_from_slice(&rows.axes[start as usize..end as usize]);
+            }
+            result.offsets.push(result.axes.len() as u32);
+        }
+        result
+    }
+}
