@@ -42,6 +42,29 @@ pub enum PointsErrorKind {
         /// The number.
         value: f64,
     },
+    /// A radius that varies in space is not above zero and finite somewhere.
+    Radius {
+        /// Where.
+        position: DVec2,
+        /// The radius there.
+        radius: f64,
+    },
+    /// A radius that varies in space does so by as much as the distance, or by more.
+    TooSteep {
+        /// Where.
+        position: DVec2,
+        /// By how much it changes per distance.
+        slope: f64,
+    },
+    /// A wrapped axis is shorter than two radii, so that a point would meet its own copy.
+    PeriodTooShort {
+        /// The axis, 0 or 1.
+        axis: u32,
+        /// Its length.
+        period: f64,
+        /// The radius, the largest one if it varies.
+        radius: f64,
+    },
     /// There is no set, or a set without points, where points are needed.
     NoPoints,
     /// Sets that must share one domain do not.
@@ -94,6 +117,28 @@ impl fmt::Display for PointsError {
             }
             PointsErrorKind::NotPositive { what, value } => {
                 write!(f, "{what} is {value}, but it must be above 0 and finite")
+            }
+            PointsErrorKind::Radius { position, radius } => {
+                write!(
+                    f,
+                    "the radius at {position} is {radius}, but it must be above 0 and finite"
+                )
+            }
+            PointsErrorKind::TooSteep { position, slope } => {
+                write!(
+                    f,
+                    "the radius changes by {slope} per distance near {position}, but it must change by less than 1"
+                )
+            }
+            PointsErrorKind::PeriodTooShort {
+                axis,
+                period,
+                radius,
+            } => {
+                write!(
+                    f,
+                    "axis {axis} wraps around after {period}, but it must reach over two radii of {radius}"
+                )
             }
             PointsErrorKind::NoPoints => {
                 f.write_str("there is no point, but at least one is needed")
