@@ -1,1 +1,7 @@
-//! Workspace-wide tests; they live in the test binary `it`.
+//! Workspace-wide tests. They live in the test binary `it`; the code of the README is a test of this library.
+
+#![forbid(unsafe_code)]
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

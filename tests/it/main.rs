@@ -1,1 +1,12 @@
 //! Workspace-wide tests, one binary.
+
+mod chain;
+mod figures;
+mod golden;
+mod readme;
+
+/// The result of `work` in a pool of `n` threads.
+fn with_threads<T: Send>(n: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
+    pool.expect("a thread pool").install(work)
+}

@@ -8,6 +8,7 @@ use crate::{progress, root};
 use anyhow::{Context, ensure};
 use dapple_gallery::page::{self, Entry, Image};
 use dapple_gallery::{Figure, Panel, Picture};
+use dapple_image::{Depth, write_color_png, write_gray_png};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -59,13 +60,11 @@ fn export_figure(figure: &'static Figure, size: u32, out: &Path) -> anyhow::Resu
 }
 
 fn write_png(path: &Path, panel: &Panel) -> anyhow::Result<()> {
-    let [width, height] = panel.size();
-    let color = match panel.picture {
-        Picture::Gray(_) => image::ExtendedColorType::L8,
-        Picture::Color(_) => image::ExtendedColorType::Rgb8,
-    };
-    image::save_buffer(path, &panel.bytes(), width, height, color)
-        .with_context(|| format!("cannot write {}", path.display()))
+    match &panel.picture {
+        Picture::Gray(raster) => write_gray_png(path, raster, Depth::Eight),
+        Picture::Color(raster) => write_color_png(path, raster, Depth::Eight),
+    }
+    .with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// The way from the folder `out` to the root of the workspace, as a link has it: `../../`.
