@@ -60,3 +60,78 @@ fn temporary_beside(path: &Path) -> PathBuf {
     name.push(format!(".{}-{count}.tmp", std::process::id()));
     path.with_file_name(name)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{read, replace};
+    use crate::ImageErrorKind;
+    use std::error::Error;
+    use std::fs;
+    use std::path::PathBuf;
+
+    /// An empty folder of its own for a test.
+    fn folder(name: &str) -> PathBuf {
+        let folder =
+            std::env::temp_dir().join(format!("dapple-image-{}-{name}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        folder
+    }
+
+    #[test]
+    fn a_file_is_replaced_and_nothing_is_left_beside_it() {
+        let folder = folder("replace");
+        let path = folder.join("a.png");
+        for content in [b"first".as_slice(), b"second, longer", b"3"] {
+            replace(&path, content).unwrap();
+            assert_eq!(read(&path, 100).unwrap(), content, "the content");
+        }
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "one file");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_failed_write_leaves_what_was_there() {
+        let folder = folder("failed");
+        let taken = folder.join("taken");
+        fs::create_dir_all(taken.join("inside")).unwrap();
+        for path in [taken.clone(), folder.join("missing").join("a.png")] {
+            let error = replace(&path, b"content").unwrap_err();
+            assert_eq!(error.kind(), &ImageErrorKind::Io, "{error}");
+            assert_eq!(error.path(), Some(path.as_path()), "{error}");
+            assert!(error.source().is_some(), "{error}");
+        }
+        assert!(taken.join("inside").is_dir(), "the folder is untouched");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "nothing else");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_file_past_the_limit_is_refused() {
+        let folder = folder("limit");
+        let path = folder.join("ten");
+        replace(&path, b"0123456789").unwrap();
+        assert_eq!(read(&path, 10).unwrap().len(), 10, "exactly the limit");
+        let error = read(&path, 9).unwrap_err();
+        let expected = ImageErrorKind::TooManyBytes {
+            bytes: 10,
+            limit: 9,
+        };
+        assert_eq!(error.kind(), &expected, "one more");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_missing_file_is_an_error_with_a_source() {
+        let error = read(&folder("missing").join("none"), 10).unwrap_err();
+        assert_eq!(error.kind(), &ImageErrorKind::Io, "{error}");
+        let source = error
+            .source()
+            .and_then(|source| source.downcast_ref::<std::io::Error>());
+        assert_eq!(
+            source.map(std::io::Error::kind),
+            Some(std::io::ErrorKind::NotFound),
+            "{error}"
+        );
+    }
+}

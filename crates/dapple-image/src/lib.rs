@@ -8,11 +8,15 @@
 #![forbid(unsafe_code)]
 
 mod error;
+mod exr;
 mod file;
+mod image;
 mod limits;
 mod png;
 mod shortcut;
 
+pub use self::exr::{ExrImage, ExrPlane, decode_exr, encode_exr, write_exr};
+pub use self::image::{Image, decode_image, read_image};
 pub use self::png::{PngImage, PngPixel, PngPixels, Transfer, decode_png, encode_png, write_png};
 pub use error::{ImageError, ImageErrorKind};
 pub use limits::Limits;

@@ -6,6 +6,7 @@
 mod decode;
 mod encode;
 mod pixel;
+mod values;
 
 pub use decode::{PngImage, PngPixels, decode_png};
 pub use encode::{encode_png, write_png};
@@ -25,3 +26,6 @@ pub enum Transfer {
     /// Colors under the sRGB curve. The file says so.
     Srgb,
 }
+
+#[cfg(test)]
+mod tests;

@@ -57,6 +57,7 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
     });
     decoder.set_transformations(png::Transformations::EXPAND);
     let refuse = |error| refusal(error, limits);
+    check_not_empty(bytes)?;
     let header = decoder.read_header_info().map_err(refuse)?;
     let size = [header.width, header.height];
     limits.check_pixels(size.map(u64::from))?;
@@ -65,9 +66,32 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
     limits.check_bytes(length as u64)?;
     let mut samples = vec![0; length];
     reader.next_frame(&mut samples).map_err(refuse)?;
+    // Without the end of the file something after the pixels may be lost, so it counts as damaged, too.
+    reader.finish().map_err(refuse)?;
     let transfer = transfer_of(reader.info());
     let pixels = PngPixels::from_samples(size, reader.output_color_type(), &samples)?;
     Ok(PngImage { pixels, transfer })
+}
+
+/// Refuses a size without pixels, which the codec does not tell from other damage.
+fn check_not_empty(bytes: &[u8]) -> Result<(), ImageError> {
+    // After the signature comes the length of the first chunk, its name, and columns and rows of four bytes each.
+    let Some(header) = bytes
+        .get(12..24)
+        .and_then(|header| header.strip_prefix(b"IHDR"))
+    else {
+        return Ok(());
+    };
+    let number = |digits: &[u8]| {
+        digits
+            .iter()
+            .fold(0, |number, &digit| number << 8 | u64::from(digit))
+    };
+    let size = [number(&header[..4]), number(&header[4..])];
+    if size.contains(&0) {
+        return Err(ImageError::new(ImageErrorKind::Empty { size }));
+    }
+    Ok(())
 }
 
 /// Checks everything that the format lets check, and skips what is never used.
