@@ -8,15 +8,29 @@
 
 #![forbid(unsafe_code)]
 
+mod disk;
 mod domain;
 mod error;
+mod nested;
 mod set;
 mod statistics;
+mod uniform;
+mod variable;
 
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
+pub use disk::{
+    MAX_POISSON_DISK_POINTS, PoissonDisk, extend_poisson_disk, poisson_disk, poisson_disk_about,
+    poisson_disk_radius,
+};
 pub use domain::Domain;
 pub use error::{PointsError, PointsErrorKind};
 pub use glam;
+pub use nested::{NestedPointSet, nested_poisson_disk};
 pub use set::{PointIdx, PointSet};
 pub use statistics::{EmptyCircle, Spectrum, SpectrumOptions, SpectrumRing, spectrum};
+pub use uniform::{jittered_grid, white_noise};
+pub use variable::{
+    DiskRule, RSA_DENSITY, VariablePoissonOptions, radius_for_count, radius_from_density,
+    variable_poisson_disk,
+};

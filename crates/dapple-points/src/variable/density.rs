@@ -1,0 +1,79 @@
+//! Radii for a wanted density, or for a wanted number of points.
+
+use crate::{Domain, PointsError, PointsErrorKind};
+use dapple_raster::Varying;
+use glam::DVec2;
+
+/// N r² / area of points that were placed one after another at random (random sequential adsorption, RSA), at least r
+/// apart, until no further one fitted: a packing fraction of 0.547 for discs of diameter r.
+pub const RSA_DENSITY: f64 = 0.697;
+
+/// Places per axis at which a density is read to find its mean.
+const PLACES: u32 = 256;
+
+/// The radius at which a Poisson disk set has the given density, in points per area: sqrt(0.697 / density).
+///
+/// # Examples
+///
+/// ```
+/// use dapple_points::{glam::DVec2, radius_from_density};
+///
+/// let radius = radius_from_density(&0.697.into());
+/// assert_eq!(radius.at(DVec2::ZERO), 1.0);
+/// ```
+#[must_use]
+pub fn radius_from_density(density: &Varying) -> Varying {
+    scaled_radius(density, RSA_DENSITY)
+}
+
+/// The radius at which about `n_points` points follow a density that is given up to a factor.
+///
+/// The density is read at 256 × 256 places. Along sides that do not wrap there is room for some more points; expect
+/// more by about 0.4 for each radius of such a side.
+///
+/// # Errors
+///
+/// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::NotPositive`] if `n_points` or the mean of
+/// the density is not above zero and finite.
+pub fn radius_for_count(
+    domain: Domain,
+    density: &Varying,
+    n_points: f64,
+) -> Result<Varying, PointsError> {
+    let domain = domain.checked()?;
+    let step = domain.size / f64::from(PLACES);
+    let mut sum = 0.0;
+    for y in 0..PLACES {
+        for x in 0..PLACES {
+            let place = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            sum += density.at(domain.origin + step * place);
+        }
+    }
+    let mean = sum / f64::from(PLACES * PLACES);
+    for (what, value) in [
+        ("the number of points", n_points),
+        ("the mean density", mean),
+    ] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(PointsError::new(PointsErrorKind::NotPositive {
+                what,
+                value,
+            }));
+        }
+    }
+    Ok(scaled_radius(
+        density,
+        RSA_DENSITY * mean * domain.area() / n_points,
+    ))
+}
+
+/// sqrt(scale / density).
+fn scaled_radius(density: &Varying, scale: f64) -> Varying {
+    match density {
+        Varying::Constant(density) => Varying::Constant((scale / density).sqrt()),
+        density => {
+            let density = density.clone();
+            Varying::function(move |position| (scale / density.at(position)).sqrt())
+        }
+    }
+}

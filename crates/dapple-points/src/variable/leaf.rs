@@ -1,0 +1,274 @@
+//! Cutting the domain into rectangles in which the radius hardly changes.
+//!
+//! A rectangle is halved along its longer side until a few hundred points fit and the radius varies by less than
+//! half. What the radius does in it is read on a lattice of 8 × 8 places. From the differences of neighboring places
+//! comes the slope; between the places the radius is taken to fall by no more than 1.5 times this slope allows, and,
+//! where an exact result depends on it, to rise with any slope below 1.
+
+use super::density::RSA_DENSITY;
+use super::rule::DiskRule;
+use crate::{Domain, PointsError, PointsErrorKind};
+use core::f64::consts::SQRT_2;
+use dapple_raster::Varying;
+use glam::DVec2;
+
+/// Places per side of the lattice on which the radius is read.
+const LATTICE: usize = 8;
+
+/// A leaf has at most as many cells along a side.
+const MOST_CELLS: f64 = 24.0;
+
+/// A leaf of no more cells along its sides is left as it is, however much the radius varies in it.
+const FEW_CELLS: f64 = 4.0;
+
+/// The ratio of the largest to the smallest radius that a leaf of more cells may have.
+const MOST_RATIO: f64 = 1.5;
+
+/// By how much a slope between lattice places may exceed the slopes along them.
+const SLOPE_MARGIN: f64 = 1.5;
+
+/// What rounding may add to the diagonal of a cell, with much to spare.
+const ROUNDING: f64 = 1e-9;
+
+/// A rectangle with its radii, relative to the origin of the domain.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Leaf {
+    pub(super) min: DVec2,
+    pub(super) size: DVec2,
+    pub(super) radii: Radii,
+    /// Columns and rows of cells whose diagonal is at most the smallest radius.
+    pub(super) cells: [u32; 2],
+}
+
+/// What is known about the radius in a rectangle.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Radii {
+    /// The radius is at least this, as far as the slope between the places read is no larger than along them.
+    pub(super) least: f64,
+    /// The largest radius that was read.
+    pub(super) largest: f64,
+    /// The radius is at most this, if its slope is below 1.
+    pub(super) most: f64,
+    /// The change of the radius per distance, with a margin.
+    pub(super) slope: f64,
+    /// The farthest that a place is from where the radius was read.
+    pub(super) spread: f64,
+}
+
+/// The tree of rectangles; parents come before their children.
+#[derive(Debug, Default)]
+pub(super) struct Tree {
+    nodes: Vec<Node>,
+    pub(super) leaves: Vec<Leaf>,
+}
+
+#[derive(Debug)]
+struct Node {
+    min: DVec2,
+    size: DVec2,
+    /// The largest `most` of the leaves below.
+    most: f64,
+    below: Below,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Below {
+    Leaf(u32),
+    Nodes([u32; 2]),
+}
+
+/// The radius as it varies over a domain.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RadiusField<'a> {
+    pub(super) domain: &'a Domain,
+    pub(super) radius: &'a Varying,
+}
+
+impl RadiusField<'_> {
+    /// The radius at a position of the domain.
+    pub(super) fn at(&self, position: DVec2) -> Result<f64, PointsError> {
+        let radius = self.radius.at(position);
+        if radius > 0.0 && radius.is_finite() {
+            Ok(radius)
+        } else {
+            Err(PointsError::new(PointsErrorKind::Radius {
+                position,
+                radius,
+            }))
+        }
+    }
+
+    /// What the radius does in a rectangle, and about how many points that makes.
+    fn survey(&self, min: DVec2, size: DVec2) -> Result<(Radii, f64), PointsError> {
+        if let Varying::Constant(_) = self.radius {
+            let radius = self.at(self.domain.origin + min)?;
+            let radii = Radii {
+                least: radius,
+                largest: radius,
+                most: radius,
+                slope: 0.0,
+                spread: 0.0,
+            };
+            return Ok((radii, RSA_DENSITY * (size.x / radius) * (size.y / radius)));
+        }
+        let step = size / LATTICE as f64;
+        let mut values = [[0.0; LATTICE]; LATTICE];
+        let (mut least, mut largest, mut n_points) = (f64::INFINITY, 0.0_f64, 0.0);
+        for (y, row) in values.iter_mut().enumerate() {
+            for (x, value) in row.iter_mut().enumerate() {
+                *value = self.at(self.place(min, step, x, y))?;
+                least = least.min(*value);
+                largest = largest.max(*value);
+                n_points += (step.x / *value) * (step.y / *value);
+            }
+        }
+        let slope = SLOPE_MARGIN * self.slope(&values, min, step)?;
+        let spread = 0.5 * step.length_squared().sqrt();
+        let radii = Radii {
+            least: least - slope * spread,
+            largest,
+            most: largest + spread,
+            slope,
+            spread,
+        };
+        Ok((radii, RSA_DENSITY * n_points))
+    }
+
+    /// The largest slope along the lattice.
+    fn slope(
+        &self,
+        values: &[[f64; LATTICE]; LATTICE],
+        min: DVec2,
+        step: DVec2,
+    ) -> Result<f64, PointsError> {
+        let mut steepest = 0.0_f64;
+        for y in 0..LATTICE - 1 {
+            for x in 0..LATTICE - 1 {
+                let here = values[y][x];
+                let rise = DVec2::new(values[y][x + 1] - here, values[y + 1][x] - here) / step;
+                let slope = rise.length_squared().sqrt();
+                if slope >= 1.0 {
+                    return Err(PointsError::new(PointsErrorKind::TooSteep {
+                        position: self.place(min, step, x, y),
+                        slope,
+                    }));
+                }
+                steepest = steepest.max(slope);
+            }
+        }
+        Ok(steepest)
+    }
+
+    /// A place of the lattice.
+    fn place(&self, min: DVec2, step: DVec2, x: usize, y: usize) -> DVec2 {
+        self.domain.origin + (min + step * DVec2::new(x as f64 + 0.5, y as f64 + 0.5))
+    }
+}
+
+impl Tree {
+    /// Cuts up the whole domain.
+    pub(super) fn new(field: RadiusField<'_>, point_limit: u64) -> Result<Self, PointsError> {
+        let mut tree = Self::default();
+        let (mut n_points, mut first_guess) = (0.0, 0.0_f64);
+        let mut open = vec![(DVec2::ZERO, field.domain.size, None)];
+        while let Some((min, size, parent)) = open.pop() {
+            let node = tree.nodes.len() as u32;
+            if let Some((parent, child)) = parent {
+                tree.set_child(parent, child, node);
+            }
+            let (radii, n_in) = field.survey(min, size)?;
+            if node == 0 {
+                first_guess = n_in;
+            }
+            let below = match cells_of(size, &radii) {
+                Some(cells) => {
+                    n_points += n_in;
+                    tree.leaves.push(Leaf {
+                        min,
+                        size,
+                        radii,
+                        cells,
+                    });
+                    Below::Leaf(tree.leaves.len() as u32 - 1)
+                }
+                None => {
+                    let [first, second] = halves(min, size);
+                    open.push((second.0, second.1, Some((node, 1))));
+                    open.push((first.0, first.1, Some((node, 0))));
+                    Below::Nodes([0; 2])
+                }
+            };
+            // Checked as it grows, so that nothing large is ever made for a set that is not.
+            if n_points > point_limit as f64 {
+                return Err(PointsError::new(PointsErrorKind::TooMany {
+                    needed: n_points.max(first_guess),
+                    limit: point_limit,
+                }));
+            }
+            tree.nodes.push(Node {
+                min,
+                size,
+                most: radii.most,
+                below,
+            });
+        }
+        tree.sum_up();
+        Ok(tree)
+    }
+
+    fn set_child(&mut self, parent: u32, child: usize, node: u32) {
+        if let Below::Nodes(children) = &mut self.nodes[parent as usize].below {
+            children[child] = node;
+        }
+    }
+
+    /// Gives each node the largest radius below it.
+    fn sum_up(&mut self) {
+        for node in (0..self.nodes.len()).rev() {
+            if let Below::Nodes(children) = self.nodes[node].below {
+                let [a, b] = children.map(|child| self.nodes[child as usize].most);
+                self.nodes[node].most = a.max(b);
+            }
+        }
+    }
+
+    /// Calls `visit` with every leaf that, moved by `shift`, comes close enough to `leaf` for a conflict.
+    pub(super) fn visit_near(
+        &self,
+        leaf: &Leaf,
+        shift: DVec2,
+        rule: DiskRule,
+        mut visit: impl FnMut(u32),
+    ) {
+        let mut open = vec![0_u32];
+        while let Some(node) = open.pop() {
+            let node = &self.nodes[node as usize];
+            let min = node.min + shift;
+            let gap = (min - (leaf.min + leaf.size)).max(leaf.min - (min + node.size));
+            let reach = rule.distance(leaf.radii.most, node.most);
+            if gap.max(DVec2::ZERO).length_squared() > reach * reach {
+                continue;
+            }
+            match node.below {
+                Below::Leaf(index) => visit(index),
+                Below::Nodes([first, second]) => open.extend([second, first]),
+            }
+        }
+    }
+}
+
+/// The columns and rows of cells of a leaf of this size, if it may be one.
+fn cells_of(size: DVec2, radii: &Radii) -> Option<[u32; 2]> {
+    let cells = (size * (SQRT_2 * (1.0 + ROUNDING)) / radii.least).ceil();
+    let is_leaf = radii.least > 0.0
+        && cells.max_element() <= MOST_CELLS
+        && (cells.max_element() <= FEW_CELLS || radii.largest <= MOST_RATIO * radii.least);
+    is_leaf.then(|| cells.to_array().map(|count| (count as u32).max(1)))
+}
+
+/// The two halves of a rectangle, cut across its longer side.
+fn halves(min: DVec2, size: DVec2) -> [(DVec2, DVec2); 2] {
+    let along = if size.x >= size.y { DVec2::X } else { DVec2::Y };
+    let half = size * (DVec2::ONE - 0.5 * along);
+    [(min, half), (min + half * along, half)]
+}
