@@ -1,27 +1,25 @@
-//! The weight of one control point over a tile of pixels.
+//! The weights of one control point over a band of pixels.
 //!
-//! A tile is [`TILE`] columns by [`ROWS`] rows. For the cubic, the product of axial weights `u² (3 − 2u)` is kept as two
-//! products, `q = Π u` and `t = Π (u − 3/2)`, so that an axis costs five operations: `W = q² · t · (−2)^k`, where the
-//! power of two is exact. An axis whose `u` is 1 over the whole tile is left out, which changes no bit; a control point
-//! with an axis whose `u` is 0 over the whole tile has no weight there. Both are decided with the very numbers that the
-//! pixels would get, since rounding is monotonic.
+//! A band is [`ROWS`] rows high. The columns that a support can touch in it are taken [`TILE`] at a time, from its left
+//! edge on. For the cubic, the product of axial weights `u² (3 − 2u)` is kept as two products, `q = Π u` and
+//! `t = Π (u − 3/2)`, so that an axis costs few operations: `W = q² · t · (−2)^k`, where the power of two is exact.
+//!
+//! An axis whose `u` is 1 over a whole tile is left out, which changes no bit; a control point with an axis whose `u` is
+//! 0 over a whole tile has no weight there. Both are decided with the very numbers that the pixels would get, since
+//! rounding is monotonic.
 
+use crate::line::Line;
 use crate::net::{AxisBlock, BLOCK, Instance};
 use crate::power::power;
 use crate::weight::{AxialWeight, Lane};
+use core::ops::Range;
 use fearless_simd::{f32x8, prelude::*};
 
 /// Columns of a tile: a register at the widest level.
 pub(crate) const TILE: usize = 16;
 
-/// Rows of a tile.
+/// Rows of a band.
 pub(crate) const ROWS: usize = 8;
-
-/// The pixels of one plane of a tile, row by row.
-pub(crate) const TILE_PIXELS: usize = TILE * ROWS;
-
-/// Rows that are kept in registers at a time.
-const STRIP: usize = 4;
 
 /// How the axes of a block are multiplied up.
 pub(crate) trait Profile: Copy + Send + Sync {
@@ -62,7 +60,7 @@ impl Profile for AxialWeight {
     }
 }
 
-/// What becomes of the weights of a tile.
+/// What becomes of the weights of a band.
 ///
 /// Weights are added to planes of numbers, which begin at zero; when all control points have been taken in, the planes
 /// are resolved into values.
@@ -76,15 +74,15 @@ pub(crate) trait Sink: Sync {
     /// How many values there are to a pixel.
     fn per_pixel(&self) -> usize;
 
-    /// Takes in the weights of control point `point` for the pixels from `at` on, in every plane.
-    fn add<S: Simd>(&self, simd: S, point: u32, weight: S::f32s, planes: &mut [f32], at: usize);
+    /// Takes in the weights of control point `point` for a register of pixels from `at` on, in every plane.
+    fn add<S: Simd>(&self, simd: S, point: u32, weight: S::f32s, planes: &mut Planes, at: usize);
 
-    /// Makes the values of up to [`TILE`] pixels. Plane `k` of pixel `i` is `planes[k * TILE_PIXELS + i]`; `nearest(i)`
-    /// is the control point nearest to pixel `i`, for where no weight is left.
-    fn resolve<S: Simd>(
+    /// Makes the values of a row of pixels, given its part of every plane. `nearest(i)` is the control point nearest to
+    /// pixel `i`, for where no weight is left.
+    fn resolve<'a, S: Simd>(
         &self,
         simd: S,
-        planes: &[f32],
+        plane: impl Fn(usize) -> &'a [f32],
         values: &mut [Self::Value],
         nearest: impl Fn(usize) -> u32,
     );
@@ -93,10 +91,45 @@ pub(crate) trait Sink: Sync {
     fn undefined(&self) -> Self::Value;
 }
 
-/// The columns and rows of a tile, seen from a control point.
-struct Offsets {
-    x: [f32; TILE],
-    y: [f32; ROWS],
+/// The numbers that a band is summed in: planes of [`ROWS`] rows, whose tiles each begin on a cache line, so that no
+/// register of numbers lies across two.
+#[derive(Default)]
+pub(crate) struct Planes {
+    numbers: Vec<f32>,
+    /// Where the first cache line begins.
+    origin: usize,
+    /// From a row to the next.
+    pub(crate) stride: usize,
+}
+
+impl Planes {
+    /// Zeroed planes with rows of at least `width` numbers.
+    pub(crate) fn clear(&mut self, n_planes: usize, width: usize) {
+        self.stride = width.next_multiple_of(TILE);
+        self.numbers.clear();
+        self.numbers
+            .resize(n_planes * ROWS * self.stride + TILE, 0.0);
+        // Where this is not possible, it is only slower.
+        self.origin = self
+            .numbers
+            .as_ptr()
+            .align_offset(TILE * size_of::<f32>())
+            .min(TILE);
+    }
+
+    /// A register of numbers of a plane.
+    #[inline(always)]
+    pub(crate) fn register<S: Simd>(&mut self, plane: usize, at: usize) -> &mut [f32] {
+        let start = self.origin + plane * ROWS * self.stride + at;
+        &mut self.numbers[start..start + S::f32s::LEN]
+    }
+
+    /// The first `width` numbers of a row of a plane.
+    #[inline(always)]
+    pub(crate) fn row(&self, plane: usize, row: usize, width: usize) -> &[f32] {
+        let start = self.origin + (plane * ROWS + row) * self.stride;
+        &self.numbers[start..start + width]
+    }
 }
 
 /// An axis that matters in a tile: its x, and `1 − a_y d_y` for every row.
@@ -108,12 +141,22 @@ struct ActiveAxis {
 
 /// The axes of one block that matter in a tile.
 #[derive(Clone, Copy, Default)]
-struct ActiveBlock {
+pub(crate) struct ActiveBlock {
     axes: [ActiveAxis; BLOCK],
     n: usize,
 }
 
-/// What one control point brings to a row of tiles.
+/// The pixels of a band.
+pub(crate) struct Grid<'a> {
+    /// Columns, filled up to whole tiles with the last real one.
+    pub(crate) xs: &'a [f64],
+    /// The real ones.
+    pub(crate) line: &'a Line,
+    /// Rows; the last real one may come again.
+    pub(crate) ys: [f64; ROWS],
+}
+
+/// One control point, or image of one.
 #[derive(Clone, Copy)]
 pub(crate) struct Splat<'a, P> {
     pub(crate) profile: P,
@@ -123,57 +166,102 @@ pub(crate) struct Splat<'a, P> {
     pub(crate) shift: Option<[f32; 2]>,
 }
 
+/// A tile as seen from a control point.
+struct Tile {
+    x: [f32; TILE],
+    y: [f32; ROWS],
+    /// Where it begins in a plane.
+    start: usize,
+    /// Which columns of the plane the support can touch.
+    columns: Range<usize>,
+    /// Which rows: the upper four, the lower four.
+    halves: [bool; 2],
+}
+
 impl<P: Profile> Splat<'_, P> {
-    /// Adds the weights of this control point to the tiles from `first` to before `end`.
-    ///
-    /// `columns` are the coordinates of all columns, a multiple of [`TILE`] of them, in ascending or descending order;
-    /// `rows` those of the rows. `planes` holds the tiles one after another.
+    /// Adds the weights of this control point to a band.
     #[inline(always)]
     pub(crate) fn add_to<S: Simd, K: Sink>(
         &self,
         simd: S,
         sink: &K,
-        columns: &[f64],
-        rows: &[f64; ROWS],
-        tiles: core::ops::Range<usize>,
-        planes: &mut [f32],
+        grid: &Grid,
+        active: &mut Vec<ActiveBlock>,
+        planes: &mut Planes,
     ) {
-        let center = self.instance.center;
-        let y = rows.map(|row| (row - center.y) as f32);
-        let tile_length = sink.n_planes() * TILE_PIXELS;
-        for tile in tiles {
-            let columns = &columns[tile * TILE..(tile + 1) * TILE];
-            let ends = [columns[0], columns[TILE - 1]].map(|column| (column - center.x) as f32);
-            let planes = &mut planes[tile * tile_length..(tile + 1) * tile_length];
-            let mut first = ActiveBlock::default();
-            match self.blocks {
-                [only] => {
-                    if select_axes(simd, only, ends, &y, &mut first) {
-                        let offsets = Offsets {
-                            x: narrow_offsets(simd, columns, center.x),
-                            y,
-                        };
-                        self.add_to_tile(simd, sink, &offsets, &[first], planes);
-                    }
-                }
-                blocks => {
-                    let mut active = Vec::with_capacity(blocks.len());
-                    let reached = blocks.iter().all(|block| {
-                        active.push(first);
-                        active
-                            .last_mut()
-                            .is_some_and(|active| select_axes(simd, block, ends, &y, active))
-                    });
-                    if reached {
-                        let offsets = Offsets {
-                            x: narrow_offsets(simd, columns, center.x),
-                            y,
-                        };
-                        self.add_to_tile(simd, sink, &offsets, &active, planes);
-                    }
-                }
+        let Instance {
+            center, min, max, ..
+        } = *self.instance;
+        let mut columns = grid.line.touched(min.x, max.x);
+        if columns.is_empty() {
+            return;
+        }
+        let y = grid.ys.map(|y| (y - center.y) as f32);
+        if columns.len() > 2 * TILE {
+            let Some([left, right]) = self.reach(simd, &y) else {
+                return;
+            };
+            let [left, right] = [left, right].map(|x| center.x + f64::from(x));
+            columns = grid.line.touched(left.max(min.x), right.min(max.x));
+        }
+        let half = |row: usize| {
+            let (a, b) = (grid.ys[row], grid.ys[row + ROWS / 2 - 1]);
+            a.min(b) <= max.y && a.max(b) >= min.y
+        };
+        if columns.is_empty() {
+            return;
+        }
+        let halves = [half(0), half(ROWS / 2)];
+        let mut tile = Tile {
+            x: [0.0; TILE],
+            y,
+            start: 0,
+            columns: columns.clone(),
+            halves,
+        };
+        active.resize(self.blocks.len(), ActiveBlock::default());
+        // A support that is narrower than a tile gets its axes picked once, for the one or two tiles that it lies in.
+        let aligned = columns.start / TILE * TILE..columns.end.next_multiple_of(TILE);
+        let group = if columns.len() <= TILE {
+            aligned.len()
+        } else {
+            TILE
+        };
+        for first in aligned.step_by(group) {
+            let ends = [first, first + group - 1].map(|column| (grid.xs[column] - center.x) as f32);
+            let mut pairs = self.blocks.iter().zip(active.iter_mut());
+            if !pairs.all(|(block, active)| select_axes(simd, block, ends, &y, active)) {
+                continue;
+            }
+            for start in (first..first + group).step_by(TILE) {
+                tile.start = start;
+                narrow_offsets(simd, &grid.xs[start..start + TILE], center.x, &mut tile.x);
+                self.add_to_tile(simd, sink, &tile, active, planes);
             }
         }
+    }
+
+    /// The stretch of x, as seen from the center, outside of which no pixel of the rows `y` has a weight. Nothing if
+    /// none has.
+    #[inline(always)]
+    fn reach<S: Simd>(&self, simd: S, y: &[f32; ROWS]) -> Option<[f32; 2]> {
+        // What three roundings can add to a quotient.
+        const SLACK: f32 = 4.0 * f32::EPSILON;
+        let zero = f32x8::splat(simd, 0.0);
+        let one = f32x8::splat(simd, 1.0);
+        let far = f32x8::splat(simd, f32::INFINITY);
+        let (mut from, mut to) = (f32::NEG_INFINITY, f32::INFINITY);
+        for block in self.blocks {
+            let ax = f32x8::from_slice(simd, &block.x);
+            let ay = f32x8::from_slice(simd, &block.y);
+            let [top, bottom] = [y[0], y[ROWS - 1]].map(|y| one - ay * y);
+            let most = top.max(bottom);
+            let bound = most / ax;
+            let bound = bound + bound.abs() * SLACK * ax.simd_ge(zero).select(one, zero - one);
+            to = to.min(ax.simd_gt(zero).select(bound, far).reduce_min());
+            from = from.max(ax.simd_lt(zero).select(bound, zero - far).reduce_max());
+        }
+        (from <= to).then_some([from, to])
     }
 
     /// Adds the weights of one tile.
@@ -182,82 +270,102 @@ impl<P: Profile> Splat<'_, P> {
         &self,
         simd: S,
         sink: &K,
-        offsets: &Offsets,
+        tile: &Tile,
         blocks: &[ActiveBlock],
-        planes: &mut [f32],
+        planes: &mut Planes,
     ) {
         for column in (0..TILE).step_by(S::f32s::LEN) {
-            let x = S::f32s::from_slice(simd, &offsets.x[column..column + S::f32s::LEN]);
-            for row in (0..ROWS).step_by(STRIP) {
-                let mut weights = [S::f32s::splat(simd, 1.0); STRIP];
-                for (index, block) in blocks.iter().enumerate() {
-                    let product = self.block_product(simd, block, x, row);
-                    for (weight, product) in weights.iter_mut().zip(product) {
-                        *weight = if index == 0 {
-                            product
-                        } else {
-                            *weight * product
-                        };
-                    }
+            let first = tile.start + column;
+            if first >= tile.columns.end || first + S::f32s::LEN <= tile.columns.start {
+                continue;
+            }
+            // A row takes two registers, and an axis a few: 32 registers of 16 lanes hold all rows, 16 registers four.
+            match tile.halves {
+                [true, true] if S::f32s::LEN >= 16 => {
+                    self.add_rows::<S, K, ROWS>(simd, sink, tile, blocks, planes, [column, 0]);
                 }
-                for (strip_row, weight) in weights.into_iter().enumerate() {
-                    let weight = match self.shift {
-                        Some(shift) => {
-                            let y = S::f32s::splat(simd, offsets.y[row + strip_row]);
-                            shift_weight(simd, weight, shift, x, y)
-                        }
-                        None => weight,
-                    };
-                    sink.add(
-                        simd,
-                        self.instance.point,
-                        weight,
-                        planes,
-                        (row + strip_row) * TILE + column,
-                    );
+                [upper, lower] => {
+                    if upper {
+                        self.add_rows::<S, K, 4>(simd, sink, tile, blocks, planes, [column, 0]);
+                    }
+                    if lower {
+                        self.add_rows::<S, K, 4>(simd, sink, tile, blocks, planes, [column, 4]);
+                    }
                 }
             }
         }
     }
 
-    /// The product of the axial weights of a block, for [`STRIP`] rows from `row`.
+    /// Adds the weights of a register's columns in `N` rows.
     #[inline(always)]
-    fn block_product<S: Simd>(
+    fn add_rows<S: Simd, K: Sink, const N: usize>(
+        &self,
+        simd: S,
+        sink: &K,
+        tile: &Tile,
+        blocks: &[ActiveBlock],
+        planes: &mut Planes,
+        [column, first_row]: [usize; 2],
+    ) {
+        let x = S::f32s::from_slice(simd, &tile.x[column..column + S::f32s::LEN]);
+        let mut weights = [S::f32s::splat(simd, 1.0); N];
+        for (index, block) in blocks.iter().enumerate() {
+            let products = self.block_products::<S, N>(simd, block, x, first_row);
+            for (weight, product) in weights.iter_mut().zip(products) {
+                *weight = if index == 0 {
+                    product
+                } else {
+                    *weight * product
+                };
+            }
+        }
+        for (row, weight) in (first_row..).zip(weights) {
+            let weight = match self.shift {
+                Some(shift) => {
+                    let y = S::f32s::splat(simd, tile.y[row]);
+                    shift_weight(simd, weight, shift, x, y)
+                }
+                None => weight,
+            };
+            let at = row * planes.stride + tile.start + column;
+            sink.add(simd, self.instance.point, weight, planes, at);
+        }
+    }
+
+    /// The products of the axial weights of a block, in `N` rows.
+    #[inline(always)]
+    fn block_products<S: Simd, const N: usize>(
         &self,
         simd: S,
         block: &ActiveBlock,
         x: S::f32s,
-        row: usize,
-    ) -> [S::f32s; STRIP] {
+        first_row: usize,
+    ) -> [S::f32s; N] {
         let zero = S::f32s::splat(simd, 0.0);
         let one = S::f32s::splat(simd, 1.0);
-        let mut q = [one; STRIP];
-        let mut t = [one; STRIP];
+        let mut q = [one; N];
+        let mut t = [one; N];
         for axis in &block.axes[..block.n] {
             let along = x * axis.x;
-            for strip_row in 0..STRIP {
-                let u = (S::f32s::splat(simd, axis.rest[row + strip_row]) - along)
-                    .max(zero)
-                    .min(one);
-                (q[strip_row], t[strip_row]) = self.profile.step(q[strip_row], t[strip_row], u);
+            let rest = &axis.rest[first_row..first_row + N];
+            for row in 0..N {
+                let u = S::f32s::splat(simd, rest[row]) - along;
+                (q[row], t[row]) = self.profile.step(q[row], t[row], u.max(zero).min(one));
             }
         }
-        core::array::from_fn(|strip_row| self.profile.finish(q[strip_row], t[strip_row], block.n))
+        core::array::from_fn(|row| self.profile.finish(q[row], t[row], block.n))
     }
 }
-
 /// The columns as seen from the center, rounded to single precision.
 #[inline(always)]
-fn narrow_offsets<S: Simd>(simd: S, columns: &[f64], center: f64) -> [f32; TILE] {
-    let mut offsets = [0.0; TILE];
+fn narrow_offsets<S: Simd>(simd: S, xs: &[f64], center: f64, offsets: &mut [f32; TILE]) {
     let half = S::f64s::LEN;
     for column in (0..TILE).step_by(2 * half) {
-        let low = S::f64s::from_slice(simd, &columns[column..column + half]) - center;
-        let high = S::f64s::from_slice(simd, &columns[column + half..column + 2 * half]) - center;
+        let low = S::f64s::from_slice(simd, &xs[column..column + half]) - center;
+        let high = S::f64s::from_slice(simd, &xs[column + half..column + 2 * half]) - center;
         low.narrow(high)
             .store_slice(&mut offsets[column..column + 2 * half]);
     }
-    offsets
 }
 
 /// Picks the axes of a block that are neither 1 nor 0 over the whole tile. False if one of them is 0: then the control
@@ -275,9 +383,10 @@ fn select_axes<S: Simd>(
     let ay = f32x8::from_slice(simd, &block.y);
     let [left, right] = ends.map(|x| ax * x);
     let [top, bottom] = [y[0], y[ROWS - 1]].map(|y| one - ay * y);
+    let zero = f32x8::splat(simd, 0.0);
     let least = top.min(bottom) - left.max(right);
     let most = top.max(bottom) - left.min(right);
-    if most.simd_le(f32x8::splat(simd, 0.0)).any_true() {
+    if most.simd_le(zero).any_true() {
         return false;
     }
     let y = f32x8::from_slice(simd, y);

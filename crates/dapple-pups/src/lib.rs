@@ -12,6 +12,7 @@
 
 mod error;
 mod kernel;
+mod line;
 mod net;
 mod options;
 mod power;

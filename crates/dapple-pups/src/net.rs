@@ -119,6 +119,11 @@ impl Net {
         self.bins.get_or_init(|| Bins::new(self))
     }
 
+    /// The number of control points.
+    pub(crate) fn n_points(&self) -> usize {
+        self.first_block.len() - 1
+    }
+
     /// The blocks of a control point.
     #[inline(always)]
     pub(crate) fn blocks(&self, point: u32) -> &[AxisBlock] {

@@ -1,6 +1,6 @@
 //! The partition of unity over a control net: weights and labels.
 
-use crate::kernel::{Sink, TILE, TILE_PIXELS};
+use crate::kernel::{Planes, Sink};
 use crate::net::Net;
 use crate::render::render;
 use crate::{PupsError, PupsOptions, Texture, VectorTexture};
@@ -217,34 +217,38 @@ impl Sink for Strongest {
     }
 
     #[inline(always)]
-    fn add<S: Simd>(&self, simd: S, point: u32, weight: S::f32s, planes: &mut [f32], at: usize) {
-        let (weights, points) = planes.split_at_mut(TILE_PIXELS);
-        let range = at..at + S::f32s::LEN;
-        let best = S::f32s::from_slice(simd, &weights[range.clone()]);
-        let best_point = S::f32s::from_slice(simd, &points[range.clone()]);
+    fn add<S: Simd>(&self, simd: S, point: u32, weight: S::f32s, planes: &mut Planes, at: usize) {
+        let best = S::f32s::from_slice(simd, planes.register::<S>(0, at));
+        let best_point = S::f32s::from_slice(simd, planes.register::<S>(1, at));
         let stronger = weight.simd_gt(best);
         // Selecting moves bits and does not compute with them.
         let point = S::f32s::splat(simd, f32::from_bits(point));
         stronger
             .select(weight, best)
-            .store_slice(&mut weights[range.clone()]);
+            .store_slice(planes.register::<S>(0, at));
         stronger
             .select(point, best_point)
-            .store_slice(&mut points[range]);
+            .store_slice(planes.register::<S>(1, at));
     }
 
     #[inline(always)]
-    fn resolve<S: Simd>(
+    fn resolve<'a, S: Simd>(
         &self,
         _: S,
-        planes: &[f32],
+        plane: impl Fn(usize) -> &'a [f32],
         values: &mut [PointIdx],
         nearest: impl Fn(usize) -> u32,
     ) {
-        let weights = &planes[..TILE.min(values.len())];
-        for (pixel, (value, weight)) in values.iter_mut().zip(weights).enumerate() {
-            let point = planes[TILE_PIXELS + pixel].to_bits();
-            *value = PointIdx(if *weight > 0.0 { point } else { nearest(pixel) });
+        for (pixel, (value, (&weight, &point))) in values
+            .iter_mut()
+            .zip(plane(0).iter().zip(plane(1)))
+            .enumerate()
+        {
+            *value = PointIdx(if weight > 0.0 {
+                point.to_bits()
+            } else {
+                nearest(pixel)
+            });
         }
     }
 

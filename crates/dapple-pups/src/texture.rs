@@ -1,6 +1,6 @@
 //! Values at the control points, interpolated (equation 3).
 
-use crate::kernel::{Sink, TILE_PIXELS};
+use crate::kernel::{Planes, Sink};
 use crate::pups::LEAST_TOTAL;
 use crate::render::render;
 use crate::{Pups, PupsError};
@@ -188,43 +188,46 @@ impl Sink for Mean<'_> {
     }
 
     #[inline(always)]
-    fn add<S: Simd>(&self, simd: S, point: u32, weight: S::f32s, planes: &mut [f32], at: usize) {
-        add_to(simd, planes, at, weight);
+    fn add<S: Simd>(&self, simd: S, point: u32, weight: S::f32s, planes: &mut Planes, at: usize) {
+        add_to(simd, planes.register::<S>(0, at), weight);
+        if self.n == 1 {
+            add_to(
+                simd,
+                planes.register::<S>(1, at),
+                weight * self.values[point as usize],
+            );
+            return;
+        }
         let values = &self.values[point as usize * self.n..][..self.n];
         for (plane, &value) in (1..).zip(values) {
-            add_to(simd, planes, plane * TILE_PIXELS + at, weight * value);
+            add_to(simd, planes.register::<S>(plane, at), weight * value);
         }
     }
 
     #[inline(always)]
-    fn resolve<S: Simd>(
+    fn resolve<'a, S: Simd>(
         &self,
         simd: S,
-        planes: &[f32],
+        plane: impl Fn(usize) -> &'a [f32],
         values: &mut [f32],
         nearest: impl Fn(usize) -> u32,
     ) {
-        let n_pixels = values.len() / self.n;
-        let totals = &planes[..n_pixels];
+        let totals = plane(0);
         if self.n == 1 {
-            divide(
-                simd,
-                &planes[TILE_PIXELS..TILE_PIXELS + n_pixels],
-                totals,
-                values,
-            );
+            divide(simd, plane(1), totals, values);
         } else {
-            for (pixel, vector) in values.chunks_exact_mut(self.n).enumerate() {
-                for (plane, value) in (1..).zip(vector) {
-                    *value = planes[plane * TILE_PIXELS + pixel] / totals[pixel];
-                }
+            for channel in 0..self.n {
+                let quotients = plane(channel + 1)
+                    .iter()
+                    .zip(totals)
+                    .map(|(sum, total)| sum / total);
+                let channel = values[channel..].iter_mut().step_by(self.n);
+                channel
+                    .zip(quotients)
+                    .for_each(|(value, quotient)| *value = quotient);
             }
         }
-        if totals
-            .iter()
-            .fold(f32::INFINITY, |least, &total| least.min(total))
-            < LEAST_TOTAL
-        {
+        if any_below(simd, totals, LEAST_TOTAL) {
             for (pixel, vector) in values.chunks_exact_mut(self.n).enumerate() {
                 if totals[pixel] < LEAST_TOTAL {
                     let start = nearest(pixel) as usize * self.n;
@@ -239,10 +242,10 @@ impl Sink for Mean<'_> {
     }
 }
 
+/// Adds a register to numbers in memory.
 #[inline(always)]
-fn add_to<S: Simd>(simd: S, plane: &mut [f32], at: usize, what: S::f32s) {
-    let pixels = &mut plane[at..at + S::f32s::LEN];
-    (S::f32s::from_slice(simd, pixels) + what).store_slice(pixels);
+fn add_to<S: Simd>(simd: S, numbers: &mut [f32], what: S::f32s) {
+    (S::f32s::from_slice(simd, numbers) + what).store_slice(numbers);
 }
 
 /// Divides number by number.
@@ -258,4 +261,15 @@ fn divide<S: Simd>(simd: S, sums: &[f32], totals: &[f32], quotients: &mut [f32])
     for at in whole..sums.len() {
         quotients[at] = sums[at] / totals[at];
     }
+}
+
+/// Whether any number is below a limit.
+#[inline(always)]
+fn any_below<S: Simd>(simd: S, numbers: &[f32], limit: f32) -> bool {
+    let limits = S::f32s::splat(simd, limit);
+    let mut chunks = numbers.chunks_exact(S::f32s::LEN);
+    let any = chunks
+        .by_ref()
+        .any(|chunk| S::f32s::from_slice(simd, chunk).simd_lt(limits).any_true());
+    any || chunks.remainder().iter().any(|&number| number < limit)
 }
