@@ -213,6 +213,22 @@ impl<T: Copy> Raster<T> {
     }
 }
 
+impl<T: Sync> Raster<T> {
+    /// As [`map`](Self::map), on all cores where the feature `rayon` is on.
+    #[must_use]
+    pub fn par_map<U: Send>(&self, change: impl Fn(&T) -> U + Sync) -> Raster<U> {
+        #[cfg(feature = "rayon")]
+        let data = {
+            use rayon::prelude::*;
+            self.data.par_iter().map(&change).collect()
+        };
+        #[cfg(not(feature = "rayon"))]
+        let data = self.data.iter().map(change).collect();
+        let size = self.size;
+        Raster { data, size }
+    }
+}
+
 impl<T: Send> Raster<T> {
     /// A raster whose values are those of `value` at the pixel centers of `window`, on all cores where the feature
     /// `rayon` is on.

@@ -19,6 +19,13 @@ fn rows_come_from_the_top() {
 }
 
 #[test]
+fn mapping_on_all_cores_equals_mapping_in_order() {
+    let raster = numbered([130, 70]);
+    let change = |&value: &u32| value.wrapping_mul(2_654_435_761);
+    assert_eq!(raster.par_map(change), raster.map(change), "every pixel");
+}
+
+#[test]
 fn a_crop_of_a_crop_is_a_crop() {
     let raster = numbered([7, 5]);
     let once = raster.crop([2, 1], [4, 3]).unwrap();
