@@ -69,7 +69,7 @@ impl Code for u8 {
 }
 
 impl Code for u16 {
-    const MAX: u16 = 65535;
+    const MAX: Self = 65535;
 
     #[inline]
     fn from_unit(value: f32) -> Self {

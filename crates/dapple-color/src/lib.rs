@@ -7,8 +7,17 @@
 #![forbid(unsafe_code)]
 
 mod code;
+mod error;
+mod hex;
 mod linear;
+mod normal;
+mod palette;
+mod ramp;
 mod srgb;
 
 pub use code::Code;
+pub use error::{ColorError, ColorErrorKind};
 pub use linear::{LinearRgb, LinearRgba};
+pub use normal::{Normal, NormalOptions, NormalY, normal_map, normal_map_from_gradient};
+pub use palette::Palette;
+pub use ramp::{ColorRamp, ColorStop, Interpolation, Outside};

@@ -79,8 +79,7 @@ impl Curve {
     /// The code of a linear value.
     #[inline]
     pub(crate) fn encode(&self, linear: f32) -> u16 {
-        // NaN fails the comparison, too.
-        if !(linear >= self.borders[0]) {
+        if linear.is_nan() || linear < self.borders[0] {
             return 0;
         }
         if linear >= 1.0 {

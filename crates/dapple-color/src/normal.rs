@@ -1,0 +1,209 @@
+//! Normal maps from heights, or from gradients that are known exactly.
+//!
+//! A height `h` over the plane has the normal `normalize(-s ∂h/∂x, ±s ∂h/∂y, 1)`, with `s` the strength. Rows go down in
+//! dapple, so with Y up (OpenGL) the sign of the second part is plus, with Y down (DirectX) minus. Derivatives of a raster
+//! are central differences over two pixels, `(h[i+1] - h[i-1]) / (2 pixel)`, with the neighbors past an edge given by the
+//! same wrap, per axis, as the height itself has: the normal map of a tile is a tile.
+//!
+//! Slopes are heights per unit of the *plane*, in which the raster has a stated extent, and not per pixel: twice the
+//! resolution gives the same normals, on finer pixels. Where a part of the slope is not finite the normal is flat.
+
+use crate::{Code, ColorError, ColorErrorKind};
+use dapple_raster::glam::DVec2;
+use dapple_raster::{Raster, Window, Wrap};
+
+/// A unit vector on a surface: x to the right, y up or down as [`NormalY`] says, z out of the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Normal {
+    /// To the right, from -1 to 1.
+    pub x: f32,
+    /// Up (OpenGL) or down (DirectX), from -1 to 1.
+    pub y: f32,
+    /// Out of the surface, from 0 to 1.
+    pub z: f32,
+}
+
+/// Where the second part of a normal, the green one of its color, points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum NormalY {
+    /// Up, as in OpenGL, glTF, Blender, Unity and Godot.
+    #[default]
+    OpenGl,
+    /// Down, as in DirectX and Unreal.
+    DirectX,
+}
+
+/// How a height becomes a normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct NormalOptions {
+    /// How many units of the plane a height of 1 stands for; negative turns hills into dents. By default 1.
+    pub strength: f64,
+    /// The width and height of the raster in the plane, above zero. By default 1 × 1, as in [`Window::unit`]; a raster
+    /// with square pixels that is not square needs its true proportions here.
+    pub extent: DVec2,
+    /// What lies past the edges of the height, per axis. By default both repeat.
+    pub wrap: [Wrap; 2],
+    /// Where green points. By default up.
+    pub y: NormalY,
+}
+
+impl Default for NormalOptions {
+    fn default() -> Self {
+        Self {
+            strength: 1.0,
+            extent: DVec2::ONE,
+            wrap: [Wrap::Repeat; 2],
+            y: NormalY::OpenGl,
+        }
+    }
+}
+
+impl NormalOptions {
+    /// The options with the extent of a window, for heights that were rendered there.
+    #[must_use]
+    pub fn for_window(window: &Window) -> Self {
+        let size = DVec2::new(window.size[0].into(), window.size[1].into());
+        Self {
+            extent: (window.pixel * size).abs(),
+            ..Self::default()
+        }
+    }
+
+    /// The normal of a slope: heights per unit of the plane to the right, and downward.
+    #[must_use]
+    pub fn normal(&self, slope: DVec2) -> Normal {
+        let up = match self.y {
+            NormalY::OpenGl => self.strength,
+            NormalY::DirectX => -self.strength,
+        };
+        let [x, y] = [-self.strength * slope.x, up * slope.y];
+        let length = (x * x + y * y + 1.0).sqrt();
+        if !length.is_finite() {
+            return Normal::FLAT;
+        }
+        let [x, y, z] = [x, y, 1.0].map(|part| (part / length) as f32);
+        Normal { x, y, z }
+    }
+
+    fn check(&self) -> Result<(), ColorError> {
+        let (extent, value) = (self.extent, self.strength);
+        if !value.is_finite() {
+            let what = "strength of the normal map";
+            return Err(ColorError::new(ColorErrorKind::NotFinite { what, value }));
+        }
+        if !(extent.is_finite() && extent.x > 0.0 && extent.y > 0.0) {
+            return Err(ColorError::new(ColorErrorKind::Extent { extent }));
+        }
+        Ok(())
+    }
+}
+
+/// The normals of a raster of heights, on all cores where the feature `rayon` is on.
+///
+/// # Errors
+///
+/// [`ColorErrorKind::NotFinite`] if the strength is NaN or infinite, [`ColorErrorKind::Extent`] if the extent is not
+/// above zero and finite.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::{NormalOptions, normal_map};
+/// use dapple_raster::Raster;
+///
+/// let flat = Raster::filled([16, 16], 0.5_f32)?;
+/// let normals = normal_map(&flat, &NormalOptions::default())?;
+/// assert_eq!(normals.row(3)[5].to_codes::<u8>(), [128, 128, 255]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn normal_map(
+    height: &Raster<f32>,
+    options: &NormalOptions,
+) -> Result<Raster<Normal>, ColorError> {
+    options.check()?;
+    let size = height.size();
+    // Slope per difference of two neighbors.
+    let scale = DVec2::new(size[0].into(), size[1].into()) / (2.0 * options.extent);
+    let [wrap_x, wrap_y] = options.wrap;
+    let normals = Raster::from_rows(size, |row| {
+        let [above, below] = [-1, 1].map(|step| wrap_y.index(i64::from(row) + step, size[1]));
+        let [above, here, below] = [above, row, below].map(|row| height.row(row));
+        (0..size[0]).map(move |column| {
+            let [left, right] = [-1, 1].map(|step| wrap_x.index(i64::from(column) + step, size[0]));
+            let difference = DVec2::new(
+                f64::from(here[right as usize]) - f64::from(here[left as usize]),
+                f64::from(below[column as usize]) - f64::from(above[column as usize]),
+            );
+            options.normal(difference * scale)
+        })
+    })?;
+    Ok(normals)
+}
+
+/// The normals of a raster of exact slopes: heights per unit of the plane to the right, and downward.
+///
+/// Of the options, the strength and the direction of green are used. Runs on all cores where the feature `rayon` is on.
+///
+/// # Errors
+///
+/// [`ColorErrorKind::NotFinite`] if the strength is NaN or infinite, [`ColorErrorKind::Extent`] if the extent is not
+/// above zero and finite.
+pub fn normal_map_from_gradient(
+    gradient: &Raster<[f32; 2]>,
+    options: &NormalOptions,
+) -> Result<Raster<Normal>, ColorError> {
+    options.check()?;
+    Ok(gradient.par_map(|&[x, y]| options.normal(DVec2::new(x.into(), y.into()))))
+}
+
+impl Normal {
+    /// Straight out of the surface.
+    pub const FLAT: Self = Self {
+        x: 0.0,
+        y: 0.0,
+        z: 1.0,
+    };
+
+    /// The three parts, x first.
+    #[must_use]
+    pub const fn to_array(self) -> [f32; 3] {
+        [self.x, self.y, self.z]
+    }
+
+    /// The codes of an image: `round((part + 1) / 2 · max)`, red for x, green for y, blue for z, without any curve.
+    ///
+    /// A flat normal becomes (128, 128, 255), or (32768, 32768, 65535) with 16 bits.
+    #[must_use]
+    pub fn to_codes<C: Code>(self) -> [C; 3] {
+        self.to_array().map(|part| C::from_unit(part * 0.5 + 0.5))
+    }
+
+    /// The unit vector that a program understands from the codes of an image: `2 code / max - 1`, made as long as 1.
+    ///
+    /// No code stands for 0, so a flat normal comes back tilted by `1 / max` to the right and in y. Codes that make no
+    /// vector that can be normalized give a flat normal.
+    #[must_use]
+    pub fn from_codes<C: Code>(codes: [C; 3]) -> Self {
+        let [x, y, z] = codes.map(|code| 2.0 * code.to_unit() - 1.0);
+        let length = (x * x + y * y + z * z).sqrt();
+        if length > 0.0 {
+            let [x, y, z] = [x, y, z].map(|part| part / length);
+            Self { x, y, z }
+        } else {
+            Self::FLAT
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

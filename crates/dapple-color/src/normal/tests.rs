@@ -1,0 +1,244 @@
+//! Normal maps: directions, resolution, wrapping, codes, threads.
+
+use super::{Normal, NormalOptions, NormalY, normal_map, normal_map_from_gradient};
+use crate::{Code, ColorErrorKind};
+use dapple_raster::glam::DVec2;
+use dapple_raster::{Raster, Window, Wrap};
+use proptest::prelude::*;
+
+/// A smooth height over the unit square that repeats: products of parabolas, so that no sine is needed.
+fn hill(position: DVec2) -> f32 {
+    let bump = |t: f64| 16.0 * (t * (1.0 - t)) * (t * (1.0 - t));
+    (bump(position.x) * bump(position.y)) as f32
+}
+
+fn hills(size: [u32; 2]) -> Raster<f32> {
+    Raster::from_window(&Window::unit(size).unwrap(), hill).unwrap()
+}
+
+fn options() -> NormalOptions {
+    NormalOptions::default()
+}
+
+#[test]
+fn flat_heights_have_the_flat_codes() {
+    let flat = Raster::filled([5, 3], 0.7_f32).unwrap();
+    for y in [NormalY::OpenGl, NormalY::DirectX] {
+        let normals = normal_map(&flat, &NormalOptions { y, ..options() }).unwrap();
+        for normal in normals.pixels() {
+            assert_eq!(normal.to_codes::<u8>(), [128, 128, 255], "8 bits");
+            assert_eq!(normal.to_codes::<u16>(), [32768, 32768, 65535], "16 bits");
+        }
+    }
+}
+
+#[test]
+fn slopes_lean_away_from_the_hill() {
+    let [left, above] = [[24, 32], [32, 24]];
+    let at = |y, [column, row]: [usize; 2]| {
+        let normals = normal_map(&hills([64, 64]), &NormalOptions { y, ..options() }).unwrap();
+        normals.pixels()[64 * row + column]
+    };
+    assert!(
+        at(NormalY::OpenGl, left).x < -0.1,
+        "left of the hill it leans left"
+    );
+    assert!(
+        at(NormalY::OpenGl, above).y > 0.1,
+        "above it leans up, which is plus with Y up"
+    );
+    assert!(
+        at(NormalY::DirectX, above).y < -0.1,
+        "and minus with Y down"
+    );
+}
+
+#[test]
+fn a_plane_has_the_normal_of_its_slope() {
+    // Height 3 x - 4 y over an extent of 2 × 0.5; away from the edges central differences are exact.
+    let window = Window::new(DVec2::ZERO, DVec2::new(2.0, 0.5), [32, 16]).unwrap();
+    let plane = Raster::from_window(&window, |at| (3.0 * at.x - 4.0 * at.y) as f32).unwrap();
+    let options = NormalOptions {
+        strength: 0.5,
+        ..NormalOptions::for_window(&window)
+    };
+    let normal = normal_map(&plane, &options).unwrap().row(7)[9];
+    let length = (1.5_f64 * 1.5 + 2.0 * 2.0 + 1.0).sqrt();
+    let expected = [-1.5, -2.0, 1.0].map(|part| (part / length) as f32);
+    assert_eq!(normal.to_array(), expected, "(-s dh/dx, +s dh/dy, 1)");
+}
+
+#[test]
+fn strength_does_not_change_with_resolution() {
+    let [coarse, fine] =
+        [64, 256].map(|side| normal_map(&hills([side, side]), &options()).unwrap());
+    let mut worst = 0.0_f32;
+    for row in 0..64_u32 {
+        for column in 0..64_usize {
+            // The four fine pixels around the center of the coarse one.
+            let mut mean = [0.0; 3];
+            for (dx, dy) in [(1, 1), (2, 1), (1, 2), (2, 2)] {
+                let normal = fine.row(4 * row + dy)[4 * column + dx].to_array();
+                mean = core::array::from_fn(|part| mean[part] + 0.25 * normal[part]);
+            }
+            let here = coarse.row(row)[column].to_array();
+            worst = (0..3).fold(worst, |worst, part| {
+                worst.max((here[part] - mean[part]).abs())
+            });
+        }
+    }
+    // Central differences err by pixel²/6 times the third derivative, here below 200: 0.008.
+    assert!(worst < 0.01, "the largest difference is {worst}");
+}
+
+#[test]
+fn the_normals_of_a_tile_are_those_of_the_tiling() {
+    let tile = Raster::from_fn([9, 6], |x, y| ((x * 37 + y * 101) % 17) as f32).unwrap();
+    let normals = normal_map(&tile, &options()).unwrap();
+    let tiled = normal_map(
+        &tile.tile([3, 3]).unwrap(),
+        &NormalOptions {
+            extent: DVec2::splat(3.0),
+            wrap: [Wrap::Clamp; 2],
+            ..options()
+        },
+    );
+    assert_eq!(
+        tiled.unwrap().crop([9, 6], [9, 6]).unwrap(),
+        normals,
+        "the middle tile"
+    );
+}
+
+#[test]
+fn wrapping_is_per_axis() {
+    let ramp = Raster::from_fn([8, 8], |x, y| (x + y) as f32).unwrap();
+    let normal = |wrap| {
+        normal_map(&ramp, &NormalOptions { wrap, ..options() })
+            .unwrap()
+            .row(0)[0]
+    };
+    // Around the edge the ramp falls from 7 to 0; clamped, it rises from 0 to 1 over two pixels.
+    let repeated = normal([Wrap::Repeat; 2]);
+    assert!(repeated.x > 0.0 && repeated.y < 0.0, "{repeated:?}");
+    let mixed = normal([Wrap::Repeat, Wrap::Clamp]);
+    assert!(mixed.x > 0.0 && mixed.y > 0.0, "{mixed:?}");
+}
+
+#[test]
+fn exact_slopes_give_the_same_as_options_normal() {
+    let slopes = Raster::from_fn([5, 4], |x, y| [x as f32 - 2.0, y as f32 * 0.5]).unwrap();
+    let options = NormalOptions {
+        strength: -3.0,
+        y: NormalY::DirectX,
+        ..options()
+    };
+    let normals = normal_map_from_gradient(&slopes, &options).unwrap();
+    let oracle = slopes.map(|&[x, y]| {
+        let length = (9.0 * (x * x + y * y) + 1.0).sqrt();
+        [3.0 * x / length, 3.0 * y / length, 1.0 / length]
+    });
+    for (normal, oracle) in normals.pixels().iter().zip(oracle.pixels()) {
+        for (part, oracle) in normal.to_array().into_iter().zip(oracle) {
+            // The oracle rounds about four times in `f32`.
+            assert!((part - oracle).abs() < 5e-7, "{part} and {oracle}");
+        }
+    }
+}
+
+#[test]
+fn bad_options_are_refused() {
+    let kind = |options: NormalOptions| {
+        normal_map(&hills([4, 4]), &options)
+            .unwrap_err()
+            .kind()
+            .clone()
+    };
+    for strength in [f64::NAN, f64::INFINITY] {
+        let refused = kind(NormalOptions {
+            strength,
+            ..options()
+        });
+        assert!(
+            matches!(refused, ColorErrorKind::NotFinite { .. }),
+            "{refused:?}"
+        );
+    }
+    for extent in [
+        DVec2::ZERO,
+        DVec2::new(1.0, -1.0),
+        DVec2::new(f64::NAN, 1.0),
+    ] {
+        let refused = kind(NormalOptions {
+            extent,
+            ..options()
+        });
+        assert!(
+            matches!(refused, ColorErrorKind::Extent { .. }),
+            "{refused:?}"
+        );
+    }
+}
+
+#[test]
+fn heights_that_are_not_finite_have_flat_neighbors() {
+    for bad in [f32::NAN, f32::INFINITY] {
+        let height = Raster::from_fn([5, 5], |x, y| if [x, y] == [2, 2] { bad } else { x as f32 });
+        let normals = normal_map(&height.unwrap(), &options()).unwrap();
+        assert_eq!(normals.row(2)[1], Normal::FLAT, "left of {bad}");
+        assert_ne!(normals.row(2)[2], Normal::FLAT, "{bad} itself is not used");
+    }
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let height = hills([67, 45]);
+    let bits = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let normals = pool
+            .build()
+            .unwrap()
+            .install(|| normal_map(&height, &options()).unwrap());
+        normals.map(|normal| normal.to_array().map(f32::to_bits))
+    };
+    let one = bits(1);
+    for threads in [2, 7] {
+        assert_eq!(bits(threads), one, "{threads} threads");
+    }
+}
+
+#[test]
+fn value_stability_normal_map() {
+    let normal = normal_map(&hills([16, 16]), &options()).unwrap().row(3)[5];
+    assert_eq!(
+        normal.to_array().map(f32::to_bits),
+        [3199912162, 1063036451, 1052004172]
+    );
+}
+
+proptest! {
+    #[test]
+    fn normals_are_unit_vectors_that_point_outward(
+        slope in [-1e6_f32..1e6, -1e6_f32..1e6],
+        strength in -100.0_f64..100.0,
+    ) {
+        let normal = NormalOptions { strength, ..options() }.normal(DVec2::new(slope[0].into(), slope[1].into()));
+        let [x, y, z] = normal.to_array().map(f64::from);
+        // Each part is rounded to `f32` once, by at most 6e-8.
+        prop_assert!((x * x + y * y + z * z - 1.0).abs() < 4e-7);
+        prop_assert!(z > 0.0);
+    }
+
+    #[test]
+    fn codes_come_back_within_half_a_step(slope in [-9.0_f64..9.0, -9.0_f64..9.0]) {
+        let normal = options().normal(slope.into());
+        fn error<C: Code>(normal: Normal) -> f32 {
+            let back = Normal::from_codes(normal.to_codes::<C>()).to_array();
+            let parts = normal.to_array().into_iter().zip(back);
+            parts.fold(0.0, |worst, (part, back)| worst.max((part - back).abs()))
+        }
+        // Half a step is 1/max per part; making the length 1 again can double it.
+        prop_assert!(error::<u8>(normal) <= 2.0 / 255.0);
+        prop_assert!(error::<u16>(normal) <= 2.0 / 65535.0);
+    }
+}

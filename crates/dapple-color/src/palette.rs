@@ -1,0 +1,151 @@
+//! A handful of ramps by name, to begin with.
+//!
+//! The colors are our own, chosen by eye for the textures of the gallery; each list goes from the color of low values to
+//! that of high ones.
+
+use crate::{ColorRamp, LinearRgb};
+
+/// A named list of colors.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::Palette;
+///
+/// let ramp = Palette::Giraffe.ramp();
+/// assert_eq!(ramp.stops().len(), Palette::Giraffe.colors().len());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum Palette {
+    /// Black to white in linear light.
+    Gray,
+    /// Deep blue through teal and green to pale yellow; lighter all the way, so that it reads as a height.
+    Lagoon,
+    /// Black through dark red and orange to pale yellow; lighter all the way.
+    Ember,
+    /// Sea floor, shallows, beach, meadow, forest, rock and snow.
+    Terrain,
+    /// The white and the black of a cow.
+    Cow,
+    /// The cream between the spots of a giraffe, and their browns.
+    Giraffe,
+    /// Eight colors that are easy to tell apart, for labels.
+    Labels,
+}
+
+impl Palette {
+    /// All palettes, in the order of their definition.
+    pub const ALL: [Self; 7] = [
+        Self::Gray,
+        Self::Lagoon,
+        Self::Ember,
+        Self::Terrain,
+        Self::Cow,
+        Self::Giraffe,
+        Self::Labels,
+    ];
+
+    /// The colors, from that of low values to that of high ones.
+    #[must_use]
+    pub fn colors(self) -> Vec<LinearRgb> {
+        let codes = self.codes().iter();
+        codes.map(|&codes| LinearRgb::from_srgb(codes)).collect()
+    }
+
+    /// A linear ramp through the colors at equal distances from 0 to 1.
+    #[must_use]
+    pub fn ramp(self) -> ColorRamp {
+        ColorRamp::even_unchecked(&self.colors())
+    }
+
+    /// The color of a label; after the last one the first comes again.
+    #[must_use]
+    pub fn color(self, label: u32) -> LinearRgb {
+        let codes = self.codes();
+        LinearRgb::from_srgb(codes[label as usize % codes.len()])
+    }
+
+    /// The colors in sRGB.
+    const fn codes(self) -> &'static [[u8; 3]] {
+        match self {
+            Self::Gray => &[[0, 0, 0], [255, 255, 255]],
+            Self::Lagoon => &[
+                [10, 20, 58],
+                [17, 62, 104],
+                [20, 114, 128],
+                [62, 164, 122],
+                [156, 208, 116],
+                [246, 244, 176],
+            ],
+            Self::Ember => &[
+                [8, 4, 12],
+                [66, 12, 30],
+                [148, 28, 26],
+                [220, 88, 22],
+                [250, 172, 60],
+                [255, 242, 190],
+            ],
+            Self::Terrain => &[
+                [22, 46, 92],
+                [62, 128, 168],
+                [214, 198, 146],
+                [116, 154, 70],
+                [48, 92, 48],
+                [122, 110, 98],
+                [244, 246, 250],
+            ],
+            Self::Cow => &[[240, 234, 224], [32, 26, 24]],
+            Self::Giraffe => &[
+                [240, 218, 172],
+                [198, 134, 66],
+                [150, 84, 36],
+                [104, 54, 24],
+            ],
+            Self::Labels => &[
+                [38, 84, 156],
+                [232, 136, 32],
+                [52, 150, 84],
+                [204, 52, 60],
+                [132, 90, 168],
+                [242, 206, 74],
+                [86, 180, 200],
+                [226, 136, 172],
+            ],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Palette;
+
+    #[test]
+    fn ramps_reach_the_first_and_the_last_color() {
+        for palette in Palette::ALL {
+            let (ramp, colors) = (palette.ramp(), palette.colors());
+            let ends = [ramp.at(0.0), ramp.at(1.0)];
+            assert_eq!(ends, [colors[0], colors[colors.len() - 1]], "{palette:?}");
+            assert_eq!(palette.color(colors.len() as u32), colors[0], "{palette:?}");
+        }
+    }
+
+    #[test]
+    fn palettes_for_heights_grow_lighter_all_the_way() {
+        for palette in [Palette::Gray, Palette::Lagoon, Palette::Ember] {
+            let ramp = palette.ramp();
+            let light = |step: u16| ramp.at(f32::from(step) / 100.0).luminance();
+            for step in 0..100 {
+                assert!(
+                    light(step) < light(step + 1),
+                    "{palette:?} at {step} of 100"
+                );
+            }
+        }
+    }
+}

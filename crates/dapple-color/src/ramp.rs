@@ -1,0 +1,272 @@
+//! Color ramps: from a number to a color.
+//!
+//! A ramp is a list of stops, each a position and a color, with positions that never decrease; two stops at one position
+//! make a hard edge, and the later one holds at the position itself. Colors between stops are mixed in linear light, as
+//! paints of light mix, and not in sRGB codes.
+
+use crate::{ColorError, ColorErrorKind, LinearRgb};
+use dapple_raster::Raster;
+
+/// A place on a color ramp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ColorStop {
+    /// Where it is, in the unit of the numbers that the ramp colors; mostly from 0 to 1.
+    pub position: f32,
+    /// The color there, linear.
+    pub color: LinearRgb,
+}
+
+/// What lies between two stops of a color ramp.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Interpolation {
+    /// A straight line from color to color.
+    #[default]
+    Linear,
+    /// The color of the stop before.
+    Stepped,
+    /// From color to color by `3t² - 2t³`, which has no kink at a stop.
+    Smooth,
+}
+
+/// What lies before the first stop and after the last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Outside {
+    /// The color of the nearest stop.
+    #[default]
+    Clamp,
+    /// The ramp again and again; the first color holds where one ends and the next begins.
+    Repeat,
+}
+
+/// Turns numbers into colors.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::{ColorRamp, LinearRgb};
+///
+/// let ramp = ColorRamp::from_hex(&["#000000", "#ffffff"])?;
+/// assert_eq!(ramp.at(0.25), LinearRgb::gray(0.25));
+/// assert_eq!(ramp.at(7.0), LinearRgb::WHITE);
+/// # Ok::<(), dapple_color::ColorError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "RampData", into = "RampData")
+)]
+pub struct ColorRamp {
+    stops: Vec<ColorStop>,
+    interpolation: Interpolation,
+    outside: Outside,
+}
+
+/// A ramp as data, before it is checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+struct RampData {
+    stops: Vec<ColorStop>,
+    #[serde(default)]
+    interpolation: Interpolation,
+    #[serde(default)]
+    outside: Outside,
+}
+
+impl ColorRamp {
+    /// A ramp through stops, linear between them and clamped outside.
+    ///
+    /// # Errors
+    ///
+    /// [`ColorErrorKind::NoStops`] without a stop, [`ColorErrorKind::NotFinite`] if a number is NaN or infinite,
+    /// [`ColorErrorKind::Unsorted`] if a position is smaller than the one before it.
+    pub fn new(stops: impl Into<Vec<ColorStop>>) -> Result<Self, ColorError> {
+        let stops = stops.into();
+        check(&stops)?;
+        Ok(Self {
+            stops,
+            interpolation: Interpolation::default(),
+            outside: Outside::default(),
+        })
+    }
+
+    /// A ramp through colors at equal distances, the first at 0 and the last at 1.
+    ///
+    /// # Errors
+    ///
+    /// [`ColorErrorKind::NoStops`] without a color, [`ColorErrorKind::NotFinite`] if a part of one is NaN or infinite.
+    pub fn even(colors: &[LinearRgb]) -> Result<Self, ColorError> {
+        Self::new(even_stops(colors))
+    }
+
+    /// As [`even`](Self::even), for colors that are known to be finite and not none.
+    pub(crate) fn even_unchecked(colors: &[LinearRgb]) -> Self {
+        Self {
+            stops: even_stops(colors),
+            interpolation: Interpolation::default(),
+            outside: Outside::default(),
+        }
+    }
+
+    /// A ramp through sRGB colors in hexadecimal at equal distances, the first at 0 and the last at 1.
+    ///
+    /// # Errors
+    ///
+    /// [`ColorErrorKind::NoStops`] without a color, [`ColorErrorKind::Hex`] if a text is not one.
+    pub fn from_hex(colors: &[&str]) -> Result<Self, ColorError> {
+        let colors: Result<Vec<_>, _> = colors
+            .iter()
+            .map(|text| LinearRgb::from_hex(text))
+            .collect();
+        Self::even(&colors?)
+    }
+
+    /// The same stops with another rule between them.
+    #[must_use]
+    pub fn with_interpolation(self, interpolation: Interpolation) -> Self {
+        Self {
+            interpolation,
+            ..self
+        }
+    }
+
+    /// The same stops with another rule outside of them.
+    #[must_use]
+    pub fn with_outside(self, outside: Outside) -> Self {
+        Self { outside, ..self }
+    }
+
+    /// The stops, in order.
+    #[must_use]
+    pub fn stops(&self) -> &[ColorStop] {
+        &self.stops
+    }
+
+    /// The color of a number. NaN has the color of the first stop.
+    #[must_use]
+    pub fn at(&self, value: f32) -> LinearRgb {
+        let value = self.bring_inside(value);
+        // The stops at or before the value; the value is below the next.
+        let count = self.stops.partition_point(|stop| stop.position <= value);
+        let Some(before) = count.checked_sub(1).map(|at| self.stops[at]) else {
+            return self.stops[0].color;
+        };
+        let Some(after) = self.stops.get(count) else {
+            return before.color;
+        };
+        // Halved, so that the difference of two numbers of any size is finite.
+        let length = after.position * 0.5 - before.position * 0.5;
+        let part = (value * 0.5 - before.position * 0.5) / length;
+        match self.interpolation {
+            Interpolation::Linear => before.color.lerp(after.color, part),
+            Interpolation::Stepped => before.color,
+            Interpolation::Smooth => {
+                let part = part * part * (3.0 - 2.0 * part);
+                before.color.lerp(after.color, part)
+            }
+        }
+    }
+
+    /// The colors of a raster of numbers, on all cores where the feature `rayon` is on.
+    #[must_use]
+    pub fn apply(&self, values: &Raster<f32>) -> Raster<LinearRgb> {
+        values.par_map(|&value| self.at(value))
+    }
+
+    /// A number within the stops that has the same color, or the number where that is given by [`Outside::Clamp`].
+    fn bring_inside(&self, value: f32) -> f32 {
+        let [first, last] =
+            [self.stops[0], self.stops[self.stops.len() - 1]].map(|stop| stop.position);
+        let inside = value >= first && value < last;
+        if self.outside == Outside::Clamp || inside || !value.is_finite() || first == last {
+            return value;
+        }
+        // In `f64` no difference of two `f32` overflows.
+        let (first, last, value) = (f64::from(first), f64::from(last), f64::from(value));
+        let wrapped = first + (value - first).rem_euclid(last - first);
+        // Rounding may reach the end, which is where the ramp begins again.
+        let wrapped = wrapped as f32;
+        if f64::from(wrapped) < last {
+            wrapped
+        } else {
+            first as f32
+        }
+    }
+}
+
+fn even_stops(colors: &[LinearRgb]) -> Vec<ColorStop> {
+    let last = colors.len().saturating_sub(1).max(1) as f32;
+    let stop = |(at, &color): (usize, &LinearRgb)| ColorStop {
+        position: at as f32 / last,
+        color,
+    };
+    colors.iter().enumerate().map(stop).collect()
+}
+
+fn check(stops: &[ColorStop]) -> Result<(), ColorError> {
+    if stops.is_empty() {
+        return Err(ColorError::new(ColorErrorKind::NoStops));
+    }
+    let not_finite = |what, value: f32| {
+        let value = f64::from(value);
+        Err(ColorError::new(ColorErrorKind::NotFinite { what, value }))
+    };
+    for stop in stops {
+        if !stop.position.is_finite() {
+            return not_finite("position of a stop", stop.position);
+        }
+        if let Some(part) = stop
+            .color
+            .to_array()
+            .into_iter()
+            .find(|part| !part.is_finite())
+        {
+            return not_finite("color of a stop", part);
+        }
+    }
+    for pair in stops.windows(2) {
+        let [before, position] = [pair[0].position, pair[1].position];
+        if position < before {
+            return Err(ColorError::new(ColorErrorKind::Unsorted {
+                position,
+                before,
+            }));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RampData> for ColorRamp {
+    type Error = ColorError;
+
+    fn try_from(data: RampData) -> Result<Self, ColorError> {
+        let ramp = Self::new(data.stops)?.with_interpolation(data.interpolation);
+        Ok(ramp.with_outside(data.outside))
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<ColorRamp> for RampData {
+    fn from(ramp: ColorRamp) -> Self {
+        Self {
+            stops: ramp.stops,
+            interpolation: ramp.interpolation,
+            outside: ramp.outside,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
