@@ -55,7 +55,7 @@ fn figures_have_names_of_their_own_captions_and_numbers() {
         assert!(!figure.number.is_empty(), "{name} has no number");
         assert!(names.insert(name.clone()), "{name} is there twice");
         assert!(
-            !select(&[name.clone()]).is_empty(),
+            !select(std::slice::from_ref(&name)).is_empty(),
             "{name} is not found by its name"
         );
     }

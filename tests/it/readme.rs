@@ -1,4 +1,5 @@
 //! What the README says about the workspace is so.
+#![expect(clippy::disallowed_methods, reason = "the workspace is made of files")]
 
 use dapple_gallery::PAPERS;
 use std::fs;

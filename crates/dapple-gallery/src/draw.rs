@@ -1,10 +1,17 @@
-//! Drawing for figures: disks, lines and contours, with smooth edges, in the coordinates of the plane.
+//! Drawing for figures: points, graphs, lines and contours with smooth edges, in the coordinates of the plane.
 //!
-//! Coverage is that of an edge one pixel wide at the distance from the shape, which suits strokes that are thin and not
-//! crossed many times; it needs nothing but arithmetic and square roots, so drawings are the same bits everywhere.
+//! It needs nothing but arithmetic and square roots, so drawings are the same bits everywhere. What lies on a domain
+//! that wraps is drawn wherever the window shows it.
 
-use dapple_color::LinearRgb;
+mod label;
+mod stencil;
+
+pub use label::{label_color, label_gray};
+
+use dapple_graph::Graph;
+use dapple_points::{Domain, PointSet};
 use dapple_raster::{Raster, RasterError, Texel, Window, glam::DVec2};
+use stencil::Stencil;
 
 /// A raster to draw on. Positions are those of its window, widths are in pixels.
 #[derive(Clone, Debug)]
@@ -39,28 +46,54 @@ impl<T: Texel> Canvas<T> {
         })
     }
 
-    /// Fills the disk about `center` with the given radius, in pixels.
-    pub fn disk(&mut self, center: DVec2, radius_px: f64, ink: T) {
-        let center = self.pixel_from_plane(center);
-        self.stroke([center, center], radius_px, ink, |at| {
-            (at - center).length()
-        });
+    /// Draws every point of a set as a disk with the given radius, in pixels.
+    pub fn points(&mut self, points: &PointSet, radius_px: f64, ink: T) {
+        let mut stencil = Stencil::new(self.window.size);
+        for (_, position) in points.iter() {
+            for copy in self.copies(points.domain(), [position; 2], radius_px) {
+                stencil.segment(copy, radius_px);
+            }
+        }
+        stencil.ink(&mut self.raster, ink);
     }
 
-    /// Draws the straight line between two positions, with round ends and the given width, in pixels.
-    pub fn line(&mut self, from: DVec2, to: DVec2, width_px: f64, ink: T) {
-        let [from, to] = [from, to].map(|end| self.pixel_from_plane(end));
-        self.stroke([from, to], 0.5 * width_px, ink, |at| {
-            distance_to_segment(at, from, to)
-        });
+    /// Draws the edges of a graph with the given width, in pixels.
+    pub fn graph(&mut self, points: &PointSet, graph: &Graph, width_px: f64, ink: T) {
+        let mut stencil = Stencil::new(self.window.size);
+        for (point, position) in points.iter() {
+            for axis in graph.axes(point) {
+                let edge = [position, position + axis.vector];
+                for copy in self.copies(points.domain(), edge, width_px) {
+                    stencil.segment(copy, 0.5 * width_px);
+                }
+            }
+        }
+        stencil.ink(&mut self.raster, ink);
+    }
+
+    /// Fills the disk about `center` with the given radius, in pixels.
+    pub fn disk(&mut self, center: DVec2, radius_px: f64, ink: T) {
+        self.lines(&[[center; 2]], 2.0 * radius_px, ink);
+    }
+
+    /// Draws straight lines between pairs of positions, with round ends and the given width, in pixels.
+    pub fn lines(&mut self, lines: &[[DVec2; 2]], width_px: f64, ink: T) {
+        let mut stencil = Stencil::new(self.window.size);
+        for line in lines {
+            stencil.segment(line.map(|end| self.pixel_from_plane(end)), 0.5 * width_px);
+        }
+        stencil.ink(&mut self.raster, ink);
     }
 
     /// Draws a line around `corners`, back to the first, with the given width, in pixels.
     pub fn outline(&mut self, corners: &[DVec2], width_px: f64, ink: T) {
         let next = corners.iter().cycle().skip(1);
-        for (&from, &to) in corners.iter().zip(next) {
-            self.line(from, to, width_px, ink);
-        }
+        let lines: Vec<_> = corners
+            .iter()
+            .zip(next)
+            .map(|(&from, &to)| [from, to])
+            .collect();
+        self.lines(&lines, width_px, ink);
     }
 
     /// Draws the contours of a field, given by its values at the pixels, with the given width, in pixels.
@@ -79,6 +112,7 @@ impl<T: Texel> Canvas<T> {
         ink: T,
     ) -> Result<(), RasterError> {
         self.raster.check_same_size(field.size())?;
+        let mut stencil = Stencil::new(self.window.size);
         for row in 0..field.height() {
             for column in 0..field.width() {
                 let slope = gradient_px(field, column, row).length();
@@ -86,10 +120,12 @@ impl<T: Texel> Canvas<T> {
                 let gaps = levels.iter().map(|level| f64::from((value - level).abs()));
                 let gap = gaps.fold(f64::INFINITY, f64::min);
                 if slope > 0.0 {
-                    self.blend(column, row, coverage(gap / slope, 0.5 * width_px), ink);
+                    let inside = 0.5 * width_px + 0.5 - gap / slope;
+                    stencil.cover(column, row, inside.clamp(0.0, 1.0) as f32);
                 }
             }
         }
+        stencil.ink(&mut self.raster, ink);
         Ok(())
     }
 
@@ -99,25 +135,35 @@ impl<T: Texel> Canvas<T> {
         self.raster
     }
 
-    /// Inks the pixels that lie within `reach` pixels of a shape inside the box about two corners, all in pixels.
-    fn stroke(&mut self, corners: [DVec2; 2], reach: f64, ink: T, distance: impl Fn(DVec2) -> f64) {
-        let low = corners[0].min(corners[1]) - DVec2::splat(reach + 1.0);
-        let high = corners[0].max(corners[1]) + DVec2::splat(reach + 1.0);
-        let [width, height] = self.raster.size();
-        for row in clamped(low.y, height)..clamped(high.y, height) {
-            for column in clamped(low.x, width)..clamped(high.x, width) {
-                let at = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
-                self.blend(column, row, coverage(distance(at), reach), ink);
-            }
-        }
-    }
-
-    fn blend(&mut self, column: u32, row: u32, coverage: f32, ink: T) {
-        if coverage > 0.0 {
-            let width = self.raster.width() as usize;
-            let pixel = &mut self.raster.pixels_mut()[row as usize * width + column as usize];
-            *pixel = *pixel + (ink - *pixel) * coverage;
-        }
+    /// The copies of a line of the domain that the window may show, in pixels, `margin_px` pixels wide on both sides.
+    fn copies(&self, domain: &Domain, [from, to]: [DVec2; 2], margin_px: f64) -> Vec<[DVec2; 2]> {
+        let [shift, size] = [domain.origin, domain.origin + domain.size]
+            .map(|corner| self.pixel_from_plane(corner));
+        let period = size - shift;
+        let line = [from, to].map(|end| self.pixel_from_plane(end));
+        let shifts = |axis: usize| {
+            let [low, high] = [
+                line[0][axis].min(line[1][axis]),
+                line[0][axis].max(line[1][axis]),
+            ];
+            let seen = f64::from(self.window.size[axis]) + margin_px;
+            let turns = [
+                (-margin_px - high) / period[axis],
+                (seen - low) / period[axis],
+            ];
+            let wraps = domain.wrap[axis] && turns.iter().all(|turn| turn.is_finite());
+            let [first, last] = if wraps {
+                [
+                    turns[0].min(turns[1]).ceil(),
+                    turns[0].max(turns[1]).floor(),
+                ]
+            } else {
+                [0.0; 2]
+            };
+            (first as i64..=last as i64).map(move |turn| turn as f64 * period[axis])
+        };
+        let shifts = shifts(0).flat_map(|x| shifts(1).map(move |y| DVec2::new(x, y)));
+        shifts.map(|shift| line.map(|end| end + shift)).collect()
     }
 
     /// Where a position is, in pixels from the top left corner.
@@ -125,55 +171,6 @@ impl<T: Texel> Canvas<T> {
         let [first_x, first_y] = self.window.first.map(|first| first as f64);
         (position - self.window.origin) / self.window.pixel - DVec2::new(first_x, first_y)
     }
-}
-
-/// A color for a label: neighboring labels get colors far apart, and a label has the same color everywhere.
-#[must_use]
-pub fn label_color(label: u32) -> LinearRgb {
-    // Hues that are a golden section of the circle apart stay far apart, however many there are.
-    let hue = fraction(f64::from(label) * 0.618_033_988_749_895) as f32 * 6.0;
-    let value = [0.95, 0.70, 0.85][label as usize % 3];
-    let channel = |shift: f32| {
-        let along = (hue + shift) % 6.0;
-        let strength = ((along - 3.0).abs() - 1.0).clamp(0.0, 1.0);
-        let display = value * (0.42 + 0.58 * strength);
-        display * display
-    };
-    LinearRgb::new(channel(0.0), channel(4.0), channel(2.0))
-}
-
-/// A shade of gray for a label, from 0.25 to 1.
-#[must_use]
-pub fn label_gray(label: u32) -> f32 {
-    let spread = fraction(f64::from(label) * 0.618_033_988_749_895);
-    0.25 + 0.75 * spread as f32
-}
-
-fn fraction(value: f64) -> f64 {
-    value - value.floor()
-}
-
-/// The first whole pixel from `coordinate` on, within a side of `n` pixels.
-fn clamped(coordinate: f64, n: u32) -> u32 {
-    coordinate.clamp(0.0, f64::from(n)) as u32
-}
-
-/// How much of a pixel is covered by a shape that reaches `reach` pixels from its spine.
-fn coverage(distance: f64, reach: f64) -> f32 {
-    // A stroke thinner than a pixel keeps its weight by becoming paler.
-    let (half, weight) = (reach.max(0.5), (2.0 * reach).min(1.0));
-    ((half + 0.5 - distance).clamp(0.0, 1.0) * weight) as f32
-}
-
-fn distance_to_segment(at: DVec2, from: DVec2, to: DVec2) -> f64 {
-    let (along, reach) = (to - from, at - from);
-    let length_sq = along.length_squared();
-    let t = if length_sq > 0.0 {
-        (reach.dot(along) / length_sq).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    (reach - along * t).length()
 }
 
 /// The change of a field per pixel, from the neighbors on both sides (one side at the edge).
@@ -190,7 +187,9 @@ fn gradient_px(field: &Raster<f32>, column: u32, row: u32) -> DVec2 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Canvas, label_color, label_gray};
+    use super::Canvas;
+    use dapple_graph::delaunay;
+    use dapple_points::{Domain, PointSet};
     use dapple_raster::{Raster, Window, glam::DVec2};
 
     fn canvas(size: u32) -> Canvas<f32> {
@@ -217,7 +216,7 @@ mod tests {
     fn line_covers_its_length_times_its_width_even_when_thin() {
         for (width, tolerance) in [(3.0, 0.5), (1.0, 1.0), (0.5, 1.0)] {
             let mut canvas = canvas(64);
-            canvas.line(DVec2::new(-1.0, 0.4), DVec2::new(2.0, 0.4), width, 1.0);
+            canvas.lines(&[[DVec2::new(-1.0, 0.4), DVec2::new(2.0, 0.4)]], width, 1.0);
             // The row of pixels is sampled at its center, so a thin level line is off by a fraction of a row.
             let covered = sum(&canvas.into_raster()) / 64.0;
             assert!(
@@ -231,7 +230,7 @@ mod tests {
     fn shapes_outside_or_not_finite_leave_the_canvas_alone() {
         let mut canvas = canvas(16);
         canvas.disk(DVec2::splat(7.0), 3.0, 1.0);
-        canvas.line(DVec2::splat(f64::NAN), DVec2::splat(0.5), 2.0, 1.0);
+        canvas.lines(&[[DVec2::splat(f64::NAN), DVec2::splat(0.5)]], 2.0, 1.0);
         canvas.disk(DVec2::splat(f64::INFINITY), 3.0, 1.0);
         assert_eq!(sum(&canvas.into_raster()), 0.0);
     }
@@ -250,15 +249,42 @@ mod tests {
     }
 
     #[test]
-    fn neighboring_labels_differ_visibly() {
-        for label in 0..1000 {
-            let [a, b] = [label, label + 1].map(label_color);
-            assert!(
-                (a - b).to_array().iter().any(|gap| gap.abs() > 0.1),
-                "colors of {label}"
-            );
-            let gap = (label_gray(label) - label_gray(label + 1)).abs();
-            assert!(gap > 0.2, "grays of {label}");
+    fn what_wraps_is_drawn_wherever_the_window_shows_it() {
+        let positions = [
+            [0.01, 0.02],
+            [0.5, 0.9],
+            [0.97, 0.4],
+            [0.3, 0.35],
+            [0.7, 0.6],
+        ]
+        .map(DVec2::from);
+        let points =
+            PointSet::new(Domain::torus(DVec2::ZERO, DVec2::ONE), positions.to_vec()).unwrap();
+        let graph = delaunay(&points).unwrap();
+        let draw = |origin: f64| {
+            let window = Window::new(DVec2::splat(origin), DVec2::splat(2.0), [64; 2]).unwrap();
+            let mut canvas = Canvas::new(&window, 0.0).unwrap();
+            canvas.graph(&points, &graph, 1.5, 0.5);
+            canvas.points(&points, 2.0, 1.0);
+            canvas.into_raster()
+        };
+        let (here, far) = (draw(0.0), draw(-3.0));
+        let quarter = here.crop([0, 0], [32, 32]).unwrap();
+        for first in [[32, 0], [0, 32], [32, 32]] {
+            assert_same(&here.crop(first, [32, 32]).unwrap(), &quarter);
         }
+        assert_same(&here, &far);
+    }
+
+    /// Shifted copies of a line have rounded ends, so their coverage may differ in the last bits.
+    fn assert_same(a: &Raster<f32>, b: &Raster<f32>) {
+        let largest = a
+            .zip_map(b, |a, b| (a - b).abs())
+            .unwrap()
+            .pixels()
+            .iter()
+            .copied()
+            .fold(0.0, f32::max);
+        assert!(largest < 1e-5, "pixels differ by {largest}");
     }
 }

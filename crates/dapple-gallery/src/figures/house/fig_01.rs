@@ -25,11 +25,14 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
 
     let mut graph = Canvas::new(&window, LinearRgb::WHITE)?;
     let points: Vec<DVec2> = (0..12).map(ring).collect();
-    for (index, &point) in points.iter().enumerate() {
-        for &other in &points[..index] {
-            graph.line(point, other, 1.5 * pixel, LinearRgb::gray(0.4));
-        }
-    }
+    let pairs = points
+        .iter()
+        .flat_map(|&a| points.iter().map(move |&b| [a, b]));
+    graph.lines(
+        &pairs.collect::<Vec<_>>(),
+        1.5 * pixel,
+        LinearRgb::gray(0.4),
+    );
     for (label, &point) in (0..).zip(&points) {
         graph.disk(point, 14.0 * pixel, LinearRgb::BLACK);
         graph.disk(point, 12.0 * pixel, label_color(label));
