@@ -75,7 +75,8 @@ pub(super) fn references(workspace: &Workspace) -> Vec<String> {
     silent
         .map(|source| {
             format!(
-                "{}: no `Reference:` and no DOI in the header of the file or of its module",
+                "{}: no `Reference:` and no DOI in the header of the file or of its module (if it is all ours, say \
+                 `Reference: our own`)",
                 source.path
             )
         })
@@ -91,14 +92,14 @@ fn is_of_library(workspace: &Workspace, source: &Text) -> bool {
     layer.is_some_and(|layer| ALGORITHM_LAYERS.contains(layer))
 }
 
-/// The file and the modules that it is part of: `a/b/tests.rs`, `a/b.rs`, `a.rs`.
+/// The file and the modules that it is part of: `src/a/b.rs`, `src/a.rs`; and `src/lib.rs` for what tests a whole crate.
 fn modules(source: &Text) -> impl Iterator<Item = String> {
-    let parent = |path: &String| {
-        let (folder, _) = path.rsplit_once('/')?;
-        Some(format!("{folder}.rs"))
+    let parent = |path: &String| match path.rsplit_once('/')? {
+        (src, "tests.rs") if src.ends_with("/src") => Some(format!("{src}/lib.rs")),
+        (src, _) if src.ends_with("/src") => None,
+        (folder, _) => Some(format!("{folder}.rs")),
     };
     core::iter::successors(Some(source.path.clone()), parent)
-        .take_while(|path| !path.ends_with("/src.rs"))
 }
 
 fn has_reference(workspace: &Workspace, path: &str) -> bool {
@@ -206,6 +207,15 @@ mod tests {
         assert!(
             references(&sound).is_empty(),
             "the module's header is not seen"
+        );
+        let lib = "//! The story.\n//!\n//! Reference: Somebody, 1996.\n";
+        let whole = workspace(&[
+            ("crates/a/src/tests/bits.rs", pinned),
+            ("crates/a/src/lib.rs", lib),
+        ]);
+        assert!(
+            references(&whole).is_empty(),
+            "the crate's header is not seen"
         );
         let elsewhere = workspace(&[
             ("crates/b/src/noise.rs", pinned),
