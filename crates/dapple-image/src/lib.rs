@@ -4,6 +4,22 @@
 //! color is linear inside of dapple and in OpenEXR, and sRGB in PNG. A file is written under a temporary name and then
 //! renamed, so that half a file is never seen. Whatever the bytes that are read: the result is an image or an
 //! [`ImageError`], within the [`Limits`].
+//!
+//! | to write | in one call | with more choice |
+//! |---|---|---|
+//! | data from 0 to 1 | [`write_gray_png`], [`write_normal_png`] | [`write_png`], [`encode_png`] |
+//! | color | [`write_color_png`], [`write_color_alpha_png`] | [`write_png`], [`encode_png`] |
+//! | any numbers | [`write_gray_exr`], [`write_color_exr`], [`write_color_alpha_exr`] | [`write_exr`], [`encode_exr`] |
+//!
+//! [`read_image`] reads all of them back:
+//!
+//! ```no_run
+//! use dapple_image::{Depth, Limits, read_image, write_gray_png};
+//!
+//! let height = read_image("height.exr", &Limits::default())?.gray()?;
+//! write_gray_png("height.png", &height, Depth::Sixteen)?;
+//! # Ok::<(), dapple_image::ImageError>(())
+//! ```
 
 #![forbid(unsafe_code)]
 
@@ -20,4 +36,10 @@ pub use self::image::{Image, decode_image, read_image};
 pub use self::png::{PngImage, PngPixel, PngPixels, Transfer, decode_png, encode_png, write_png};
 pub use error::{ImageError, ImageErrorKind};
 pub use limits::Limits;
-pub use shortcut::{Depth, write_color_alpha_png, write_color_png, write_gray_png};
+pub use shortcut::{
+    Depth, write_color_alpha_exr, write_color_alpha_png, write_color_exr, write_color_png,
+    write_gray_exr, write_gray_png, write_normal_png,
+};
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,10 @@
 //! From rasters of values to files in one call.
+//!
+//! Codes are made on all cores where the feature `rayon` is on. Values below 0 and above 1 are clamped in PNG, and NaN
+//! becomes 0; OpenEXR keeps every number as it is.
 
-use crate::{ImageError, Transfer, write_png};
-use dapple_color::{Code, LinearRgb, LinearRgba};
+use crate::{ExrPlane, ImageError, PngPixel, Transfer, write_exr, write_png};
+use dapple_color::{Code, LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
 use std::path::Path;
 
@@ -15,9 +18,7 @@ pub enum Depth {
     Sixteen,
 }
 
-/// Writes data from 0 to 1 as a gray PNG file, linear, without a color chunk.
-///
-/// Values are quantized with `round(value · max)`; below 0 and above 1 they are clamped, and NaN becomes 0.
+/// Writes data from 0 to 1 as a gray PNG file: `round(value · max)`, linear, without a color chunk.
 ///
 /// # Errors
 ///
@@ -27,22 +28,14 @@ pub fn write_gray_png(
     values: &Raster<f32>,
     depth: Depth,
 ) -> Result<(), ImageError> {
-    fn write<C: Code + crate::PngPixel>(
-        path: &Path,
-        values: &Raster<f32>,
-    ) -> Result<(), ImageError> {
-        let codes = values.map(|&value| C::from_unit(value));
-        write_png(path, codes.view(), Transfer::Data)
-    }
+    let path = path.as_ref();
     match depth {
-        Depth::Eight => write::<u8>(path.as_ref(), values),
-        Depth::Sixteen => write::<u16>(path.as_ref(), values),
+        Depth::Eight => write(path, values, Transfer::Data, |&value| u8::from_unit(value)),
+        Depth::Sixteen => write(path, values, Transfer::Data, |&value| u16::from_unit(value)),
     }
 }
 
 /// Writes colors as an RGB PNG file under the sRGB curve, with the chunk that says so.
-///
-/// Parts below 0 and above 1 are clamped, and NaN becomes 0.
 ///
 /// # Errors
 ///
@@ -52,24 +45,14 @@ pub fn write_color_png(
     colors: &Raster<LinearRgb>,
     depth: Depth,
 ) -> Result<(), ImageError> {
-    let (path, transfer) = (path.as_ref(), Transfer::Srgb);
+    let path = path.as_ref();
     match depth {
-        Depth::Eight => write_png(
-            path,
-            colors.map(|color| color.to_srgb::<u8>()).view(),
-            transfer,
-        ),
-        Depth::Sixteen => write_png(
-            path,
-            colors.map(|color| color.to_srgb::<u16>()).view(),
-            transfer,
-        ),
+        Depth::Eight => write(path, colors, Transfer::Srgb, |color| color.to_srgb::<u8>()),
+        Depth::Sixteen => write(path, colors, Transfer::Srgb, |color| color.to_srgb::<u16>()),
     }
 }
 
 /// Writes colors with alpha as an RGBA PNG file: color under the sRGB curve, with the chunk that says so, alpha linear.
-///
-/// Parts below 0 and above 1 are clamped, and NaN becomes 0.
 ///
 /// # Errors
 ///
@@ -79,17 +62,72 @@ pub fn write_color_alpha_png(
     colors: &Raster<LinearRgba>,
     depth: Depth,
 ) -> Result<(), ImageError> {
-    let (path, transfer) = (path.as_ref(), Transfer::Srgb);
+    let path = path.as_ref();
     match depth {
-        Depth::Eight => write_png(
-            path,
-            colors.map(|color| color.to_srgb::<u8>()).view(),
-            transfer,
-        ),
-        Depth::Sixteen => write_png(
-            path,
-            colors.map(|color| color.to_srgb::<u16>()).view(),
-            transfer,
-        ),
+        Depth::Eight => write(path, colors, Transfer::Srgb, |color| color.to_srgb::<u8>()),
+        Depth::Sixteen => write(path, colors, Transfer::Srgb, |color| color.to_srgb::<u16>()),
     }
+}
+
+/// Writes normals as an RGB PNG file: `round((part + 1) / 2 · max)`, linear, without a color chunk.
+///
+/// # Errors
+///
+/// [`ImageErrorKind::Io`](crate::ImageErrorKind::Io) if the file cannot be written.
+pub fn write_normal_png(
+    path: impl AsRef<Path>,
+    normals: &Raster<Normal>,
+    depth: Depth,
+) -> Result<(), ImageError> {
+    let path = path.as_ref();
+    match depth {
+        Depth::Eight => write(path, normals, Transfer::Data, |normal| {
+            normal.to_codes::<u8>()
+        }),
+        Depth::Sixteen => write(path, normals, Transfer::Data, |normal| {
+            normal.to_codes::<u16>()
+        }),
+    }
+}
+
+/// Writes data as an OpenEXR file with the one plane `Y`.
+///
+/// # Errors
+///
+/// Those of [`write_exr`].
+pub fn write_gray_exr(path: impl AsRef<Path>, values: &Raster<f32>) -> Result<(), ImageError> {
+    write_exr(path, &[ExrPlane::new("Y", values.clone())])
+}
+
+/// Writes colors as an OpenEXR file with the planes `R`, `G` and `B`, linear.
+///
+/// # Errors
+///
+/// Those of [`write_exr`].
+pub fn write_color_exr(
+    path: impl AsRef<Path>,
+    colors: &Raster<LinearRgb>,
+) -> Result<(), ImageError> {
+    write_exr(path, &ExrPlane::from_colors(colors))
+}
+
+/// Writes colors with alpha as an OpenEXR file with the planes `R`, `G`, `B` and `A`, linear, alpha multiplied in.
+///
+/// # Errors
+///
+/// Those of [`write_exr`].
+pub fn write_color_alpha_exr(
+    path: impl AsRef<Path>,
+    colors: &Raster<LinearRgba>,
+) -> Result<(), ImageError> {
+    write_exr(path, &ExrPlane::from_colors_with_alpha(colors))
+}
+
+fn write<T: Sync, P: PngPixel + Send>(
+    path: &Path,
+    raster: &Raster<T>,
+    transfer: Transfer,
+    code: impl Fn(&T) -> P + Sync,
+) -> Result<(), ImageError> {
+    write_png(path, raster.par_map(code).view(), transfer)
 }
