@@ -5,15 +5,16 @@
 #![expect(clippy::disallowed_methods, reason = "golden images are files")]
 
 use anyhow::{Context, bail, ensure};
-use dapple_color::LinearRgb;
+use dapple_color::{Code, ColorRamp, LinearRgb, NormalOptions, Palette, normal_map};
 use dapple_gallery::draw::{Canvas, label_color};
-use dapple_gallery::{Panel, Picture};
 use dapple_graph::delaunay;
 use dapple_hash::{Seed, hash2, unit_f32, unit_f64};
 use dapple_image::{Limits, Transfer, decode_png, encode_png};
-use dapple_points::{Domain, PointSet};
+use dapple_points::{
+    Domain, PointSet, VariablePoissonOptions, poisson_disk, variable_poisson_disk,
+};
 use dapple_pups::Pups;
-use dapple_raster::{Field, Raster, Window, glam::DVec2};
+use dapple_raster::{Field, Ramp, Raster, Varying, Window, glam::DVec2};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
@@ -23,12 +24,16 @@ const BYTES_MAX: usize = 8 * 1024;
 /// The pixels along a side.
 const SIZE: u32 = 96;
 
-/// An image: its name, and how it is drawn.
-type Golden = (&'static str, fn() -> anyhow::Result<Panel>);
+/// An image: its name, and how its file is made.
+type Golden = (&'static str, fn() -> anyhow::Result<Vec<u8>>);
 
 /// The images.
 const GOLDEN: &[Golden] = &[
+    ("color-normal-map", color_normal_map),
+    ("color-palettes", color_palettes),
     ("graph-delaunay-torus", graph_delaunay_torus),
+    ("points-poisson-disk", points_poisson_disk),
+    ("points-variable-radius", points_variable_radius),
     ("pups-labels", pups_labels),
     ("pups-noise", pups_noise),
 ];
@@ -57,8 +62,7 @@ fn golden_folder_holds_nothing_else() {
 
 /// Compares an image with its file, or rewrites the file where the environment asks for it.
 fn check((name, draw): &Golden) -> anyhow::Result<()> {
-    let panel = draw().with_context(|| format!("{name} was not drawn"))?;
-    let bytes = encode(&panel)?;
+    let bytes = draw().with_context(|| format!("{name} was not drawn"))?;
     ensure!(
         bytes.len() <= BYTES_MAX,
         "{name}.png has {} bytes, but {BYTES_MAX} is the limit",
@@ -86,61 +90,103 @@ fn check((name, draw): &Golden) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The image as a file, with its pixels in the way that the gallery writes them.
-fn encode(panel: &Panel) -> anyhow::Result<Vec<u8>> {
-    let bytes = match &panel.picture {
-        Picture::Gray(_) => encode_png(
-            Raster::from_vec(panel.size(), panel.bytes())?.view(),
-            Transfer::Data,
-        ),
-        Picture::Color(raster) => encode_png(
-            raster.map(|color| color.to_srgb::<u8>()).view(),
-            Transfer::Srgb,
-        ),
-    };
-    Ok(bytes?)
-}
-
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("golden")
 }
 
-fn graph_delaunay_torus() -> anyhow::Result<Panel> {
-    let points = jittered_points()?;
-    let graph = delaunay(&points)?;
-    let mut canvas = Canvas::new(&window()?, 1.0)?;
-    canvas.graph(&points, &graph, 1.0, 0.0);
-    canvas.points(&points, 2.0, 0.5);
-    Ok(Panel::gray("", canvas.into_raster()))
+fn color_normal_map() -> anyhow::Result<Vec<u8>> {
+    let dome = |at: DVec2| (0.2 - (at - DVec2::splat(0.5)).length_squared()).max(0.0) as f32;
+    let height = Raster::from_window(&window()?, dome)?;
+    let normals = normal_map(&height, &NormalOptions::for_window(&window()?))?;
+    let codes = normals.map(|normal| normal.to_codes::<u8>());
+    Ok(encode_png(codes.view(), Transfer::Data)?)
 }
 
-fn pups_labels() -> anyhow::Result<Panel> {
+fn color_palettes() -> anyhow::Result<Vec<u8>> {
+    let ramps: Vec<ColorRamp> = Palette::ALL.into_iter().map(Palette::ramp).collect();
+    color(&Raster::from_fn(
+        [SIZE, 8 * ramps.len() as u32],
+        |column, row| ramps[row as usize / 8].at(column as f32 / (SIZE - 1) as f32),
+    )?)
+}
+
+fn graph_delaunay_torus() -> anyhow::Result<Vec<u8>> {
+    let points = jittered_points()?;
+    let mut canvas = Canvas::new(&window()?, 1.0)?;
+    canvas.graph(&points, &delaunay(&points)?, 1.0, 0.0);
+    canvas.points(&points, 2.0, 0.5);
+    gray(&canvas.into_raster())
+}
+
+fn points_poisson_disk() -> anyhow::Result<Vec<u8>> {
+    dots(&poisson_disk(unit_torus(), 0.08, Seed(3))?)
+}
+
+fn points_variable_radius() -> anyhow::Result<Vec<u8>> {
+    let cylinder = Domain {
+        wrap: [false, true],
+        ..unit_torus()
+    };
+    let radius = Varying::Ramp(Ramp {
+        from: DVec2::ZERO,
+        to: DVec2::X,
+        start: 0.03,
+        end: 0.15,
+    });
+    dots(&variable_poisson_disk(
+        cylinder,
+        &radius,
+        &VariablePoissonOptions::default(),
+        Seed(4),
+    )?)
+}
+
+fn pups_labels() -> anyhow::Result<Vec<u8>> {
     let pups = Pups::delaunay(&jittered_points()?)?;
     let labels: Vec<LinearRgb> = (0..).map(label_color).take(pups.n_points()).collect();
-    Ok(Panel::color("", pups.label_raster(&window()?, &labels)?))
+    color(&pups.label_raster(&window()?, &labels)?)
 }
 
-fn pups_noise() -> anyhow::Result<Panel> {
+fn pups_noise() -> anyhow::Result<Vec<u8>> {
     let pups = Pups::delaunay(&jittered_points()?)?;
     let value = |index: i64| unit_f32(hash2(Seed(2), [index, 0], 0) as u32);
     let noise = pups.texture((0..).map(value).take(pups.n_points()).collect())?;
-    Ok(Panel::gray("", noise.to_raster(&window()?)?))
+    gray(&noise.to_raster(&window()?)?)
 }
 
 /// A point in each of 6 × 6 cells of the unit torus.
 fn jittered_points() -> anyhow::Result<PointSet> {
-    let cells = (0..36).map(|cell| [cell % 6, cell / 6]);
     let jitter = |cell, axis| unit_f64(hash2(Seed(1), cell, axis));
-    let positions = cells.map(|cell| {
-        DVec2::new(
-            cell[0] as f64 + jitter(cell, 0),
-            cell[1] as f64 + jitter(cell, 1),
-        ) / 6.0
-    });
-    Ok(PointSet::new(
-        Domain::torus(DVec2::ZERO, DVec2::ONE),
-        positions.collect(),
+    let position = |cell: [i64; 2]| {
+        let corner = DVec2::new(cell[0] as f64, cell[1] as f64);
+        (corner + DVec2::new(jitter(cell, 0), jitter(cell, 1))) / 6.0
+    };
+    let positions = (0..36).map(|cell| position([cell % 6, cell / 6]));
+    Ok(PointSet::new(unit_torus(), positions.collect())?)
+}
+
+fn dots(points: &PointSet) -> anyhow::Result<Vec<u8>> {
+    let mut canvas = Canvas::new(&window()?, 1.0)?;
+    canvas.points(points, 1.5, 0.0);
+    gray(&canvas.into_raster())
+}
+
+fn gray(values: &Raster<f32>) -> anyhow::Result<Vec<u8>> {
+    Ok(encode_png(
+        values.map(|&value| u8::from_unit(value)).view(),
+        Transfer::Data,
     )?)
+}
+
+fn color(colors: &Raster<LinearRgb>) -> anyhow::Result<Vec<u8>> {
+    Ok(encode_png(
+        colors.map(|color| color.to_srgb::<u8>()).view(),
+        Transfer::Srgb,
+    )?)
+}
+
+fn unit_torus() -> Domain {
+    Domain::torus(DVec2::ZERO, DVec2::ONE)
 }
 
 fn window() -> anyhow::Result<Window> {
