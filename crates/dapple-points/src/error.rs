@@ -65,6 +65,42 @@ pub enum PointsErrorKind {
         /// The radius, the largest one if it varies.
         radius: f64,
     },
+    /// A side that wraps around is shorter than two radii.
+    NarrowWrap {
+        /// The axis: 0 for x, 1 for y.
+        axis: usize,
+        /// The length of the side.
+        side: f64,
+        /// The radius.
+        radius: f64,
+    },
+    /// Two given points are closer than they may be.
+    TooClose {
+        /// Which points they are.
+        points: [PointIdx; 2],
+        /// How far they are apart.
+        distance: f64,
+        /// How far they must be apart at least.
+        radius: f64,
+    },
+    /// A radius of a nested set is larger than the one before.
+    NotDescending {
+        /// Which radius it is, from 0.
+        level: usize,
+        /// The radius.
+        radius: f64,
+        /// The one before.
+        before: f64,
+    },
+    /// A number is outside of its range.
+    OutOfRange {
+        /// What the number is.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// The smallest and the largest allowed.
+        range: [f64; 2],
+    },
     /// There is no set, or a set without points, where points are needed.
     NoPoints,
     /// Sets that must share one domain do not.
@@ -138,6 +174,44 @@ impl fmt::Display for PointsError {
                 write!(
                     f,
                     "axis {axis} wraps around after {period}, but it must reach over two radii of {radius}"
+                )
+            }
+            PointsErrorKind::NarrowWrap { axis, side, radius } => {
+                let name = ["x", "y"][axis.min(1)];
+                write!(
+                    f,
+                    "the domain is {side} wide along {name}, where it wraps, but must be at least two radii of {radius}"
+                )
+            }
+            PointsErrorKind::TooClose {
+                points: [first, second],
+                distance,
+                radius,
+            } => {
+                write!(
+                    f,
+                    "points {} and {} are {distance} apart, but the radius is {radius}",
+                    first.0, second.0
+                )
+            }
+            PointsErrorKind::NotDescending {
+                level,
+                radius,
+                before,
+            } => {
+                write!(
+                    f,
+                    "radius {level} is {radius}, but it must not be larger than the one before, {before}"
+                )
+            }
+            PointsErrorKind::OutOfRange {
+                what,
+                value,
+                range: [least, most],
+            } => {
+                write!(
+                    f,
+                    "{what} is {value}, but it must be between {least} and {most}"
                 )
             }
             PointsErrorKind::NoPoints => {

@@ -1,0 +1,179 @@
+//! The grid under a Poisson-disk set: cells small enough that no cell holds two points.
+//!
+//! The domain is cut into equal cells whose diagonal is at most the radius, so that a cell holds at most one point
+//! and two points conflict only if their cells are at most two apart. A margin of [`HALO`] cells around the grid holds
+//! copies from the other side along axes that wrap, and nothing along axes that do not, so that no loop over neighbors
+//! asks where it is.
+//!
+//! **Units.** A place is a cell and an offset in `[0, 1)²` of the cell, a multiple of 2^-22 ([`LATTICE`] steps per
+//! cell). Differences of offsets across up to three cells are exact in `f32`, in whatever frame they are taken.
+//! Two places conflict if [`Grid::distance_sq`] is below 1: the square of the distance over [`Grid::reach`], rounded in
+//! one fixed way. The reach is larger than the radius by [`SLACK`], which is more than all rounding together, so the
+//! conflict test needs no second, exact one: points that do not conflict are at least a radius apart as `f64`, and
+//! where everything conflicts no empty circle is larger than the radius times 1 + 1e-6.
+
+use crate::{Domain, PointsError, PointsErrorKind};
+use glam::DVec2;
+
+/// Copies of cells beyond each side of the grid.
+pub(crate) const HALO: u32 = 2;
+
+/// Steps of the lattice of places per cell: 2^22, as 2^24 steps are exact in `f32` and differences reach three cells.
+pub(crate) const LATTICE: u32 = 1 << 22;
+
+/// One step of the lattice, in cells.
+pub(crate) const STEP: f32 = 1.0 / LATTICE as f32;
+
+/// An offset that is far from every place: what an empty cell holds. Its square is still finite.
+pub(crate) const FAR: f32 = 1e9;
+
+/// By how much the reach of a point is larger than the radius, relatively. Rounding to `f32` may shorten a distance by
+/// 6 · 2^-24 / 2 = 1.8e-7, and taking a given point to the lattice by 2^-23 = 1.2e-7.
+const SLACK: f64 = 4e-7;
+
+/// How much smaller than a radius the diagonal of a cell is at least, relatively: given points that are a radius apart
+/// and then rounded still lie in different cells.
+const CELL_SLACK: f64 = 1e-6;
+
+/// A cell of the grid by its place in the arrays, margin included: the first cell of the domain is `(HALO, HALO)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Cell {
+    pub(crate) row: u32,
+    pub(crate) column: u32,
+}
+
+/// The cells of a domain for one radius.
+#[derive(Clone, Debug)]
+pub(crate) struct Grid {
+    pub(crate) domain: Domain,
+    /// Columns and rows without the margin.
+    pub(crate) cells: [u32; 2],
+    /// Width and height of a cell, in units of the domain.
+    cell: DVec2,
+    /// Width and height of a cell over the reach.
+    pub(crate) scale: [f32; 2],
+}
+
+impl Grid {
+    /// Lays the grid for points that are to be `radius` apart.
+    pub(crate) fn new(domain: Domain, radius: f64, max_points: u64) -> Result<Self, PointsError> {
+        let domain = domain.checked()?;
+        check_radius(&domain, radius, max_points)?;
+        let side = radius * (1.0 - CELL_SLACK) * core::f64::consts::FRAC_1_SQRT_2;
+        // At most 2^30 cells and a margin: `check_radius` has bounded both the area and each side.
+        let cells = [0, 1].map(|axis| (domain.size[axis] / side).ceil().max(1.0) as u32);
+        let cell = domain.size / DVec2::new(f64::from(cells[0]), f64::from(cells[1]));
+        let largest = domain.origin.abs().max(domain.end().abs()).max_element();
+        let reach = radius * (1.0 + SLACK) + 8.0 * f64::EPSILON * largest;
+        let scale = [(cell.x / reach) as f32, (cell.y / reach) as f32];
+        Ok(Self {
+            domain,
+            cells,
+            cell,
+            scale,
+        })
+    }
+
+    /// The length of a row of the arrays, in cells.
+    pub(crate) fn stride(&self) -> usize {
+        (self.cells[0] + 2 * HALO) as usize
+    }
+
+    /// The number of rows of the arrays.
+    pub(crate) fn rows(&self) -> usize {
+        (self.cells[1] + 2 * HALO) as usize
+    }
+
+    /// Where the arrays hold a cell.
+    #[inline(always)]
+    pub(crate) fn index(&self, cell: Cell) -> usize {
+        cell.row as usize * self.stride() + cell.column as usize
+    }
+
+    /// The square of the distance, in reaches, of two places whose offsets differ by `(dx, dy)` cells.
+    ///
+    /// It never falls where `|dx|` or `|dy|` grows, since neither rounding nor squaring turns an order around.
+    #[inline(always)]
+    pub(crate) fn distance_sq(&self, dx: f32, dy: f32) -> f32 {
+        let [x, y] = [dx * self.scale[0], dy * self.scale[1]];
+        x * x + y * y
+    }
+
+    /// The cell of the domain that a cell of the margin is a copy of.
+    ///
+    /// Other cells are their own originals, and so are those of the margin along an axis that does not wrap.
+    #[inline(always)]
+    pub(crate) fn original(&self, cell: Cell) -> Cell {
+        Cell {
+            row: self.original_index(1, cell.row),
+            column: self.original_index(0, cell.column),
+        }
+    }
+
+    /// One coordinate of [`original`](Self::original), for axis 0 or 1.
+    #[inline(always)]
+    pub(crate) fn original_index(&self, axis: usize, index: u32) -> u32 {
+        let count = self.cells[axis];
+        if !self.domain.wrap[axis] {
+            index
+        } else if index < HALO {
+            index + count
+        } else if index >= count + HALO {
+            index - count
+        } else {
+            index
+        }
+    }
+
+    /// The position of a place.
+    pub(crate) fn position(&self, cell: Cell, offset: [f32; 2]) -> DVec2 {
+        let along = |index: u32, offset: f32| f64::from(index - HALO) + f64::from(offset);
+        let cells = DVec2::new(along(cell.column, offset[0]), along(cell.row, offset[1]));
+        // Rounding must not carry the position over a border that does not wrap.
+        (self.domain.origin + cells * self.cell).min(self.domain.end())
+    }
+
+    /// The place of the lattice nearest to a position of the domain, within its cell.
+    pub(crate) fn place(&self, position: DVec2) -> (Cell, [f32; 2]) {
+        let cells = (position - self.domain.origin) / self.cell;
+        let along = |at: f64, count: u32| {
+            let index = at.floor().clamp(0.0, f64::from(count - 1));
+            let steps = ((at - index) * f64::from(LATTICE) + 0.5).floor();
+            let steps = steps.clamp(0.0, f64::from(LATTICE - 1));
+            (index as u32 + HALO, steps as f32 * STEP)
+        };
+        let (column, x) = along(cells.x, self.cells[0]);
+        let (row, y) = along(cells.y, self.cells[1]);
+        (Cell { row, column }, [x, y])
+    }
+}
+
+/// Refuses radii for which there is no set, or too large a one.
+fn check_radius(domain: &Domain, radius: f64, max_points: u64) -> Result<(), PointsError> {
+    let refuse = |kind| Err(PointsError::new(kind));
+    if !(radius > 0.0 && radius.is_finite()) {
+        return refuse(PointsErrorKind::NotPositive {
+            what: "the radius",
+            value: radius,
+        });
+    }
+    for axis in [0, 1] {
+        if domain.wrap[axis] && domain.size[axis] < 2.0 * radius {
+            return refuse(PointsErrorKind::NarrowWrap {
+                axis,
+                side: domain.size[axis],
+                radius,
+            });
+        }
+    }
+    // A set has at least 0.65 points per squared radius of area, and a strip of no width at least one per two radii.
+    let sides = domain.size / radius;
+    let needed = (crate::disk::DENSITY * sides.x * sides.y).max(0.5 * sides.max_element());
+    if needed > max_points as f64 || needed.is_nan() {
+        return refuse(PointsErrorKind::TooMany {
+            needed,
+            limit: max_points,
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,145 @@
+//! The slices of a set, one after another, on all cores.
+//!
+//! Each step of a slice runs over bands of rows, which read what the step before has written and write only their own
+//! rows, so the number of threads changes nothing.
+
+use super::grid::{Cell, Grid, HALO};
+use super::mask::Coverage;
+use super::sheet::{GIVEN, POINT, Sheet, domain_rows};
+use super::slice::{Band, Draw, Proposal, cover};
+use dapple_hash::Seed;
+use glam::DVec2;
+
+/// Rows of cells in a band: few enough to keep several cores busy, many enough that little is done twice.
+const BAND_ROWS: u32 = 128;
+
+/// For how long each slice throws darts: the mean number of darts at a cell.
+const DARTS: [f64; 9] = [0.5, 0.5, 0.7, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
+
+/// A set in the making.
+#[derive(Debug)]
+pub(crate) struct Solution<'a> {
+    grid: &'a Grid,
+    coverage: &'a Coverage,
+    sheet: Sheet,
+    masks: Vec<u64>,
+    bands: Vec<Band>,
+}
+
+impl<'a> Solution<'a> {
+    /// The domain without points.
+    pub(crate) fn new(grid: &'a Grid, coverage: &'a Coverage) -> Self {
+        let end = HALO + grid.cells[1];
+        let bands = (HALO..end)
+            .step_by(BAND_ROWS as usize)
+            .map(|first| Band::new(grid, first..end.min(first + BAND_ROWS)))
+            .collect();
+        Self {
+            grid,
+            coverage,
+            sheet: Sheet::new(grid),
+            masks: vec![u64::MAX; grid.stride() * grid.rows()],
+            bands,
+        }
+    }
+
+    /// Takes given points, each in a cell of its own.
+    pub(crate) fn give(&mut self, places: impl Iterator<Item = (Cell, [f32; 2])>) {
+        for (cell, offset) in places {
+            let band = (cell.row - HALO) / BAND_ROWS;
+            self.bands[band as usize].proposals.push(Proposal {
+                cell,
+                offset,
+                rank: GIVEN,
+                accepted: true,
+            });
+        }
+        self.keep_accepted(GIVEN);
+    }
+
+    /// Adds points until none fits.
+    pub(crate) fn fill(&mut self, seed: Seed) {
+        for (slice, mean) in (0..).zip(DARTS) {
+            self.slice(&Draw::darts(mean), seed.child("darts", slice));
+        }
+        let mut round = 0;
+        while self.bands.iter().any(|band| !band.open.is_empty()) {
+            self.slice(&Draw::Gaps, seed.child("gaps", round));
+            round += 1;
+        }
+    }
+
+    /// The positions of the points that were not given, cell by cell.
+    pub(crate) fn positions(&self) -> Vec<DVec2> {
+        let columns = HALO..HALO + self.grid.cells[0];
+        let rows = HALO..HALO + self.grid.cells[1];
+        let mut positions = Vec::new();
+        for cell in rows.flat_map(|row| columns.clone().map(move |column| Cell { row, column })) {
+            let index = self.grid.index(cell);
+            if self.sheet.rank[index] == POINT {
+                let offset = [self.sheet.x[index], self.sheet.y[index]];
+                positions.push(self.grid.position(cell, offset));
+            }
+        }
+        positions
+    }
+
+    fn slice(&mut self, draw: &Draw, seed: Seed) {
+        let (grid, sheet) = (self.grid, &self.sheet);
+        let band = BAND_ROWS as usize * grid.stride();
+        let masks = self.masks[domain_rows(grid)].chunks_mut(band);
+        for_each(self.bands.iter_mut().zip(masks), |(band, masks)| {
+            band.draw(grid, sheet, masks, draw, seed);
+        });
+        let rows = self.sheet.bands(grid, BAND_ROWS);
+        for_each(self.bands.iter().zip(rows), |(band, rows)| {
+            band.place(grid, rows)
+        });
+        self.sheet.wrap_rows(grid);
+        let sheet = &self.sheet;
+        for_each(self.bands.iter_mut(), |band| band.settle(grid, sheet));
+        self.keep_accepted(POINT);
+    }
+
+    fn keep_accepted(&mut self, rank: u32) {
+        let grid = self.grid;
+        let rows = self.sheet.bands(grid, BAND_ROWS);
+        for_each(self.bands.iter().zip(rows), |(band, rows)| {
+            band.keep_accepted(grid, rows, rank);
+        });
+        self.sheet.wrap_rows(grid);
+        let (bands, coverage) = (&self.bands, self.coverage);
+        let band = BAND_ROWS as usize * grid.stride();
+        let masks = self.masks[domain_rows(grid)].chunks_mut(band);
+        for_each(
+            bands.iter().enumerate().zip(masks),
+            |((own, band), masks)| {
+                for neighbor in neighbors(own, bands.len()) {
+                    cover(grid, coverage, masks, &band.rows, &bands[neighbor]);
+                }
+            },
+        );
+    }
+}
+
+/// The numbers of a band and of those next to it, around the domain, each once.
+fn neighbors(band: usize, count: usize) -> impl Iterator<Item = usize> {
+    let around = [band, (band + 1) % count, (band + count - 1) % count];
+    (0..around.len().min(count)).map(move |at| around[at])
+}
+
+/// Calls `work` for every item, on all cores where the feature `rayon` is on.
+fn for_each<T: Send>(items: impl Iterator<Item = T>, work: impl Fn(T) + Send + Sync) {
+    #[cfg(feature = "rayon")]
+    {
+        use rayon::prelude::*;
+        let mut items: Vec<T> = items.collect();
+        if items.len() == 1 {
+            items.drain(..).for_each(work);
+        } else {
+            items.into_par_iter().for_each(work);
+        }
+    }
+    #[cfg(not(feature = "rayon"))]
+    items.for_each(work);
+}

@@ -1,0 +1,86 @@
+//! Poisson-disk sets of ever smaller radius, each of which contains the one before.
+//!
+//! The coarsest set is an ordinary one. Each following level takes the points so far as given and adds points until
+//! none fits at its own radius, so every level is a maximal Poisson-disk set, and the points of the coarser levels
+//! come first. Points of later levels are not where a set of their radius alone would have them: the coarse points are
+//! further apart than such a set needs.
+
+use crate::{Domain, PointSet, PointsError, PointsErrorKind, extend_poisson_disk};
+use dapple_hash::Seed;
+
+/// Points in levels: the first few are the coarsest level, the first few more the next one, all of them the finest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NestedPointSet {
+    points: PointSet,
+    lengths: Vec<usize>,
+}
+
+impl NestedPointSet {
+    /// All points: the finest level.
+    #[must_use]
+    pub fn points(&self) -> &PointSet {
+        &self.points
+    }
+
+    /// The number of points of each level, from the coarsest to the finest.
+    #[must_use]
+    pub fn lengths(&self) -> &[usize] {
+        &self.lengths
+    }
+
+    /// The points of a level, from 0 for the coarsest, as a set of its own; none if there is no such level.
+    #[must_use]
+    pub fn level(&self, level: usize) -> Option<PointSet> {
+        let length = *self.lengths.get(level)?;
+        let positions = self.points.positions()[..length].to_vec();
+        PointSet::new(*self.points.domain(), positions).ok()
+    }
+
+    /// All points, without their levels.
+    #[must_use]
+    pub fn into_points(self) -> PointSet {
+        self.points
+    }
+}
+
+/// Maximal Poisson-disk sets with the given radii, which do not grow, each containing the one before.
+///
+/// The radii are in units of the domain. With half the radius a level has about four times the points; for twice the
+/// points, divide by the square root of two.
+///
+/// # Errors
+///
+/// As [`poisson_disk`](crate::poisson_disk) for each radius; [`PointsErrorKind::NotDescending`] if a radius is larger
+/// than the one before.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_points::{Domain, hash::Seed, nested_poisson_disk};
+///
+/// let nested = nested_poisson_disk(Domain::paper_torus(), &[0.2, 0.1], Seed(7))?;
+/// let [coarse, fine] = [nested.level(0).unwrap(), nested.level(1).unwrap()];
+/// assert_eq!(coarse.positions(), &fine.positions()[..coarse.len()]);
+/// # Ok::<(), dapple_points::PointsError>(())
+/// ```
+pub fn nested_poisson_disk(
+    domain: Domain,
+    radii: &[f64],
+    seed: Seed,
+) -> Result<NestedPointSet, PointsError> {
+    let mut points = PointSet::new(domain, Vec::new())?;
+    let mut lengths = Vec::with_capacity(radii.len());
+    for (level, &radius) in radii.iter().enumerate() {
+        let before = radii[level.saturating_sub(1)];
+        if radius > before {
+            return Err(PointsError::new(PointsErrorKind::NotDescending {
+                level,
+                radius,
+                before,
+            }));
+        }
+        points = extend_poisson_disk(&points, radius, seed.child("level", level as u64))?;
+        lengths.push(points.len());
+    }
+    Ok(NestedPointSet { points, lengths })
+}

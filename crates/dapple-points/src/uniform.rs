@@ -1,0 +1,113 @@
+//! Points without regard to each other: white noise, and a grid with jitter.
+//!
+//! Each point is a hash of its number or its cell, so a set of more points begins with the same ones. Positions are in
+//! the units of the domain.
+
+use crate::{Domain, PointSet, PointsError, PointsErrorKind};
+use dapple_hash::{CellHash, Seed, unit_f64};
+use glam::DVec2;
+
+/// The largest number of points that either function makes: 2^31, as [`PointSet`] holds.
+const MAX_POINTS: u64 = 1 << 31;
+
+/// `n_points` independent points, each uniform in the domain.
+///
+/// Point `i` depends on the seed and on `i` alone.
+///
+/// # Errors
+///
+/// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::TooMany`] past 2^31 points.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_points::{Domain, hash::Seed, white_noise};
+///
+/// let points = white_noise(Domain::paper_torus(), 100, Seed(7))?;
+/// let more = white_noise(Domain::paper_torus(), 200, Seed(7))?;
+/// assert_eq!(points.positions(), &more.positions()[..100]);
+/// # Ok::<(), dapple_points::PointsError>(())
+/// ```
+pub fn white_noise(domain: Domain, n_points: u32, seed: Seed) -> Result<PointSet, PointsError> {
+    let domain = checked(domain, u64::from(n_points))?;
+    let seed = seed.child("white noise", 0);
+    let positions = (0..n_points)
+        .map(|point| {
+            let hash = CellHash::new(seed, [i64::from(point)]);
+            place(&domain, unit_square(hash))
+        })
+        .collect();
+    PointSet::new(domain, positions)
+}
+
+/// One point in each cell of a grid of `cells[0]` columns and `cells[1]` rows, row by row.
+///
+/// A `jitter` of 0 puts it at the center of its cell, 1 anywhere in the cell; in between, in a cell that is smaller by
+/// that factor.
+///
+/// # Errors
+///
+/// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::TooMany`] past 2^31 points,
+/// [`PointsErrorKind::OutOfRange`] for a jitter outside of `0..=1`.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_points::{Domain, glam::DVec2, hash::Seed, jittered_grid};
+///
+/// let points = jittered_grid(Domain::paper_torus(), [2, 1], 0.0, Seed(7))?;
+/// assert_eq!(points.positions(), [DVec2::new(-0.5, 0.0), DVec2::new(0.5, 0.0)]);
+/// # Ok::<(), dapple_points::PointsError>(())
+/// ```
+pub fn jittered_grid(
+    domain: Domain,
+    cells: [u32; 2],
+    jitter: f64,
+    seed: Seed,
+) -> Result<PointSet, PointsError> {
+    let [columns, rows] = cells;
+    let domain = checked(domain, u64::from(columns) * u64::from(rows))?;
+    if !(0.0..=1.0).contains(&jitter) {
+        return Err(PointsError::new(PointsErrorKind::OutOfRange {
+            what: "the jitter",
+            value: jitter,
+            range: [0.0, 1.0],
+        }));
+    }
+    let seed = seed.child("jittered grid", 0);
+    let count = DVec2::new(f64::from(columns), f64::from(rows));
+    let position = |column: u32, row: u32| {
+        let hash = CellHash::new(seed, [i64::from(column), i64::from(row)]);
+        let offset = DVec2::splat(0.5) + (unit_square(hash) - 0.5) * jitter;
+        place(
+            &domain,
+            (DVec2::new(f64::from(column), f64::from(row)) + offset) / count,
+        )
+    };
+    let positions = (0..rows)
+        .flat_map(|row| (0..columns).map(move |column| position(column, row)))
+        .collect();
+    PointSet::new(domain, positions)
+}
+
+/// The domain, if it has area and the number of points is allowed.
+fn checked(domain: Domain, n_points: u64) -> Result<Domain, PointsError> {
+    if n_points > MAX_POINTS {
+        return Err(PointsError::new(PointsErrorKind::TooMany {
+            needed: n_points as f64,
+            limit: MAX_POINTS,
+        }));
+    }
+    domain.checked()
+}
+
+/// A uniform position of the unit square.
+fn unit_square(hash: CellHash) -> DVec2 {
+    DVec2::new(unit_f64(hash.at(0)), unit_f64(hash.at(1)))
+}
+
+/// The position at `unit`, from 0 to 1 across the domain along each axis.
+fn place(domain: &Domain, unit: DVec2) -> DVec2 {
+    // Rounding must not carry the position over a border that does not wrap.
+    (domain.origin + unit * domain.size).min(domain.end())
+}
