@@ -135,11 +135,18 @@ pub fn normal_map(
     // Slope per difference of two neighbors.
     let scale = DVec2::new(size[0].into(), size[1].into()) / (2.0 * options.extent);
     let [wrap_x, wrap_y] = options.wrap;
+    let last = size[0] - 1;
+    let [before_first, after_last] = [-1, i64::from(size[0])].map(|at| wrap_x.index(at, size[0]));
     let normals = Raster::from_rows(size, |row| {
         let [above, below] = [-1, 1].map(|step| wrap_y.index(i64::from(row) + step, size[1]));
         let [above, here, below] = [above, row, below].map(|row| height.row(row));
         (0..size[0]).map(move |column| {
-            let [left, right] = [-1, 1].map(|step| wrap_x.index(i64::from(column) + step, size[0]));
+            let left = if column > 0 { column - 1 } else { before_first };
+            let right = if column < last {
+                column + 1
+            } else {
+                after_last
+            };
             let difference = DVec2::new(
                 f64::from(here[right as usize]) - f64::from(here[left as usize]),
                 f64::from(below[column as usize]) - f64::from(above[column as usize]),

@@ -28,7 +28,7 @@ pub enum Interpolation {
     /// A straight line from color to color.
     #[default]
     Linear,
-    /// The color of the stop before.
+    /// The color of the stop before; see [`ColorRamp::bands`] for bands of equal width.
     Stepped,
     /// From color to color by `3t² - 2t³`, which has no kink at a stop.
     Smooth,
@@ -130,6 +130,21 @@ impl ColorRamp {
             .map(|text| LinearRgb::from_hex(text))
             .collect();
         Self::even(&colors?)
+    }
+
+    /// Bands of equal width, without mixing, that share the range from 0 to 1: as many as there are colors.
+    ///
+    /// # Errors
+    ///
+    /// [`ColorErrorKind::NoStops`] without a color, [`ColorErrorKind::NotFinite`] if a part of one is NaN or infinite.
+    pub fn bands(colors: &[LinearRgb]) -> Result<Self, ColorError> {
+        let count = colors.len() as f32;
+        let stop = |(at, &color): (usize, &LinearRgb)| ColorStop {
+            position: at as f32 / count,
+            color,
+        };
+        let stops: Vec<ColorStop> = colors.iter().enumerate().map(stop).collect();
+        Ok(Self::new(stops)?.with_interpolation(Interpolation::Stepped))
     }
 
     /// The same stops with another rule between them.

@@ -93,6 +93,14 @@ fn even_ramps_reach_from_zero_to_one() {
 }
 
 #[test]
+fn bands_have_equal_width() {
+    let bands = ColorRamp::bands(&[0.0, 0.5, 1.0, 2.0].map(LinearRgb::gray)).unwrap();
+    let values = [-1.0, 0.0, 0.24, 0.25, 0.49, 0.5, 0.75, 1.0, 3.0];
+    let expected = [0.0, 0.0, 0.0, 0.5, 0.5, 1.0, 2.0, 2.0, 2.0];
+    assert_eq!(grays(&bands, values), expected, "four bands");
+}
+
+#[test]
 fn bad_stops_are_refused() {
     let kind = |stops: &[ColorStop]| ColorRamp::new(stops).unwrap_err().kind().clone();
     assert_eq!(kind(&[]), ColorErrorKind::NoStops, "no stop");
