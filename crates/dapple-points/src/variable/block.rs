@@ -8,7 +8,7 @@
 use super::leaf::{Leaf, RadiusField};
 use super::rule::DiskRule;
 use crate::{PointsError, PointsErrorKind};
-use dapple_hash::{CellHash, Seed};
+use dapple_hash::{CellHash, Seed, unit_f32, unit_f64};
 use glam::DVec2;
 
 /// Cells to each side of a dart in which it looks for points by the quick test.
@@ -70,8 +70,8 @@ pub(super) struct Block {
     pub(super) locals: Vec<Local>,
     /// The first thing that went wrong.
     pub(super) error: Option<PointsError>,
-    /// Cells without a point, in random order.
-    pub(super) open: Vec<u32>,
+    /// The columns and rows of the cells without a point, in random order.
+    pub(super) open: Vec<[u16; 2]>,
     cursor: usize,
     /// The sides of a cell, and one over them.
     pub(super) cell: DVec2,
@@ -87,6 +87,8 @@ pub(super) struct Block {
     slots: Vec<u32>,
     /// Points without a cell of their own.
     aside: Vec<u32>,
+    /// A buffer.
+    found: Vec<u32>,
 }
 
 impl Block {
@@ -115,12 +117,14 @@ impl Block {
 
     /// Opens all cells, in random order.
     fn shuffle(&mut self, seed: Seed) {
-        let n_cells = self.leaf.cells[0] * self.leaf.cells[1];
-        self.open = (0..n_cells).collect();
+        let [columns, rows] = self.leaf.cells.map(|count| count as u16);
+        self.open = (0..rows)
+            .flat_map(|row| (0..columns).map(move |column| [column, row]))
+            .collect();
         let random = CellHash::new(seed, [i64::from(self.index)]);
-        for last in (1..n_cells).rev() {
-            let other = (random.at(last) >> 32) * u64::from(last + 1) >> 32;
-            self.open.swap(last as usize, other as usize);
+        for last in (1..self.open.len()).rev() {
+            let other = ((random.at(last as u32) >> 32) * (last as u64 + 1)) >> 32;
+            self.open.swap(last, other as usize);
         }
     }
 
@@ -157,16 +161,11 @@ impl Block {
         let index = self.locals.len() as u32;
         self.locals.push(local);
         self.largest = self.largest.max(local.radius);
-        let cell = (local.at * self.per_cell).floor() + DVec2::splat(self.margin as f64);
-        let rows = self.slots.len() / self.stride;
-        let is_inside = cell.min_element() >= 0.0
-            && cell.x < (self.stride - LANES + 2 * QUICK_REACH) as f64
-            && cell.y < rows as f64;
-        let slot = if is_inside {
-            cell.y as usize * self.stride + cell.x as usize
-        } else {
-            0
-        };
+        let cell = local.at * self.per_cell + self.margin as f64;
+        let columns = self.stride - LANES + 2 * QUICK_REACH;
+        let is_inside = cell.min_element() >= 0.0 && cell.x < columns as f64;
+        let slot = cell.y as usize * self.stride + cell.x as usize;
+        let is_inside = is_inside && slot < self.slots.len();
         if !is_inside || self.slots[slot] != NOBODY {
             self.aside.push(index);
             return;
@@ -187,7 +186,7 @@ impl Block {
         );
         let count = self.open.len() as f64 * share;
         // Rounded up or down at random, so that small blocks keep the share on average.
-        let count = (count + dapple_hash::unit_f64(random.at(u32::MAX))) as u32;
+        let count = (count + unit_f64(random.at(u32::MAX))) as u32;
         for dart in 0..count {
             if self.open.is_empty() || self.error.is_some() {
                 return;
@@ -196,9 +195,12 @@ impl Block {
                 self.cursor = 0;
             }
             let cell = self.open[self.cursor];
-            let place = fractions(random.at(dart));
-            let min = self.min_of(cell);
-            if self.throw(min, self.cell, place, setting) {
+            let place = random.at(dart);
+            let is_kept = !self.is_surely_taken(cell, place) && {
+                let min = self.min_of(cell);
+                self.throw(min, self.cell, fractions(place), setting)
+            };
+            if is_kept {
                 self.open.swap_remove(self.cursor);
             } else {
                 self.cursor += 1;
@@ -206,10 +208,9 @@ impl Block {
         }
     }
 
-    /// The corner of an inner cell.
-    pub(super) fn min_of(&self, cell: u32) -> DVec2 {
-        let columns = self.leaf.cells[0];
-        DVec2::new(f64::from(cell % columns), f64::from(cell / columns)) * self.cell
+    /// The corner of a cell.
+    pub(super) fn min_of(&self, [column, row]: [u16; 2]) -> DVec2 {
+        DVec2::new(f64::from(column), f64::from(row)) * self.cell
     }
 
     /// Throws a dart into a part of the block and keeps it, as a point, if it fits.
@@ -224,7 +225,7 @@ impl Block {
         let position = domain.origin + (self.leaf.min + (min + size * place));
         // What counts is the position as the caller will see it, with its rounding.
         let at = (position - domain.origin) - self.leaf.min;
-        if self.is_surely_taken(at) || !domain.contains(position) {
+        if !domain.contains(position) {
             return false;
         }
         let Some(radius) = self.read(position, setting) else {
@@ -261,72 +262,99 @@ impl Block {
         None
     }
 
-    /// Whether a place is certainly too close to a point; the quick test.
-    fn is_surely_taken(&self, at: DVec2) -> bool {
-        let scale = 1.0 / self.leaf.radii.least;
-        let (x, y) = ((at.x * scale) as f32, (at.y * scale) as f32);
-        let cell = (at * self.per_cell).clamp(
-            DVec2::ZERO,
-            DVec2::new(
-                f64::from(self.leaf.cells[0] - 1),
-                f64::from(self.leaf.cells[1] - 1),
-            ),
-        );
+    /// Whether a place in a cell is certainly too close to a point; the quick test.
+    fn is_surely_taken(&self, [column, row]: [u16; 2], place: u64) -> bool {
+        let scale = (1.0 / self.leaf.radii.least) * self.cell;
+        let x = (f32::from(column) + unit_f32(place as u32)) * scale.x as f32;
+        let y = (f32::from(row) + unit_f32((place >> 32) as u32)) * scale.y as f32;
         let first = self.margin - QUICK_REACH;
-        let corner = (cell.y as usize + first) * self.stride + cell.x as usize + first;
-        let [xs, ys, reaches] = &self.quick;
-        let mut is_taken = false;
-        for row in 0..=2 * QUICK_REACH {
-            let row = corner + row * self.stride;
-            let lanes = xs[row..row + LANES].iter().zip(&ys[row..row + LANES]);
-            for ((&px, &py), &reach) in lanes.zip(&reaches[row..row + LANES]) {
-                let (dx, dy) = (px - x, py - y);
-                is_taken |= dx * dx + dy * dy < reach;
+        let corner = (usize::from(row) + first) * self.stride + usize::from(column) + first;
+        // Nearest rows first; the outer ones are asked only if they have to be.
+        self.is_quickly_taken(corner, [2, 1, 3], x, y)
+            || self.is_quickly_taken(corner, [0, 4], x, y)
+    }
+
+    /// Whether a point in these rows, counted from that of the slot `corner`, is certainly too close.
+    fn is_quickly_taken<const N: usize>(
+        &self,
+        corner: usize,
+        rows: [usize; N],
+        x: f32,
+        y: f32,
+    ) -> bool {
+        let mut room = [0.0; LANES];
+        for row in rows {
+            let from = corner + row * self.stride;
+            let [Some(xs), Some(ys), Some(reaches)] = self
+                .quick
+                .each_ref()
+                .map(|column| column.get(from..).and_then(<[f32]>::first_chunk::<LANES>))
+            else {
+                return false;
+            };
+            for lane in 0..LANES {
+                let (dx, dy) = (xs[lane] - x, ys[lane] - y);
+                let inside = reaches[lane] - (dx * dx + dy * dy);
+                room[lane] = if inside > room[lane] {
+                    inside
+                } else {
+                    room[lane]
+                };
             }
         }
-        is_taken
+        room.iter().any(|&inside| inside > 0.0)
     }
 
     /// Whether a point keeps its distance from all others.
-    fn fits(&self, new: &Local, rule: DiskRule) -> bool {
-        let mut fits = true;
+    fn fits(&mut self, new: &Local, rule: DiskRule) -> bool {
+        let mut found = core::mem::take(&mut self.found);
         let reach = rule.distance(new.radius, self.largest);
-        self.visit_near(new.at, new.at, reach, |other| {
+        let count = self.collect_near(new.at, new.at, reach, &mut found);
+        let fits = found[..count].iter().all(|&index| {
+            let other = &self.locals[index as usize];
             let distance = rule.distance(new.radius, other.radius);
-            fits &= (other.at - new.at).length_squared() >= distance * distance;
+            (other.at - new.at).length_squared() >= distance * distance
         });
+        self.found = found;
         fits
     }
 
-    /// Calls `visit` with the points within `reach` of a rectangle, and some others.
-    pub(super) fn visit_near(
+    /// Collects the points within `reach` of a rectangle, and some others, and says how many they are.
+    pub(super) fn collect_near(
         &self,
         min: DVec2,
         max: DVec2,
         reach: f64,
-        mut visit: impl FnMut(&Local),
-    ) {
+        found: &mut Vec<u32>,
+    ) -> usize {
         let columns = self.stride - LANES + 2 * QUICK_REACH;
         let rows = self.slots.len() / self.stride;
         let counts = DVec2::new(columns as f64, rows as f64);
         let slot_of = |at: DVec2| {
-            let cell = (at * self.per_cell).floor() + self.margin as f64;
-            cell.clamp(DVec2::ZERO, counts)
-                .to_array()
-                .map(|count| count as usize)
+            let cell = at * self.per_cell + self.margin as f64;
+            let cell = cell.clamp(DVec2::ZERO, counts);
+            cell.to_array().map(|count| count as usize)
         };
         let [low, high] = [slot_of(min - reach), slot_of(max + reach + self.cell)];
+        let most = (high[0] - low[0]) * (high[1] - low[1]) + self.aside.len();
+        if found.len() <= most {
+            found.resize(most + 1, NOBODY);
+        }
+        let mut count = 0;
         for row in low[1]..high[1] {
             let (from, to) = (row * self.stride + low[0], row * self.stride + high[0]);
-            for &slot in self.slots.get(from..to).unwrap_or_default() {
-                if slot != NOBODY {
-                    visit(&self.locals[slot as usize]);
-                }
+            for &slot in &self.slots[from..to] {
+                // Written in any case and kept if it is one: a third of the cells have a point, which no branch
+                // predictor can guess.
+                found[count] = slot;
+                count += usize::from(slot != NOBODY);
             }
         }
         for &index in &self.aside {
-            visit(&self.locals[index as usize]);
+            found[count] = index;
+            count += 1;
         }
+        count
     }
 }
 
@@ -334,9 +362,4 @@ impl Block {
 pub(super) fn fractions(bits: u64) -> DVec2 {
     let unit = 1.0 / (1_u64 << 32) as f64;
     DVec2::new(f64::from(bits as u32), f64::from((bits >> 32) as u32)) * unit
-}
-
-/// The random bits of one cell of one block.
-pub(super) fn cell_hash(seed: Seed, block: u32, cell: u32) -> CellHash {
-    CellHash::new(seed, [i64::from(block), i64::from(cell)])
 }

@@ -7,12 +7,19 @@
 //! reach it. The radius in a quarter is bounded from below by the last one read and the slope, and read again
 //! only where that bound is too loose for the size of the quarter.
 
-use super::block::{Block, Local, Setting, cell_hash, fractions};
+use super::block::{Block, Local, Setting, fractions};
 use super::rule::DiskRule;
+use dapple_hash::CellHash;
 use glam::DVec2;
 
-/// How often a cell is quartered: what is left has 2^-20 of its side.
-const LEVELS: u32 = 20;
+/// A cell is cut into this many parts along each side at first.
+const SIDE: usize = 4;
+
+/// How often these parts are quartered: what is left has 2^-20 of the side of a cell.
+const LEVELS: u32 = 18;
+
+/// The part of a squared distance that the first cut gives away for rounding to 24 bits.
+const MARGIN: f64 = 1e-5;
 
 /// Darts per level into one cell.
 const DARTS: usize = 4;
@@ -20,8 +27,16 @@ const DARTS: usize = 4;
 /// A cell with more parts is left as it is. It takes a radius that jumps to get there.
 const MOST_PARTS: usize = 4096;
 
-/// A bound of the radius is loose if it is off by more than this part of the half diagonal.
+/// A bound of the radius is loose if it is off by more than this part of the half perimeter of half a part.
 const LOOSE: f64 = 0.25;
+
+/// From the center of a part to those of its quarters, in half sides of a quarter.
+const WAYS: [DVec2; 4] = [
+    DVec2::NEG_ONE,
+    DVec2::new(1.0, -1.0),
+    DVec2::new(-1.0, 1.0),
+    DVec2::ONE,
+];
 
 /// A part of a cell that no disc is known to cover.
 #[derive(Clone, Copy, Debug)]
@@ -36,9 +51,11 @@ struct Part {
 /// Buffers for one block after another.
 #[derive(Debug, Default)]
 pub(super) struct Filler {
+    found: Vec<u32>,
     near: Vec<Local>,
     parts: Vec<Part>,
-    next: Vec<Part>,
+    /// The parts of the level before.
+    whole: Vec<Part>,
 }
 
 impl Filler {
@@ -52,98 +69,137 @@ impl Filler {
         }
     }
 
-    fn fill_cell(&mut self, block: &mut Block, cell: u32, setting: &Setting<'_>) {
-        let random = cell_hash(setting.seed.child("fill", 0), block.index, cell);
-        let min = block.min_of(cell);
-        self.gather(block, min, setting.rule);
-        let radii = &block.leaf.radii;
-        let mut half = block.cell * 0.5;
-        self.parts.clear();
-        self.next.clear();
-        self.next.push(Part {
-            center: min + half,
-            least: radii.least,
-            slack: radii.largest - radii.least,
-        });
+    fn fill_cell(&mut self, block: &mut Block, cell: [u16; 2], setting: &Setting<'_>) {
+        if !self.start(block, block.min_of(cell), setting.rule) {
+            return;
+        }
+        let random = CellHash::new(
+            setting.seed.child("fill", 0),
+            [
+                i64::from(block.index),
+                i64::from(cell[0]),
+                i64::from(cell[1]),
+            ],
+        );
+        let mut half = block.cell * (0.5 / SIDE as f64);
         let mut n_darts = 0;
-        for level in 0..=LEVELS {
-            self.keep_uncovered(block, half, setting);
-            let count = if level == 0 {
-                0
-            } else {
-                self.parts.len().min(DARTS)
-            };
-            for _ in 0..count {
-                let part = (random.at(2 * n_darts) >> 32) * self.parts.len() as u64 >> 32;
+        for _ in 0..LEVELS {
+            for _ in 0..self.parts.len().min(DARTS) {
+                let part = ((random.at(2 * n_darts) >> 32) * self.parts.len() as u64) >> 32;
+                let part = self.parts[part as usize];
                 let place = fractions(random.at(2 * n_darts + 1));
-                let corner = self.parts[part as usize].center - half;
                 n_darts += 1;
-                if block.throw(corner, 2.0 * half, place, setting) {
+                let min = part.center - half;
+                let at = Part {
+                    center: min + 2.0 * half * place,
+                    ..part
+                };
+                let is_taken = is_covered(&self.near, &at, DVec2::ZERO, setting.rule);
+                if !is_taken && block.throw(min, 2.0 * half, place, setting) {
                     return;
                 }
             }
+            half *= 0.5;
+            self.quarter(block, half, setting);
             if self.parts.is_empty() || self.parts.len() > MOST_PARTS || block.error.is_some() {
                 return;
             }
-            half *= 0.5;
-            self.quarter(half);
         }
     }
 
-    /// Collects the points whose discs may reach into a cell.
-    fn gather(&mut self, block: &Block, min: DVec2, rule: DiskRule) {
+    /// Cuts a cell into sixteenths and keeps those that no disc covers; says whether there are any.
+    fn start(&mut self, block: &Block, min: DVec2, rule: DiskRule) -> bool {
         let max = min + block.cell;
-        let largest = block.leaf.radii.largest;
-        let near = &mut self.near;
-        near.clear();
-        block.visit_near(min, max, rule.distance(largest, block.largest), |local| {
-            let away = (min - local.at).max(local.at - max).max(DVec2::ZERO);
-            let reach = rule.distance(largest, local.radius);
-            if away.length_squared() < reach * reach {
-                near.push(*local);
-            }
-        });
-    }
-
-    /// Moves the parts that no disc covers from `next` to `parts`.
-    fn keep_uncovered(&mut self, block: &mut Block, half: DVec2, setting: &Setting<'_>) {
-        let spread = half.length_squared().sqrt();
-        self.parts.clear();
-        for mut part in self.next.drain(..) {
-            if is_covered(&self.near, &part, half, setting.rule) {
-                continue;
-            }
-            if part.slack > LOOSE * spread {
-                let position = setting.field.domain.origin + (block.leaf.min + part.center);
-                let Some(radius) = block.read(position, setting) else {
-                    return;
-                };
-                part.slack = 2.0 * block.leaf.radii.slope * spread;
-                part.least = part.least.max(radius - 0.5 * part.slack);
-                if is_covered(&self.near, &part, half, setting.rule) {
-                    continue;
+        let [least, most] = block.leaf.bounds(min, block.cell);
+        let reach = rule.distance(most, block.largest);
+        let count = block.collect_near(min, max, reach, &mut self.found);
+        let found = self.found[..count]
+            .iter()
+            .map(|&index| &block.locals[index as usize]);
+        let mut room = [0.0_f32; SIDE * SIDE];
+        let scale = 1.0 / block.leaf.radii.least;
+        let side = block.cell * (scale / SIDE as f64);
+        for local in found.clone() {
+            let reach = scale * rule.distance(least, local.radius);
+            let reach_sq = (reach * reach * (1.0 - MARGIN)) as f32;
+            let at = (local.at - min) * scale;
+            let xs = farthest_sq(at.x as f32, side.x as f32);
+            let ys = farthest_sq(at.y as f32, side.y as f32).map(|y_sq| reach_sq - y_sq);
+            for row in 0..SIDE {
+                for column in 0..SIDE {
+                    let inside = ys[row] - xs[column];
+                    let best = &mut room[row * SIDE + column];
+                    *best = if inside > *best { inside } else { *best };
                 }
             }
-            self.parts.push(part);
         }
+        self.parts.clear();
+        for (part, _) in room.iter().enumerate().filter(|&(_, &room)| room <= 0.0) {
+            let place = DVec2::new((part % SIDE) as f64, (part / SIDE) as f64);
+            self.parts.push(Part {
+                center: min + block.cell * ((place + 0.5) / SIDE as f64),
+                least,
+                slack: most - least,
+            });
+        }
+        self.near.clear();
+        if !self.parts.is_empty() {
+            self.near.extend(found.filter(|local| {
+                let away = (min - local.at).max(local.at - max).max(DVec2::ZERO);
+                let reach = rule.distance(most, local.radius);
+                away.length_squared() < reach * reach
+            }));
+        }
+        !self.parts.is_empty()
     }
 
-    /// Cuts `parts` into quarters of half side `half`.
-    fn quarter(&mut self, half: DVec2) {
-        for part in &self.parts {
-            for way in [
-                DVec2::new(-1.0, -1.0),
-                DVec2::new(1.0, -1.0),
-                DVec2::new(-1.0, 1.0),
-                DVec2::ONE,
-            ] {
-                self.next.push(Part {
-                    center: part.center + half * way,
-                    ..*part
-                });
+    /// Cuts all parts into quarters of half side `half`.
+    fn quarter(&mut self, block: &mut Block, half: DVec2, setting: &Setting<'_>) {
+        core::mem::swap(&mut self.parts, &mut self.whole);
+        self.parts.clear();
+        for index in 0..self.whole.len() {
+            let part = self.whole[index];
+            for way in WAYS {
+                let center = part.center + half * way;
+                self.keep_uncovered(block, Part { center, ..part }, half, setting);
             }
         }
     }
+
+    /// Adds a part to `parts` unless a disc covers it.
+    fn keep_uncovered(
+        &mut self,
+        block: &mut Block,
+        mut part: Part,
+        half: DVec2,
+        setting: &Setting<'_>,
+    ) {
+        if is_covered(&self.near, &part, half, setting.rule) {
+            return;
+        }
+        let spread = half.x + half.y;
+        if part.slack > LOOSE * spread {
+            let position = setting.field.domain.origin + (block.leaf.min + part.center);
+            let Some(radius) = block.read(position, setting) else {
+                return;
+            };
+            part.slack = 2.0 * block.leaf.radii.slope * spread;
+            part.least = part.least.max(radius - 0.5 * part.slack);
+            if is_covered(&self.near, &part, half, setting.rule) {
+                return;
+            }
+        }
+        self.parts.push(part);
+    }
+}
+
+/// The squared distances from `at` to the farther ends of the first parts of length `side` from 0 on.
+fn farthest_sq(at: f32, side: f32) -> [f32; SIDE] {
+    core::array::from_fn(|part| {
+        let center = (part as f32 + 0.5) * side;
+        let farthest = (at - center).abs() + 0.5 * side;
+        farthest * farthest
+    })
 }
 
 /// Whether the disc of one point covers all of a part.

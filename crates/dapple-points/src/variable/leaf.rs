@@ -38,6 +38,23 @@ pub(super) struct Leaf {
     pub(super) radii: Radii,
     /// Columns and rows of cells whose diagonal is at most the smallest radius.
     pub(super) cells: [u32; 2],
+    /// The radii on the lattice, row by row.
+    lattice: Lattice,
+}
+
+type Lattice = [[f64; LATTICE]; LATTICE];
+
+impl Leaf {
+    /// Bounds of the radius in a rectangle of the leaf, as far as its slope is no larger than along the lattice.
+    pub(super) fn bounds(&self, min: DVec2, size: DVec2) -> [f64; 2] {
+        let place = (min + size * 0.5) / self.size * LATTICE as f64;
+        let [x, y] = place
+            .to_array()
+            .map(|place| (place as usize).min(LATTICE - 1));
+        let radius = self.lattice[y][x];
+        let change = self.radii.slope * (self.radii.spread + 0.5 * (size.x + size.y));
+        [(radius - change).max(self.radii.least), radius + change]
+    }
 }
 
 /// What is known about the radius in a rectangle.
@@ -98,8 +115,26 @@ impl RadiusField<'_> {
         }
     }
 
+    /// The leaf of a rectangle, if it may be one, and about how many points go into it.
+    fn leaf(&self, min: DVec2, size: DVec2) -> Result<(Option<Leaf>, f64), PointsError> {
+        // The smallest radius is no larger than the one in the middle: for most rectangles that is answer enough.
+        let middle = self.at(self.domain.origin + (min + size * 0.5))?;
+        if size.max_element() * SQRT_2 > MOST_CELLS * middle {
+            return Ok((None, RSA_DENSITY * (size.x / middle) * (size.y / middle)));
+        }
+        let (radii, lattice, n_points) = self.survey(min, size)?;
+        let leaf = cells_of(size, &radii).map(|cells| Leaf {
+            min,
+            size,
+            radii,
+            cells,
+            lattice,
+        });
+        Ok((leaf, n_points))
+    }
+
     /// What the radius does in a rectangle, and about how many points that makes.
-    fn survey(&self, min: DVec2, size: DVec2) -> Result<(Radii, f64), PointsError> {
+    fn survey(&self, min: DVec2, size: DVec2) -> Result<(Radii, Lattice, f64), PointsError> {
         if let Varying::Constant(_) = self.radius {
             let radius = self.at(self.domain.origin + min)?;
             let radii = Radii {
@@ -109,10 +144,11 @@ impl RadiusField<'_> {
                 slope: 0.0,
                 spread: 0.0,
             };
-            return Ok((radii, RSA_DENSITY * (size.x / radius) * (size.y / radius)));
+            let n_points = RSA_DENSITY * (size.x / radius) * (size.y / radius);
+            return Ok((radii, [[radius; LATTICE]; LATTICE], n_points));
         }
         let step = size / LATTICE as f64;
-        let mut values = [[0.0; LATTICE]; LATTICE];
+        let mut values = Lattice::default();
         let (mut least, mut largest, mut n_points) = (f64::INFINITY, 0.0_f64, 0.0);
         for (y, row) in values.iter_mut().enumerate() {
             for (x, value) in row.iter_mut().enumerate() {
@@ -131,16 +167,11 @@ impl RadiusField<'_> {
             slope,
             spread,
         };
-        Ok((radii, RSA_DENSITY * n_points))
+        Ok((radii, values, RSA_DENSITY * n_points))
     }
 
     /// The largest slope along the lattice.
-    fn slope(
-        &self,
-        values: &[[f64; LATTICE]; LATTICE],
-        min: DVec2,
-        step: DVec2,
-    ) -> Result<f64, PointsError> {
+    fn slope(&self, values: &Lattice, min: DVec2, step: DVec2) -> Result<f64, PointsError> {
         let mut steepest = 0.0_f64;
         for y in 0..LATTICE - 1 {
             for x in 0..LATTICE - 1 {
@@ -176,27 +207,21 @@ impl Tree {
             if let Some((parent, child)) = parent {
                 tree.set_child(parent, child, node);
             }
-            let (radii, n_in) = field.survey(min, size)?;
+            let (leaf, n_in) = field.leaf(min, size)?;
             if node == 0 {
                 first_guess = n_in;
             }
-            let below = match cells_of(size, &radii) {
-                Some(cells) => {
-                    n_points += n_in;
-                    tree.leaves.push(Leaf {
-                        min,
-                        size,
-                        radii,
-                        cells,
-                    });
-                    Below::Leaf(tree.leaves.len() as u32 - 1)
-                }
-                None => {
-                    let [first, second] = halves(min, size);
-                    open.push((second.0, second.1, Some((node, 1))));
-                    open.push((first.0, first.1, Some((node, 0))));
-                    Below::Nodes([0; 2])
-                }
+            let mut most = 0.0;
+            let below = if let Some(leaf) = leaf {
+                n_points += n_in;
+                most = leaf.radii.most;
+                tree.leaves.push(leaf);
+                Below::Leaf(tree.leaves.len() as u32 - 1)
+            } else {
+                let [first, second] = halves(min, size);
+                open.push((second.0, second.1, Some((node, 1))));
+                open.push((first.0, first.1, Some((node, 0))));
+                Below::Nodes([0; 2])
             };
             // Checked as it grows, so that nothing large is ever made for a set that is not.
             if n_points > point_limit as f64 {
@@ -208,7 +233,7 @@ impl Tree {
             tree.nodes.push(Node {
                 min,
                 size,
-                most: radii.most,
+                most,
                 below,
             });
         }

@@ -74,15 +74,15 @@ fn emptiest_place(set: &PointSet, radius: &Varying, rule: DiskRule) -> f64 {
         });
         ratios.fold(f64::INFINITY, f64::min)
     };
-    let step = domain.size / DVec2::new(256.0, 128.0);
+    let step = domain.size / DVec2::new(96.0, 48.0);
     let lattice = (0..256 * 128)
-        .map(|i| domain.origin + step * DVec2::new(f64::from(i % 256), f64::from(i / 256)));
+        .map(|i| domain.origin + step * DVec2::new(f64::from(i % 96), f64::from(i / 96)));
     let mut places: Vec<(f64, DVec2)> = lattice.map(|place| (freedom(place), place)).collect();
     places.sort_by(|a, b| b.0.total_cmp(&a.0));
-    places.truncate(200);
+    places.truncate(24);
     let climb = |&(mut best, mut place): &(f64, DVec2)| {
         let mut step = step;
-        for _ in 0..40 {
+        for _ in 0..30 {
             let mut is_better = false;
             for way in [
                 DVec2::X,
@@ -113,10 +113,10 @@ fn variable_disks_keep_their_distance_and_leave_no_room() {
             for (name, radius) in [
                 ("constant", 0.06.into()),
                 ("waves", waves()),
-                ("ramp", ramp(0.02, 0.16)),
+                ("ramp", ramp(0.03, 0.24)),
                 (
                     "steep ramp",
-                    Varying::function(|at| 0.012 + 0.45 * (at.x + 3.0) * (at.x + 3.0) * 0.25),
+                    Varying::function(|at| 0.02 + 0.45 * (at.x + 3.0) * (at.x + 3.0) * 0.25),
                 ),
             ] {
                 let set = make(domain(wrap), &radius, rule, 5);
@@ -178,10 +178,10 @@ fn value_stability_variable_poisson_disk() {
         7,
     );
     let sum = set.positions().iter().sum::<DVec2>();
-    assert_eq!(set.len(), 844);
+    assert_eq!(set.len(), 843);
     assert_eq!(
         sum.to_array().map(f64::to_bits),
-        [13880331927971678587, 4666097494249246768]
+        [13880325351842488706, 4666091485260799218]
     );
     assert_eq!(
         set.positions()[100].to_array().map(f64::to_bits),
@@ -213,10 +213,10 @@ fn variable_sets_are_the_same_for_any_number_of_threads() {
 }
 
 /// Points over what 0.697 / r² predicts, in the part of the domain with x in `from..to`.
-fn relative_density(radius: &Varying, rule: DiskRule, from: f64, to: f64) -> f64 {
+fn relative_density(radius: &Varying, from: f64, to: f64) -> f64 {
     let (mut n_points, mut expected) = (0.0, 0.0);
     for seed in 0..20 {
-        let set = make(domain([false, true]), radius, rule, seed);
+        let set = make(domain([false, true]), radius, DiskRule::Average, seed);
         n_points += set
             .iter()
             .filter(|(_, at)| (from..to).contains(&at.x))
@@ -234,14 +234,14 @@ fn relative_density(radius: &Varying, rule: DiskRule, from: f64, to: f64) -> f64
 #[test]
 fn local_density_follows_the_radius() {
     // From 0.01 to 0.08 the slope is at most 0.083, and 0.06 in the middle of the part looked at.
-    let ratio = relative_density(&ramp(0.01, 0.08), DiskRule::Average, -2.8, -1.4);
+    let ratio = relative_density(&ramp(0.01, 0.08), -2.8, -1.4);
     // 12000 points per set and 20 sets: the noise is below 0.3 %.
     assert!(
         (ratio - 1.0).abs() < 0.03,
         "gentle slopes have {ratio} of the density"
     );
     let steep = Varying::function(|at| 0.01 + 0.35 * (at.x + 2.9).clamp(0.0, 0.4));
-    let ratio = relative_density(&steep, DiskRule::Average, -2.88, -2.52);
+    let ratio = relative_density(&steep, -2.88, -2.52);
     // 600 points per set on the slope.
     assert!(
         (ratio - 1.0).abs() < 0.05,
