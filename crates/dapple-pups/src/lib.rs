@@ -11,6 +11,7 @@
 #![forbid(unsafe_code)]
 
 mod error;
+mod gradient;
 mod kernel;
 mod line;
 mod net;
@@ -33,3 +34,6 @@ pub use options::{Orientation, PupsOptions};
 pub use pups::Pups;
 pub use texture::{Texture, VectorTexture};
 pub use weight::AxialWeight;
+
+#[cfg(test)]
+mod tests;

@@ -128,9 +128,11 @@ impl<K: Sink> Band<'_, '_, K> {
             planes.clear(self.sink.n_planes(), columns.range.len());
             match self.net.options.weight {
                 AxialWeight::Cubic => {
-                    dispatch!(level, simd => self.splat(simd, Cubic, columns, planes))
+                    dispatch!(level, simd => self.splat(simd, Cubic, columns, planes));
                 }
-                other => dispatch!(level, simd => self.splat(simd, other, columns, planes)),
+                other => {
+                    dispatch!(level, simd => self.splat(simd, other, columns, planes));
+                }
             }
             dispatch!(level, simd => self.resolve(simd, columns, planes));
         }
@@ -198,11 +200,9 @@ fn band_members(net: &Net, ys: &[f64]) -> Vec<Vec<u32>> {
     let line = Line::new(ys);
     for (index, instance) in (0..).zip(&net.instances) {
         let rows = line.touched(instance.min.y, instance.max.y);
-        if rows.is_empty() {
-            continue;
-        }
-        for band in rows.start / ROWS..rows.end.div_ceil(ROWS) {
-            members[band].push(index);
+        if !rows.is_empty() {
+            let bands = &mut members[rows.start / ROWS..rows.end.div_ceil(ROWS)];
+            bands.iter_mut().for_each(|members| members.push(index));
         }
     }
     members

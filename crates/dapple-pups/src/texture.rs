@@ -170,10 +170,10 @@ fn sample<const N: usize>(pups: &Pups, values: &[[f32; N]], position: DVec2) -> 
 }
 
 /// Sums up weights, and weights times values.
-struct Mean<'a> {
+pub(crate) struct Mean<'a> {
     /// The values, `n` to a control point.
-    values: &'a [f32],
-    n: usize,
+    pub(crate) values: &'a [f32],
+    pub(crate) n: usize,
 }
 
 impl Sink for Mean<'_> {

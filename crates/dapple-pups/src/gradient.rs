@@ -1,0 +1,109 @@
+//! The gradient of a texture, in closed form.
+//!
+//! With `W = Π A(u_r)` the gradient of a weight is `∇W = Σ_r A'(u_r) ∇u_r Π_{s≠r} A(u_s)`, where `∇u_r = −a_r` inside of
+//! `[0, 1]` and zero where the projection is clamped (there `A'` is zero anyway). With an orientation, `w' = w^e`, so that
+//! `∇w' = e w^(e−1) ∇w + w' ln w ∇e`. For equation 3, `∇T = Σ (T_i − T) ∇W_i / Σ W_i`.
+//!
+//! It is computed in double precision, one position at a time.
+
+use crate::net::{AxisBlock, BLOCK, Instance, Net};
+use crate::pups::LEAST_TOTAL;
+use crate::{AxialWeight, Texture};
+use dapple_raster::{Field, Raster, RasterError, Window};
+use glam::DVec2;
+
+impl Texture {
+    /// The gradient at a position: the change of the value per unit of x and of y.
+    ///
+    /// Where the texture has no gradient (on the border of a support, with orientations of strength ½ or more) it is the
+    /// one of the side that has no weight. At a position that is not finite both numbers are NaN.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_pups::{Pups, points::{Domain, white_noise}, hash::Seed, glam::DVec2};
+    ///
+    /// let points = white_noise(Domain::paper_torus(), 50, Seed(1))?;
+    /// let texture = Pups::delaunay(&points)?.texture(vec![0.5; 50])?;
+    /// assert_eq!(texture.gradient(DVec2::new(0.3, 0.1)), DVec2::ZERO);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn gradient(&self, position: DVec2) -> DVec2 {
+        let Some(local) = self.pups.local(position) else {
+            return DVec2::NAN;
+        };
+        let net = &self.pups.net;
+        let value = f64::from(self.sample(position));
+        let (mut total, mut sum) = (0.0, DVec2::ZERO);
+        net.for_each_weight(local, |instance, _| {
+            let (weight, gradient) = weight_and_gradient(net, instance, local);
+            total += weight;
+            sum += gradient * (f64::from(self.values[instance.point as usize]) - value);
+        });
+        if total < f64::from(LEAST_TOTAL) {
+            DVec2::ZERO
+        } else {
+            sum / total
+        }
+    }
+
+    /// The gradients at the pixel centers of a window, for normal maps.
+    ///
+    /// # Errors
+    ///
+    /// [`Empty`](dapple_raster::RasterErrorKind::Empty) or [`TooLarge`](dapple_raster::RasterErrorKind::TooLarge) if
+    /// the window has a bad size.
+    pub fn gradient_raster(&self, window: &Window) -> Result<Raster<[f32; 2]>, RasterError> {
+        Raster::from_window(window, |position| {
+            self.gradient(position).as_vec2().to_array()
+        })
+    }
+}
+
+/// The weight of an instance and its gradient.
+fn weight_and_gradient(net: &Net, instance: &Instance, position: DVec2) -> (f64, DVec2) {
+    let offset = position - instance.center;
+    let mut weight = 1.0;
+    let mut gradient = DVec2::ZERO;
+    for block in net.blocks(instance.point) {
+        for slot in 0..BLOCK {
+            let (value, slope) = axial(net.options.weight, block, slot, offset);
+            gradient = gradient * value + slope * weight;
+            weight *= value;
+        }
+    }
+    match net.shifts.get(instance.point as usize) {
+        Some(&shift) => shifted(weight, gradient, DVec2::from(shift.map(f64::from)), offset),
+        None => (weight, gradient),
+    }
+}
+
+/// An axial weight and its gradient.
+fn axial(weight: AxialWeight, block: &AxisBlock, slot: usize, offset: DVec2) -> (f64, DVec2) {
+    let axis = DVec2::new(f64::from(block.x[slot]), f64::from(block.y[slot]));
+    let u = (1.0 - axis.dot(offset)).clamp(0.0, 1.0);
+    (weight.value(u), axis * -weight.slope(u))
+}
+
+/// Equation 4 and its gradient.
+fn shifted(weight: f64, gradient: DVec2, shift: DVec2, offset: DVec2) -> (f64, DVec2) {
+    let distance = offset.length();
+    if distance == 0.0 || weight <= 0.0 {
+        return (weight, gradient);
+    }
+    let direction = offset / distance;
+    let k = shift.dot(direction);
+    // How K changes: the part of the shift that lies across the direction, per distance.
+    let k_slope = (shift - direction * k) / distance;
+    let (exponent, slope) = if k >= 0.0 {
+        (1.0 - k, -k_slope)
+    } else {
+        (1.0 / (1.0 + k), -k_slope / ((1.0 + k) * (1.0 + k)))
+    };
+    let shifted = libm::pow(weight, exponent);
+    (
+        shifted,
+        gradient * (exponent * shifted / weight) + slope * (shifted * libm::log(weight)),
+    )
+}
