@@ -24,5 +24,6 @@ pub(crate) fn turn(a: DVec2, b: DVec2) -> f64 {
 /// Whether the angle is in `[π, 2π)`.
 #[inline]
 pub(crate) fn is_lower(v: DVec2) -> bool {
-    v.y < 0.0 || (v.y == 0.0 && v.x < 0.0)
+    // Without branches, which could not be predicted.
+    (v.y < 0.0) | ((v.y == 0.0) & (v.x < 0.0))
 }

@@ -13,8 +13,10 @@
 //! share a side of positive length. It is the same for all images and does not depend on where the domain begins.
 
 mod images;
+mod order;
 mod patch;
 mod star;
+mod tiles;
 
 use crate::grid::LazyGrid;
 use crate::lattice::{Lattice, check_distinct};
@@ -23,6 +25,7 @@ use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 use images::Cover;
 use patch::{Patch, Rows};
+use tiles::Tiles;
 
 /// The Delaunay graph of the points: two are connected if some circle through both has no other point on it or in it,
 /// counting all images.
@@ -68,11 +71,14 @@ pub fn delaunay(points: &PointSet) -> Result<Graph, GraphError> {
 /// The rows of the graph; `None` if two sites coincide.
 fn rows(lattice: &Lattice, sites: &[DVec2]) -> Option<Rows> {
     let margin = MARGIN * (lattice.size.x * (lattice.size.y / sites.len().max(1) as f64)).sqrt();
+    if let Some(tiles) = Tiles::new(lattice, sites.len(), margin) {
+        return tiles.rows(sites);
+    }
     let cover = Cover::new(lattice, DVec2::ZERO, lattice.size, margin);
     let images = cover.images(lattice, sites);
-    let mut patch = Patch::new(lattice, cover, images, sites.len())?;
+    let mut patch = Patch::new(lattice, cover, &images, sites.len())?;
     Some(patch.rows(&LazyGrid::new(lattice, sites)))
 }
 
 /// The margin of images around the domain at first, in mean distances (the root of the area per point).
-const MARGIN: f64 = 1.2;
+const MARGIN: f64 = 1.6;

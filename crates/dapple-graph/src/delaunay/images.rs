@@ -76,9 +76,11 @@ pub(super) struct Missing<'g, 'a> {
     reach: DVec2,
     /// Where images were found before.
     known: BTreeSet<(i64, i64)>,
-    /// The images to insert next.
-    pub(super) found: Vec<Image>,
+    /// The images to insert next, each with the row that it was found for.
+    pub(super) found: Vec<(Image, u32)>,
     scaffolded: bool,
+    /// The row whose star is searched.
+    row: u32,
 }
 
 impl<'g, 'a> Missing<'g, 'a> {
@@ -95,22 +97,23 @@ impl<'g, 'a> Missing<'g, 'a> {
             known: BTreeSet::new(),
             found: Vec::new(),
             scaffolded: false,
+            row: 0,
         }
     }
 
     /// Adds for each circumcircle of the star at `center` that holds a missing image the one that is nearest to its
     /// center.
-    pub(super) fn search(&mut self, center: DVec2, star: &Star) {
-        if star.len() < 2 {
+    pub(super) fn search(&mut self, row: u32, center: DVec2, star: &Star) {
+        self.row = row;
+        if star.wedges().nth(1).is_none() {
             return self.scaffold();
         }
-        for (a, b, gap) in star.wedges() {
-            if gap {
-                for vector in [a, b] {
-                    self.search_border(center, vector);
-                }
+        for (a, b) in star.wedges() {
+            if a.gap_after {
+                self.search_border(center, a.at);
+                self.search_border(center, b.at);
             } else {
-                self.search_circle(center, a, b);
+                self.search_circle(center, a.at, b.at);
             }
         }
     }
@@ -205,7 +208,8 @@ impl<'g, 'a> Missing<'g, 'a> {
 
     fn add(&mut self, point: u32, at: DVec2) {
         if self.cover.depth(at) < 0.0 && self.known.insert(key(at)) {
-            self.found.push(Image::new(at, point, Image::FOREIGN));
+            self.found
+                .push((Image::new(at, point, Image::FOREIGN), self.row));
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A triangulated part of the periodic plane, and the rows of the graph for the points that it is made for.
 
 use super::images::{Cover, Missing};
+use super::order::farthest_first;
 use super::star::Star;
 use crate::Axis;
 use crate::grid::LazyGrid;
@@ -66,11 +67,12 @@ impl<'a> Patch<'a> {
     pub(super) fn new(
         lattice: &'a Lattice,
         cover: Cover,
-        images: Vec<Image>,
+        images: &[Image],
         n_rows: usize,
     ) -> Option<Self> {
         let n_images = images.len();
-        let triangulation = DelaunayTriangulation::<Image>::bulk_load(images).ok()?;
+        let triangulation =
+            DelaunayTriangulation::<Image>::bulk_load(farthest_first(&images)).ok()?;
         if triangulation.num_vertices() < n_images {
             return None;
         }
@@ -101,13 +103,11 @@ impl<'a> Patch<'a> {
         let mut doubtful = Vec::new();
         for (row, &vertex) in (0..).zip(&self.vertices) {
             let vertex = self.triangulation.vertex(vertex);
-            star.read(vertex);
-            let position = vertex.position();
-            let findings = star.look(self.cover.depth(DVec2::new(position.x, position.y)));
-            if self.lattice.wraps() && (findings.far || !star.is_closed()) {
+            star.read(vertex, self.cover.depth(at(vertex)));
+            if self.lattice.wraps() && star.is_doubtful() {
                 doubtful.push(row);
             }
-            star.push_axes(self.lattice, findings.co_circular, &mut rows.axes);
+            star.push_axes(self.lattice, &mut rows.axes);
             rows.offsets.push(rows.axes.len() as u32);
         }
         if self.complete(&doubtful, grid) {
@@ -124,17 +124,17 @@ impl<'a> Patch<'a> {
         loop {
             for &row in doubtful {
                 let vertex = self.triangulation.vertex(self.vertices[row as usize]);
-                star.read(vertex);
-                let position = vertex.position();
-                missing.search(DVec2::new(position.x, position.y), &star);
+                star.read(vertex, f64::INFINITY);
+                missing.search(row, at(vertex), &star);
             }
             if missing.found.is_empty() {
                 return changed;
             }
             changed = true;
-            for image in missing.found.drain(..) {
+            for (image, row) in missing.found.drain(..) {
+                let near = self.vertices[row as usize];
                 // Sites are finite whole numbers, which are always accepted.
-                let _ = self.triangulation.insert(image);
+                let _ = self.triangulation.insert_with_hint(image, near);
             }
         }
     }
@@ -149,8 +149,8 @@ impl<'a> Patch<'a> {
         let mut again = again.iter().copied().peekable();
         for (row, &vertex) in (0..).zip(&self.vertices) {
             if again.next_if_eq(&row).is_some() {
-                star.read(self.triangulation.vertex(vertex));
-                star.push_axes(self.lattice, true, &mut result.axes);
+                star.read(self.triangulation.vertex(vertex), f64::INFINITY);
+                star.push_axes(self.lattice, &mut result.axes);
             } else {
                 let [start, end] = [row as usize, row as usize + 1].map(|at| rows.offsets[at]);
                 result
@@ -161,4 +161,10 @@ impl<'a> Patch<'a> {
         }
         result
     }
+}
+
+/// Where a vertex lies.
+fn at(vertex: Vertex<'_>) -> DVec2 {
+    let position = vertex.position();
+    DVec2::new(position.x, position.y)
 }

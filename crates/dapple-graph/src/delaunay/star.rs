@@ -10,157 +10,169 @@ use dapple_points::PointIdx;
 use glam::DVec2;
 use robust::{Coord, incircle};
 
-/// The neighbors of a vertex, counterclockwise. The first two come again at the end, so that each one has a next one.
-#[derive(Debug, Default)]
-pub(super) struct Star {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    /// Squared distances.
-    lift: Vec<f64>,
-    /// The numbers of the points.
-    to: Vec<u32>,
-    /// Whether no triangle lies between a neighbor and the next one.
-    gap_after: Vec<bool>,
-    n_gaps: usize,
+/// A neighbor of a vertex.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spoke {
+    /// Where it lies.
+    pub(super) at: DVec2,
+    /// The number of its point.
+    to: u32,
+    /// Whether no triangle lies between it and the next neighbor.
+    pub(super) gap_after: bool,
 }
 
-/// What a quick look at a star finds; both may be said of a star that is fine, but are never left out.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Findings {
-    /// Two neighboring circumcircles may be equal.
-    pub(super) co_circular: bool,
-    /// A circumcircle may reach beyond the given distance.
-    pub(super) far: bool,
+/// The neighbors of a vertex, counterclockwise.
+#[derive(Debug, Default)]
+pub(super) struct Star {
+    spokes: Vec<Spoke>,
+    has_gaps: bool,
+    /// A bit for each neighbor with an angle in `[π, 2π)`.
+    lower: u64,
+    /// Whether two neighboring circumcircles may be equal.
+    co_circular: bool,
+    /// Whether a circumcircle may reach farther than asked.
+    far: bool,
 }
 
 impl Star {
-    /// Reads the star of a vertex.
-    pub(super) fn read(&mut self, vertex: Vertex<'_>) {
-        self.clear();
+    /// Reads the star of a vertex, and has a quick look for equal circumcircles and for ones that reach farther than
+    /// `reach` steps.
+    #[inline]
+    pub(super) fn read(&mut self, vertex: Vertex<'_>, reach: f64) {
+        self.spokes.clear();
+        self.has_gaps = false;
+        self.lower = 0;
+        let mut look = Look::new(reach);
         let center = vertex.position();
         for edge in vertex.out_edges() {
             let to = edge.to();
             let position = to.position();
-            let (x, y) = (position.x - center.x, position.y - center.y);
-            self.x.push(x);
-            self.y.push(y);
-            self.lift.push(x * x + y * y);
-            self.to.push(to.data().point);
-            let gap = edge.is_outer_edge();
-            self.gap_after.push(gap);
-            self.n_gaps += usize::from(gap);
-        }
-        let n = self.len();
-        for index in 0..n.min(2) {
-            self.x.push(self.x[index]);
-            self.y.push(self.y[index]);
-            self.lift.push(self.lift[index]);
-        }
-    }
-
-    fn clear(&mut self) {
-        self.x.clear();
-        self.y.clear();
-        self.lift.clear();
-        self.to.clear();
-        self.gap_after.clear();
-        self.n_gaps = 0;
-    }
-
-    /// The number of neighbors.
-    pub(super) fn len(&self) -> usize {
-        self.to.len()
-    }
-
-    /// Whether triangles lie all around.
-    pub(super) fn is_closed(&self) -> bool {
-        self.n_gaps == 0 && self.len() >= 3
-    }
-
-    /// Looks for pairs of equal circumcircles, and for circumcircles that reach farther than `reach` steps.
-    pub(super) fn look(&self, reach: f64) -> Findings {
-        let n = self.len();
-        if self.x.len() < n + 2 {
-            return Findings {
-                co_circular: true,
-                far: true,
+            let spoke = Spoke {
+                at: DVec2::new(position.x - center.x, position.y - center.y),
+                to: to.data().point,
+                gap_after: edge.is_outer_edge(),
             };
+            self.has_gaps |= spoke.gap_after;
+            // Past 64 neighbors nobody looks at this.
+            self.lower |= u64::from(is_lower(spoke.at)).wrapping_shl(self.spokes.len() as u32);
+            look.pass(spoke.at);
+            self.spokes.push(spoke);
         }
-        // Rounding takes less than a millionth of the products.
-        let reach_sq = reach.max(0.0) * reach.max(0.0) * 0.999_999;
-        let (x, y, lift) = (&self.x[..n + 2], &self.y[..n + 2], &self.lift[..n + 2]);
-        let (mut co_circular, mut far) = (false, false);
-        for i in 0..n {
-            let (ax, ay, al) = (x[i], y[i], lift[i]);
-            let (bx, by, bl) = (x[i + 1], y[i + 1], lift[i + 1]);
-            let (cx, cy, cl) = (x[i + 2], y[i + 2], lift[i + 2]);
-            let ab = ax * by - ay * bx;
-            let bc = bx * cy - by * cx;
-            let ac = ax * cy - ay * cx;
-            let determinant = al * bc - bl * ac + cl * ab;
-            // Shewchuk's bound, 10 · 2^-53 times the permanent, which in turn is at most this sum of products.
-            let bound = 1.2e-15 * (al * bl + bl * cl + al * cl);
-            co_circular |= determinant.abs() <= bound;
-            // The diameter is the product of the sides over the cross product.
-            let (dx, dy) = (bx - ax, by - ay);
-            let within = al * bl * (dx * dx + dy * dy) <= reach_sq * (ab * ab);
-            far |= !within;
+        for spoke in self.spokes.iter().take(2) {
+            look.pass(spoke.at);
         }
-        Findings { co_circular, far }
+        (self.co_circular, self.far) = (look.co_circular, look.far);
+    }
+
+    /// Whether a triangle may reach farther than asked, or is not there.
+    pub(super) fn is_doubtful(&self) -> bool {
+        self.far || self.has_gaps || self.spokes.len() < 3
+    }
+
+    /// Each neighbor and the next one.
+    pub(super) fn wedges(&self) -> impl Iterator<Item = (Spoke, Spoke)> + '_ {
+        let next = self.spokes.iter().cycle().skip(1);
+        self.spokes.iter().copied().zip(next.copied())
     }
 
     /// Appends the axes of the star in their order.
-    pub(super) fn push_axes(&self, lattice: &Lattice, co_circular: bool, axes: &mut Vec<Axis>) {
-        let n = self.len();
+    #[inline]
+    pub(super) fn push_axes(&self, lattice: &Lattice, axes: &mut Vec<Axis>) {
         let first = self.first();
-        for index in (first..n).chain(0..first) {
-            if co_circular && self.is_diagonal(index) {
-                continue;
-            }
-            axes.push(Axis {
-                to: PointIdx(self.to[index]),
-                vector: lattice.vector(self.at(index)),
-            });
+        let axis = |spoke: &Spoke| Axis {
+            to: PointIdx(spoke.to),
+            vector: lattice.vector(spoke.at),
+        };
+        if self.co_circular {
+            let kept = |&index: &usize| !self.is_diagonal(index);
+            let indices = (first..self.spokes.len()).chain(0..first).filter(kept);
+            axes.extend(indices.map(|index| axis(&self.spokes[index])));
+        } else {
+            axes.extend(self.spokes[first..].iter().map(axis));
+            axes.extend(self.spokes[..first].iter().map(axis));
         }
     }
 
     /// The neighbor with the smallest angle.
+    #[inline]
     fn first(&self) -> usize {
-        let n = self.len();
-        let mut previous = n.checked_sub(1).is_some_and(|last| is_lower(self.at(last)));
-        for index in 0..n {
-            let lower = is_lower(self.at(index));
-            if previous && !lower {
-                return index;
+        let n = self.spokes.len();
+        if n > 0 && n <= 64 {
+            // An upper neighbor after a lower one.
+            let previous = self.lower << 1 | self.lower >> (n - 1);
+            let first = (previous & !self.lower).trailing_zeros() as usize;
+            if first < n {
+                return first;
             }
-            previous = lower;
         }
-        // All lie on one side.
-        let smallest = (0..n).min_by(|&a, &b| by_angle(self.at(a), self.at(b)));
-        smallest.unwrap_or(0)
+        // All lie on one side, or there are many.
+        let order = |&a: &usize, &b: &usize| by_angle(self.spokes[a].at, self.spokes[b].at);
+        (0..n).min_by(order).unwrap_or(0)
     }
 
     /// Whether the triangles on both sides of an edge have the same circumcircle, so that the edge is one of several
     /// diagonals that could be.
+    #[cold]
     fn is_diagonal(&self, index: usize) -> bool {
-        let n = self.len();
+        let n = self.spokes.len();
         let (before, after) = ((index + n - 1) % n, (index + 1) % n);
-        if self.gap_after[before] || self.gap_after[index] {
+        let [a, b, c] = [before, index, after].map(|index| self.spokes[index]);
+        if a.gap_after || b.gap_after {
             return false;
         }
         let coord = |at: DVec2| Coord { x: at.x, y: at.y };
-        let [a, b, c] = [before, index, after].map(|index| coord(self.at(index)));
-        incircle(a, b, c, Coord { x: 0.0, y: 0.0 }) == 0.0
+        incircle(coord(a.at), coord(b.at), coord(c.at), coord(DVec2::ZERO)) == 0.0
+    }
+}
+
+/// A quick look at the neighbors as they pass by: what it finds may turn out to be fine, but it overlooks nothing.
+struct Look {
+    reach_sq: f64,
+    /// The last two neighbors, their squared distances and their cross product; at first not numbers.
+    a: DVec2,
+    b: DVec2,
+    a_sq: f64,
+    b_sq: f64,
+    ab: f64,
+    co_circular: bool,
+    far: bool,
+}
+
+impl Look {
+    fn new(reach: f64) -> Self {
+        let reach = reach.max(0.0);
+        Self {
+            // Rounding takes less than a millionth of the products.
+            reach_sq: reach * reach * 0.999_999,
+            a: DVec2::NAN,
+            b: DVec2::NAN,
+            a_sq: f64::NAN,
+            b_sq: f64::NAN,
+            ab: f64::NAN,
+            co_circular: false,
+            far: false,
+        }
     }
 
-    /// Where a neighbor lies.
-    pub(super) fn at(&self, index: usize) -> DVec2 {
-        DVec2::new(self.x[index], self.y[index])
-    }
-
-    /// The neighbors on both sides of the triangle or gap after each edge, and whether it is a gap.
-    pub(super) fn wedges(&self) -> impl Iterator<Item = (DVec2, DVec2, bool)> + '_ {
-        let n = self.len();
-        (0..n).map(move |i| (self.at(i), self.at((i + 1) % n), self.gap_after[i]))
+    /// The next neighbor. Every comparison with what is not a number yet is false.
+    #[inline]
+    fn pass(&mut self, c: DVec2) {
+        let Self {
+            a,
+            b,
+            a_sq,
+            b_sq,
+            ab,
+            ..
+        } = *self;
+        let c_sq = c.length_squared();
+        let bc = b.perp_dot(c);
+        let determinant = a_sq * bc - b_sq * a.perp_dot(c) + c_sq * ab;
+        // Shewchuk's bound, 10 · 2^-53 times the permanent, which in turn is at most this sum of products.
+        let bound = 1.2e-15 * (a_sq * b_sq + (a_sq + b_sq) * c_sq);
+        self.co_circular |= determinant.abs() < bound;
+        // The diameter is the product of the sides over the cross product.
+        self.far |= b_sq * c_sq * (c - b).length_squared() > self.reach_sq * (bc * bc);
+        (self.a, self.b, self.a_sq, self.b_sq, self.ab) = (b, c, b_sq, c_sq, bc);
     }
 }

@@ -1,0 +1,53 @@
+//! The order in which `spade` wants its vertices.
+
+use super::patch::Image;
+use core::cmp::Ordering;
+
+/// Sorts the images by their distance from their mean, farthest first.
+///
+/// This is how `spade` sorts them too, which then finds nothing to do. For images that are spread evenly, squared
+/// distances are as well, and one pass through as many buckets as images is faster than a sort by comparison. A
+/// rounding error in the mean costs time, but not the right result.
+pub(super) fn farthest_first(images: &[Image]) -> Vec<Image> {
+    let n = images.len();
+    let share = 1.0 / n as f64;
+    let sum = |coordinate: fn(&Image) -> f64| images.iter().map(coordinate).sum::<f64>() * share;
+    let (x, y) = (sum(|i| i.position.x), sum(|i| i.position.y));
+    let distance_sq = |image: &Image| {
+        let (dx, dy) = (image.position.x - x, image.position.y - y);
+        dx * dx + dy * dy
+    };
+    let farthest = images.iter().map(distance_sq).fold(0.0, f64::max);
+    let per_step = n as f64 / farthest.max(1.0);
+    // The conversion saturates.
+    let bucket = |image: &Image| ((farthest - distance_sq(image)) * per_step) as usize;
+    let mut starts = vec![0_u32; n + 2];
+    for image in images {
+        starts[bucket(image)] += 1;
+    }
+    let mut end = 0;
+    for start in &mut starts {
+        end += *start;
+        *start = end;
+    }
+    let Some(&any) = images.first() else {
+        return Vec::new();
+    };
+    let mut sorted = vec![any; n];
+    for image in images {
+        let start = &mut starts[bucket(image)];
+        *start -= 1;
+        sorted[*start as usize] = *image;
+    }
+    let order = |a: &Image, b: &Image| -> Ordering {
+        (distance_sq(b).total_cmp(&distance_sq(a)))
+            .then_with(|| a.position.x.total_cmp(&b.position.x))
+            .then_with(|| a.position.y.total_cmp(&b.position.y))
+    };
+    for range in starts.windows(2) {
+        if range[1] - range[0] > 1 {
+            sorted[range[0] as usize..range[1] as usize].sort_unstable_by(order);
+        }
+    }
+    sorted
+}
