@@ -81,7 +81,7 @@ fn push_planes(
     layer: Layer<AnyChannels<FlatSamples>>,
     planes: &mut Vec<ExrPlane>,
 ) -> Result<(), ImageError> {
-    // Both fit, since the number of pixels was checked to be below 2^31 by the format or refused by the raster.
+    // The format has no side past 2^31; if one did not fit, the raster below would refuse the length.
     let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
     let size = [side(layer.size.0), side(layer.size.1)];
     let part = layer.attributes.layer_name.map(|name| name.to_string());

@@ -1,8 +1,8 @@
 //! Writing PNG.
 //!
-//! Color is marked with the chunks `sRGB` (relative colorimetric intent would change nothing; perceptual is written) and
-//! `gAMA`, as the specification recommends. Data carries no color chunk at all: a `gAMA` of 1 would make viewers brighten
-//! a height map, while programs that read data take the numbers as they are.
+//! Color is marked with the chunk `sRGB` (perceptual intent) and, for programs that do not know that one, with `gAMA`, as
+//! the specification recommends. Data carries no color chunk at all: a `gAMA` of 1 would make viewers brighten a height
+//! map, while programs that read data take the numbers as they are.
 
 use super::{GAMMA_OF_SRGB, PngPixel, Transfer};
 use crate::{ImageError, ImageErrorKind, file};
