@@ -52,7 +52,7 @@ mod beside_spade {
         let points = sets::poisson_disk(n_points)?;
         let positions = peers::spade_positions(points.positions());
         let ours = Side::new(None, |out: &mut Option<Result<Graph, _>>| {
-            *out = Some(delaunay(&points))
+            *out = Some(delaunay(&points));
         })
         .prepared(|out| *out = None);
         let theirs = Side::new((Vec::new(), None), |(input, out)| {

@@ -53,6 +53,7 @@ impl Naive {
     }
 
     /// The value at one position of the unit square.
+    #[cfg(any(test, feature = "peers"))]
     pub(crate) fn sample(&self, position: [f64; 2]) -> f32 {
         let [x, y] = position.map(|coordinate| coordinate as f32);
         let offsets: Vec<f32> = self

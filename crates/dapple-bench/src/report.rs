@@ -90,16 +90,9 @@ fn table(rows: &[&Row]) -> String {
 
 /// The cells of a row as text.
 fn cells(row: &Row) -> [String; 8] {
-    let must = match (row.must, row.at) {
-        (Some(bar), Some("most")) => format!("≤ {bar}"),
-        (Some(bar), _) => format!("≥ {bar}"),
-        _ => "–".to_owned(),
-    };
-    let holds = match (row.must, row.holds) {
-        (None, _) => "–",
-        (_, true) => "yes",
-        (_, false) => "NO",
-    };
+    let sign = if row.at == "most" { '≤' } else { '≥' };
+    let must = format!("{sign} {}", row.must);
+    let holds = if row.holds { "yes" } else { "NO" };
     [
         row.case.to_owned(),
         row.peer.to_owned(),
@@ -200,14 +193,14 @@ mod tests {
 
     #[test]
     fn table_shows_bar_and_verdict() {
+        let faster = Case {
+            must: Must::Faster(65.0),
+            ..CASE
+        };
         let rows = [
             CASE.row(1.3, 1.0),
             CASE.row(1.5, 1.0),
-            Case {
-                must: Must::Told,
-                ..CASE
-            }
-            .row(1.0, 1.0),
+            faster.row(1.0, 70.0),
         ];
         let verdicts: Vec<[String; 8]> = rows.iter().map(cells).collect();
         assert_eq!(
@@ -216,7 +209,11 @@ mod tests {
             "1.3 is within 1.4"
         );
         assert_eq!(verdicts[1][5..], ["1.50", "≤ 1.4", "NO"], "1.5 is not");
-        assert_eq!(verdicts[2][5..], ["1.00", "–", "–"], "no bar, no verdict");
+        assert_eq!(
+            verdicts[2][5..],
+            ["70.0", "≥ 65", "yes"],
+            "70 is at least 65"
+        );
     }
 
     #[test]

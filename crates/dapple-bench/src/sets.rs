@@ -1,7 +1,7 @@
 //! The inputs that groups share: point sets of the unit torus, values for them, and positions to ask for.
 
 use anyhow::Result;
-use dapple_hash::{Seed, hash1, unit_f32, unit_f64};
+use dapple_hash::{Seed, hash1, unit_f32};
 use dapple_points::glam::DVec2;
 use dapple_points::{Domain, PointSet};
 
@@ -26,15 +26,11 @@ pub(crate) fn poisson_disk(n_points: u32) -> Result<PointSet> {
 
 /// The same from a seed.
 pub(crate) fn poisson_disk_from(seed: Seed, n_points: u32) -> Result<PointSet> {
-    // STAND-IN
-    let side = f64::from(n_points).sqrt() as i64;
-    let mut positions = Vec::new();
-    for i in 0..side * side {
-        let unit = |index| unit_f64(hash1(seed, [i], index)) * 0.7 + 0.15;
-        let cell = DVec2::new((i % side) as f64, (i / side) as f64);
-        positions.push((cell + DVec2::new(unit(0), unit(1))) / side as f64);
-    }
-    Ok(PointSet::new(UNIT_TORUS, positions)?)
+    Ok(dapple_points::poisson_disk(
+        UNIT_TORUS,
+        radius_of(n_points),
+        seed,
+    )?)
 }
 
 /// A value in [0, 1) for each of `n` points.
@@ -46,9 +42,10 @@ pub(crate) fn values(n: usize) -> Vec<f32> {
 }
 
 /// `n` positions anywhere in the unit square.
+#[cfg(feature = "peers")]
 pub(crate) fn positions(n: usize) -> Vec<DVec2> {
     let seed = SEED.child("bench positions", 0);
-    let unit = |index, axis| unit_f64(hash1(seed, [index], axis));
+    let unit = |index, axis| dapple_hash::unit_f64(hash1(seed, [index], axis));
     (0..n as i64)
         .map(|index| DVec2::new(unit(index, 0), unit(index, 1)))
         .collect()

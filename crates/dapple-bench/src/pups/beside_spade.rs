@@ -57,10 +57,10 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
         let scene = Scene::new(700)?;
         let spade = ScanlineSpade::new(scene.points.positions(), &scene.values, MARGIN);
         beside_raster(bench, &NATURAL_NEIGHBOR, &scene, |image| {
-            spade.natural_neighbor(SIDE as usize, image)
+            spade.natural_neighbor(SIDE as usize, image);
         })?;
         beside_raster(bench, &BARYCENTRIC, &scene, |image| {
-            spade.barycentric(SIDE as usize, image)
+            spade.barycentric(SIDE as usize, image);
         })?;
         whole_chain(bench, &spade)?;
     }
@@ -80,7 +80,7 @@ fn beside_raster(
 ) -> Result<()> {
     let window = window(SIDE)?;
     let theirs = Side::new(image(SIDE)?, |image: &mut Raster<f32>| {
-        fill(image.pixels_mut())
+        fill(image.pixels_mut());
     });
     bench.beside(
         case,

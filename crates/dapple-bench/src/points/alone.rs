@@ -1,0 +1,95 @@
+//! Ours beside ourselves: rows that need no other crate.
+
+use super::{confirm, confirm_maximal};
+use crate::harness::{Bench, Done, Side};
+use crate::row::{Case, Must, Unit};
+use crate::sets::{self, SEED, UNIT_TORUS};
+use anyhow::{Context as _, Result};
+use dapple_points::glam::DVec2;
+use dapple_points::raster::{Ramp, Varying};
+use dapple_points::{
+    Domain, PointSet, VariablePoissonOptions, poisson_disk, variable_poisson_disk,
+};
+use std::time::Duration;
+
+const VARIABLE: Case = Case {
+    group: "points",
+    case: "variable radius, 100 k points",
+    peer: "ours, fixed radius",
+    unit: Unit::NsPerPoint,
+    must: Must::CostAtMost(3.0),
+    note: "average rule; from left to right, the radius becomes four times as large",
+};
+
+const TWO_THREADS: Case = Case {
+    case: "maximal Poisson disk on two threads, 1 M points",
+    peer: "ours, one thread",
+    unit: Unit::Ms,
+    must: Must::Faster(1.75),
+    note: "",
+    ..VARIABLE
+};
+
+pub(super) fn run(bench: &mut Bench) -> Result<()> {
+    variable(bench)?;
+    two_threads(bench)
+}
+
+/// A side that makes a set of the unit torus and keeps it.
+pub(super) fn maximal(radius: f64) -> Side<'static, Option<PointSet>> {
+    Side::new(None, move |points| {
+        *points = poisson_disk(UNIT_TORUS, radius, SEED).ok();
+    })
+    .prepared(|points| *points = None)
+}
+
+fn variable(bench: &mut Bench) -> Result<()> {
+    if !bench.wants(&VARIABLE) {
+        return Ok(());
+    }
+    let cylinder = Domain {
+        wrap: [false, true],
+        ..UNIT_TORUS
+    };
+    let radius = sets::radius_of(100_000);
+    // The mean of 1 / r² over a geometric ramp from a to 4a is (1 − 1/16) / (2 ln 4) = 0.338 of 1 / a².
+    let least = radius * 0.338_f64.sqrt();
+    let ramp = Ramp {
+        from: DVec2::ZERO,
+        to: DVec2::X,
+        start: least,
+        end: 4.0 * least,
+    };
+    let (field, options) = (
+        Varying::GeometricRamp(ramp),
+        VariablePoissonOptions::default(),
+    );
+    let ours = Side::new(None, |points: &mut Option<PointSet>| {
+        *points = variable_poisson_disk(cylinder, &field, &options, SEED).ok();
+    })
+    .prepared(|points| *points = None);
+    bench.beside(&VARIABLE, 15, ours, maximal(radius), |ours, theirs| {
+        let ours = ours.as_ref().context("no points")?;
+        // As dense as the fixed radius, within the 3 % that the method promises; its smallest distance is the ramp's.
+        let n_ours = confirm(ours, radius, 1.0, 0.676..=0.718)?;
+        confirm(ours, least, 1e-9, 0.0..=1.0)?;
+        Ok(Done {
+            ours: n_ours,
+            theirs: confirm_maximal(theirs, radius)?,
+        })
+    })
+}
+
+fn two_threads(bench: &mut Bench) -> Result<()> {
+    let radius = sets::radius_of(1_000_000);
+    let job = |points: &mut Option<PointSet>| *points = poisson_disk(UNIT_TORUS, radius, SEED).ok();
+    // Sets without a point do not count as the same; coordinates are never NaN or −0.
+    let same = |one: &Option<PointSet>, two: &Option<PointSet>| one.is_some() && one == two;
+    bench.two_threads(
+        &TWO_THREADS,
+        Duration::from_secs(30),
+        [None, None],
+        job,
+        same,
+    )
+}

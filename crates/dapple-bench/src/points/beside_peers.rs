@@ -1,0 +1,158 @@
+//! Ours beside the crates that make Poisson-disk points.
+
+use super::alone::maximal;
+use super::{confirm, confirm_maximal};
+use crate::harness::{Bench, Done, Side};
+use crate::peers;
+use crate::row::{Case, Must, Unit};
+use crate::sets::{self, SEED, UNIT_TORUS};
+use anyhow::{Context as _, Result};
+use dapple_points::glam::DVec2;
+use dapple_points::{Domain, PointSet};
+use std::ops::RangeInclusive;
+
+const BLUENOISE_100K: Case = Case {
+    group: "points",
+    case: "maximal Poisson disk, 100 k points",
+    peer: "bluenoise, wrapping, k = 10",
+    unit: Unit::NsPerPoint,
+    must: Must::Faster(4.0),
+    note: "",
+};
+
+const BLUENOISE_1M: Case = Case {
+    case: "maximal Poisson disk, 1 M points",
+    ..BLUENOISE_100K
+};
+
+const DISKUS_100K: Case = Case {
+    peer: "poisson-diskus, periodic",
+    must: Must::Faster(15.0),
+    ..BLUENOISE_100K
+};
+
+const DISKUS_1M: Case = Case {
+    case: BLUENOISE_1M.case,
+    ..DISKUS_100K
+};
+
+const FAST_POISSON_100K: Case = Case {
+    peer: "fast_poisson, not periodic",
+    must: Must::Faster(30.0),
+    ..BLUENOISE_100K
+};
+
+const FAST_POISSON_1M: Case = Case {
+    case: BLUENOISE_1M.case,
+    must: Must::Faster(100.0),
+    note: "one run of the peer, which takes more than a minute",
+    ..FAST_POISSON_100K
+};
+
+pub(super) fn run(bench: &mut Bench) -> Result<()> {
+    row(bench, &BLUENOISE_100K, 15, &bluenoise(100_000))?;
+    row(bench, &BLUENOISE_1M, 5, &bluenoise(1_000_000))?;
+    row(bench, &DISKUS_100K, 7, &diskus(100_000))?;
+    row(bench, &DISKUS_1M, 2, &diskus(1_000_000))?;
+    row(bench, &FAST_POISSON_100K, 5, &fast_poisson(100_000))?;
+    row(bench, &FAST_POISSON_1M, 1, &fast_poisson(1_000_000))
+}
+
+/// A peer that makes positions of type `P`, and what is known of them.
+struct Peer<P> {
+    /// The radius on the unit torus, which ours is given.
+    radius: f64,
+    /// Makes the points.
+    make: Box<dyn Fn() -> Vec<P> + Sync>,
+    /// The position of what it makes.
+    position: fn(&P) -> DVec2,
+    /// Where its points lie.
+    domain: Domain,
+    /// The radius in that domain.
+    own_radius: f64,
+    /// How much closer two points may be, relative to the radius.
+    slack: f64,
+    /// Points times squared radius over area.
+    density: RangeInclusive<f64>,
+}
+
+impl<P> Peer<P> {
+    /// Checks what the peer made, and counts it.
+    fn confirm(&self, made: &[P]) -> Result<usize> {
+        let points = PointSet::new(self.domain, made.iter().map(self.position).collect())?;
+        confirm(&points, self.own_radius, self.slack, self.density.clone())
+            .context("the peer's points")
+    }
+}
+
+fn row<P: Send>(bench: &mut Bench, case: &Case, turns: u32, peer: &Peer<P>) -> Result<()> {
+    let make = &peer.make;
+    let theirs = Side::new(Vec::new(), |points: &mut Vec<P>| *points = make())
+        .prepared(|points| *points = Vec::new());
+    bench.beside(case, turns, maximal(peer.radius), theirs, |ours, theirs| {
+        Ok(Done {
+            ours: confirm_maximal(ours, peer.radius)?,
+            theirs: peer.confirm(theirs)?,
+        })
+    })
+}
+
+/// `bluenoise` works on a torus of any side in single precision; its radius is one here.
+fn bluenoise(n_points: u32) -> Peer<[f32; 2]> {
+    let radius = sets::radius_of(n_points);
+    let side = (1.0 / radius) as f32;
+    Peer {
+        radius,
+        make: Box::new(move || peers::bluenoise(side, SEED.0)),
+        position: |at| DVec2::new(f64::from(at[0]), f64::from(at[1])),
+        domain: Domain::torus(DVec2::ZERO, DVec2::splat(f64::from(side))),
+        own_radius: 1.0,
+        // Its coordinates go up to 1200, where neighbors are 1.2e-4 apart.
+        slack: 3e-4,
+        density: 0.78..=0.82,
+    }
+}
+
+fn diskus(n_points: u32) -> Peer<[f64; 2]> {
+    let radius = sets::radius_of(n_points);
+    Peer {
+        radius,
+        make: Box::new(move || peers::poisson_diskus(radius, SEED.0)),
+        position: |at| DVec2::from_array(*at),
+        domain: UNIT_TORUS,
+        own_radius: radius,
+        // Rounding of positions up to one, beside radii down to 8e-4.
+        slack: 1e-9,
+        density: BRIDSON,
+    }
+}
+
+/// `fast_poisson` does not wrap; the border lets a few more points in.
+fn fast_poisson(n_points: u32) -> Peer<[f64; 2]> {
+    let radius = sets::radius_of(n_points);
+    Peer {
+        make: Box::new(move || peers::fast_poisson(radius, SEED.0)),
+        domain: Domain::rectangle(DVec2::ZERO, DVec2::ONE),
+        ..diskus(n_points)
+    }
+}
+
+/// Points times squared radius of Bridson's algorithm with 30 tries for each point.
+const BRIDSON: RangeInclusive<f64> = 0.610..=0.640;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn peers_keep_the_radius_and_make_as_many_points_as_is_known() {
+        let bluenoise = bluenoise(10_000);
+        bluenoise
+            .confirm(&(bluenoise.make)())
+            .expect("points of bluenoise");
+        for peer in [diskus(10_000), fast_poisson(10_000)] {
+            peer.confirm(&(peer.make)())
+                .expect("points of poisson-diskus or fast_poisson");
+        }
+    }
+}
