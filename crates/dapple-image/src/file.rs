@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn a_missing_file_is_an_error_with_a_source() {
-        let error = read(&folder("missing").join("none"), 10).unwrap_err();
+        let error = read(&std::env::temp_dir().join("dapple-image-none"), 10).unwrap_err();
         assert_eq!(error.kind(), &ImageErrorKind::Io, "{error}");
         let source = error
             .source()
