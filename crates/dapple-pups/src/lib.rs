@@ -12,16 +12,20 @@
 
 mod error;
 mod gradient;
-mod kernel;
 mod line;
 mod net;
 mod options;
 mod power;
+mod profile;
 mod pups;
 mod render;
 mod sample;
+mod shift;
 mod simd;
+mod sink;
+mod splat;
 mod texture;
+mod tile;
 mod weight;
 
 pub use dapple_graph as graph;

@@ -1,8 +1,8 @@
 //! The partition of unity over a control net: weights and labels.
 
-use crate::kernel::{Planes, Sink};
 use crate::net::Net;
 use crate::render::render;
+use crate::sink::{Planes, Sink};
 use crate::{PupsError, PupsOptions, Texture, VectorTexture};
 use dapple_graph::{Graph, delaunay};
 use dapple_points::{Domain, PointIdx, PointSet};

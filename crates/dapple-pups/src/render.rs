@@ -5,10 +5,13 @@
 //! weights to the pixels that its support can touch. Bands share nothing but what they read, so they can run on any
 //! number of threads.
 
-use crate::kernel::{Cubic, Grid, Planes, Profile, ROWS, Sink, Splat, TILE};
 use crate::line::{Line, runs};
 use crate::net::Net;
+use crate::profile::{Cubic, Profile};
 use crate::simd;
+use crate::sink::{Planes, Sink};
+use crate::splat::{Member, ROWS, Splatter, TILE};
+use crate::tile::Tile;
 use crate::weight::AxialWeight;
 use core::ops::Range;
 use dapple_raster::Window;
@@ -149,23 +152,29 @@ impl<K: Sink> Band<'_, '_, K> {
     ) {
         let last = self.ys.len() - 1;
         let ys = core::array::from_fn(|row| self.ys[row.min(last)]);
-        let grid = Grid {
-            xs: &columns.xs,
-            line: &columns.line,
+        let Columns { xs, line, .. } = columns;
+        let splatter = Splatter {
+            profile,
+            sink: self.sink,
+            xs,
+            line,
             ys,
         };
-        let mut active = Vec::new();
+        let mut tile = Tile::default();
         for &member in &self.members {
             let instance = &self.net.instances[member as usize];
             let blocks = self.net.blocks(instance.point);
             let shift = self.net.shifts.get(instance.point as usize).copied();
-            Splat {
-                profile,
-                instance,
-                blocks,
-                shift,
-            }
-            .add_to(simd, self.sink, &grid, &mut active, planes);
+            splatter.add(
+                simd,
+                Member {
+                    instance,
+                    blocks,
+                    shift,
+                },
+                &mut tile,
+                planes,
+            );
         }
     }
 

@@ -4,8 +4,9 @@
 //! are summed; so the time for a position does not depend on the number of points. The grid covers the domain. On an
 //! axis that does not wrap, the bins of the border reach out as far as there are positions.
 
-use crate::kernel::{Cubic, Profile, shift_weight};
 use crate::net::{AxisBlock, BLOCK, Instance, Net};
+use crate::profile::{Cubic, Profile};
+use crate::shift::shift_weight;
 use crate::weight::AxialWeight;
 use fearless_simd::{Level, dispatch, prelude::*};
 use glam::DVec2;

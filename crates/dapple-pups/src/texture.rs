@@ -1,8 +1,8 @@
 //! Values at the control points, interpolated (equation 3).
 
-use crate::kernel::{Planes, Sink};
 use crate::pups::LEAST_TOTAL;
 use crate::render::render;
+use crate::sink::{Planes, Sink};
 use crate::{Pups, PupsError};
 use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
 use fearless_simd::prelude::*;

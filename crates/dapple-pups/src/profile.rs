@@ -1,0 +1,46 @@
+//! How the axial weights of a control point are multiplied up.
+
+use crate::net::BLOCK;
+use crate::weight::{AxialWeight, Lane};
+
+/// The product of the axial weights of up to [`BLOCK`] axes, taken in one after another.
+///
+/// An axis with `u = 1` changes no bit of the result, whether it is taken in or left out.
+pub(crate) trait Profile: Copy + Send + Sync {
+    /// Takes in an axis, given its `u`, in `[0, 1]`. Both numbers begin at 1.
+    fn step<V: Lane>(self, q: V, t: V, u: V) -> (V, V);
+
+    /// The product, after `n` axes.
+    fn finish<V: Lane>(self, q: V, t: V, n: usize) -> V;
+}
+
+/// The cubic of equation 1, `u² (3 − 2u)`, as two products: `q = Π u` and `t = Π (u − 3/2)`, so that an axis costs three
+/// operations. `W = q² · t · (−2)^n`, where the power of two is exact.
+#[derive(Clone, Copy)]
+pub(crate) struct Cubic;
+
+impl Profile for Cubic {
+    #[inline(always)]
+    fn step<V: Lane>(self, q: V, t: V, u: V) -> (V, V) {
+        (q * u, t * (u - 1.5))
+    }
+
+    #[inline(always)]
+    fn finish<V: Lane>(self, q: V, t: V, n: usize) -> V {
+        const POWERS: [f32; BLOCK + 1] = [1.0, -2.0, 4.0, -8.0, 16.0, -32.0, 64.0, -128.0, 256.0];
+        q * q * (t * POWERS[n])
+    }
+}
+
+/// Any axial weight, by its formula.
+impl Profile for AxialWeight {
+    #[inline(always)]
+    fn step<V: Lane>(self, q: V, t: V, u: V) -> (V, V) {
+        (q * self.of_complement(u), t)
+    }
+
+    #[inline(always)]
+    fn finish<V: Lane>(self, q: V, _: V, _: usize) -> V {
+        q
+    }
+}

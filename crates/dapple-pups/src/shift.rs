@@ -1,0 +1,27 @@
+//! Weights shifted towards an orientation (equation 4).
+
+use crate::power::power;
+use fearless_simd::prelude::*;
+
+/// `w^(1 − K)` where the position lies on the side of the orientation, `w^(1 / (1 + K))` on the other; `shift` is ε times
+/// the orientation in the plane, `x` and `y` lead from the control point to the position.
+///
+/// With `n = ε (x − c)·v` and `d = |x − c|` both exponents are `(d − max(n, 0)) / (d + min(n, 0))`. At the control
+/// point itself the angle has no meaning; there the weight is 1 and stays so.
+#[inline(always)]
+pub(crate) fn shift_weight<S: Simd>(
+    simd: S,
+    weight: S::f32s,
+    shift: [f32; 2],
+    x: S::f32s,
+    y: S::f32s,
+) -> S::f32s {
+    let zero = S::f32s::splat(simd, 0.0);
+    let distance = (x * x + y * y).sqrt();
+    let along = x * shift[0] + y * shift[1];
+    let exponent = (distance - along.max(zero)) / (distance + along.min(zero));
+    let exponent = distance
+        .simd_gt(zero)
+        .select(exponent, S::f32s::splat(simd, 1.0));
+    power(simd, weight, exponent)
+}

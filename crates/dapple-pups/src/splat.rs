@@ -1,0 +1,174 @@
+//! The weights of control points, added to a band of pixels.
+//!
+//! A band is [`ROWS`] rows high. The columns that a support can touch in it are taken [`TILE`] at a time; the axes that
+//! matter in a tile are picked, and their weights multiplied up for a register of pixels in several rows at once.
+
+use crate::line::Line;
+use crate::net::{AxisBlock, Instance};
+use crate::profile::Profile;
+use crate::shift::shift_weight;
+use crate::sink::{Planes, Sink};
+use crate::tile::{ActiveBlock, Tile, reach};
+use fearless_simd::prelude::*;
+
+/// Columns of a tile: a register at the widest level.
+pub(crate) const TILE: usize = 16;
+
+/// Rows of a band.
+pub(crate) const ROWS: usize = 8;
+
+/// Half of the rows of a band; with two numbers a pixel they fill half of 16 registers.
+const HALF: usize = ROWS / 2;
+
+/// The pixels of a band, and what becomes of weights there.
+pub(crate) struct Splatter<'a, P, K> {
+    pub(crate) profile: P,
+    pub(crate) sink: &'a K,
+    /// Columns, filled up to whole tiles with the last real one.
+    pub(crate) xs: &'a [f64],
+    /// The real ones.
+    pub(crate) line: &'a Line,
+    /// Rows; the last real one may come again.
+    pub(crate) ys: [f64; ROWS],
+}
+
+/// A control point, or image of one, with all that its weights depend on.
+#[derive(Clone, Copy)]
+pub(crate) struct Member<'a> {
+    pub(crate) instance: &'a Instance,
+    pub(crate) blocks: &'a [AxisBlock],
+    /// ε times the orientation in the plane.
+    pub(crate) shift: Option<[f32; 2]>,
+}
+
+impl<P: Profile, K: Sink> Splatter<'_, P, K> {
+    /// Adds the weights of a control point to the planes; `tile` is memory to work in.
+    #[inline(always)]
+    pub(crate) fn add<S: Simd>(
+        &self,
+        simd: S,
+        member: Member,
+        tile: &mut Tile,
+        planes: &mut Planes,
+    ) {
+        let Instance {
+            center, min, max, ..
+        } = *member.instance;
+        let mut columns = self.line.touched(min.x, max.x);
+        if columns.is_empty() {
+            return;
+        }
+        tile.y = self.ys.map(|y| (y - center.y) as f32);
+        if columns.len() > 2 * TILE {
+            // The box is wide, so it is worth knowing how much of it lies in these rows.
+            let Some(stretch) = reach(simd, member.blocks, &tile.y) else {
+                return;
+            };
+            let [left, right] = stretch.map(|x| center.x + f64::from(x));
+            columns = self.line.touched(left.max(min.x), right.min(max.x));
+            if columns.is_empty() {
+                return;
+            }
+        }
+        tile.halves = [0, HALF].map(|row| {
+            let [a, b] = [self.ys[row], self.ys[row + HALF - 1]];
+            a.min(b) <= max.y && a.max(b) >= min.y
+        });
+        // A support that is narrower than a tile gets its axes picked once, for the one or two tiles that it lies in.
+        let aligned = columns.start / TILE * TILE..columns.end.next_multiple_of(TILE);
+        let group = if columns.len() <= TILE {
+            aligned.len()
+        } else {
+            TILE
+        };
+        tile.columns = columns;
+        for first in aligned.step_by(group) {
+            let ends = [first, first + group - 1].map(|column| (self.xs[column] - center.x) as f32);
+            if tile.select_axes(simd, member.blocks, ends) {
+                for start in (first..first + group).step_by(TILE) {
+                    tile.move_to(simd, start, &self.xs[start..start + TILE], center.x);
+                    self.add_tile(simd, member, tile, planes);
+                }
+            }
+        }
+    }
+
+    /// Adds the weights of one tile.
+    #[inline(always)]
+    fn add_tile<S: Simd>(&self, simd: S, member: Member, tile: &Tile, planes: &mut Planes) {
+        for column in (0..TILE).step_by(S::f32s::LEN) {
+            let first = tile.start + column;
+            if first >= tile.columns.end || first + S::f32s::LEN <= tile.columns.start {
+                continue;
+            }
+            // A row takes two registers, and an axis a few: 32 registers of 16 lanes hold all rows, 16 registers half.
+            let [upper, lower] = tile.halves;
+            if S::f32s::LEN >= 16 && upper && lower {
+                self.add_rows::<S, ROWS>(simd, member, tile, planes, [column, 0]);
+                continue;
+            }
+            if upper {
+                self.add_rows::<S, HALF>(simd, member, tile, planes, [column, 0]);
+            }
+            if lower {
+                self.add_rows::<S, HALF>(simd, member, tile, planes, [column, HALF]);
+            }
+        }
+    }
+
+    /// Adds the weights of a register's columns in `N` rows, from the column and row `at` of the tile.
+    #[inline(always)]
+    fn add_rows<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        member: Member,
+        tile: &Tile,
+        planes: &mut Planes,
+        [column, first_row]: [usize; 2],
+    ) {
+        let x = S::f32s::from_slice(simd, &tile.x[column..column + S::f32s::LEN]);
+        let mut weights = [S::f32s::splat(simd, 1.0); N];
+        for (index, block) in tile.blocks.iter().enumerate() {
+            let products = self.products::<S, N>(simd, block, x, first_row);
+            for (weight, product) in weights.iter_mut().zip(products) {
+                *weight = if index == 0 {
+                    product
+                } else {
+                    *weight * product
+                };
+            }
+        }
+        for (row, mut weight) in (first_row..).zip(weights) {
+            if let Some(shift) = member.shift {
+                weight = shift_weight(simd, weight, shift, x, S::f32s::splat(simd, tile.y[row]));
+            }
+            let at = row * planes.stride + tile.start + column;
+            self.sink
+                .add(simd, member.instance.point, weight, planes, at);
+        }
+    }
+
+    /// The products of the axial weights of a block, in `N` rows.
+    #[inline(always)]
+    fn products<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        block: &ActiveBlock,
+        x: S::f32s,
+        first_row: usize,
+    ) -> [S::f32s; N] {
+        let zero = S::f32s::splat(simd, 0.0);
+        let one = S::f32s::splat(simd, 1.0);
+        let mut q = [one; N];
+        let mut t = [one; N];
+        for axis in &block.axes[..block.n] {
+            let along = x * axis.x;
+            let rest = &axis.rest[first_row..first_row + N];
+            for row in 0..N {
+                let u = S::f32s::splat(simd, rest[row]) - along;
+                (q[row], t[row]) = self.profile.step(q[row], t[row], u.max(zero).min(one));
+            }
+        }
+        core::array::from_fn(|row| self.profile.finish(q[row], t[row], block.n))
+    }
+}
