@@ -74,6 +74,11 @@ fn rows(lattice: &Lattice, sites: &[DVec2]) -> Option<Rows> {
     if let Some(tiles) = Tiles::new(lattice, sites.len(), margin) {
         return tiles.rows(sites);
     }
+    whole(lattice, sites, margin)
+}
+
+/// The rows, from a single triangulation.
+fn whole(lattice: &Lattice, sites: &[DVec2], margin: f64) -> Option<Rows> {
     let cover = Cover::new(lattice, DVec2::ZERO, lattice.size, margin);
     let images = cover.images(lattice, sites);
     let mut patch = Patch::new(lattice, cover, &images, sites.len())?;
@@ -82,3 +87,89 @@ fn rows(lattice: &Lattice, sites: &[DVec2]) -> Option<Rows> {
 
 /// The margin of images around the domain at first, in mean distances (the root of the area per point).
 const MARGIN: f64 = 1.6;
+
+#[cfg(test)]
+mod tests {
+    use super::{MARGIN, rows, whole};
+    use crate::lattice::Lattice;
+    use crate::{PointIdx, PointSet, delaunay};
+    use dapple_points::Domain;
+    use dapple_points::hash::{Seed, rand_core::Rng, unit_f64};
+    use glam::DVec2;
+
+    /// Random points; with `power` above one they crowd towards the origin.
+    fn random(n: usize, power: i32, size: DVec2) -> PointSet {
+        let mut stream = Seed(n as u64).stream();
+        let mut unit = || {
+            (0..power)
+                .map(|_| unit_f64(stream.next_u64()))
+                .product::<f64>()
+        };
+        let positions = (0..n).map(|_| DVec2::new(unit(), unit()) * size).collect();
+        PointSet::new(Domain::torus(DVec2::ZERO, size), positions).unwrap()
+    }
+
+    #[test]
+    fn tiles_equal_the_whole_for_any_number_of_threads() {
+        for power in [1, 3] {
+            let points = random(40_000, power, DVec2::new(2.0, 1.5));
+            let lattice = Lattice::new(points.domain());
+            let sites = lattice.sites(&points);
+            let expected = whole(&lattice, &sites, MARGIN * 1e13).unwrap();
+            let same = || {
+                let tiled = rows(&lattice, &sites).unwrap();
+                tiled.offsets == expected.offsets && tiled.axes == expected.axes
+            };
+            #[cfg(feature = "rayon")]
+            for threads in [1, 2, 7] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+                assert!(
+                    pool.build().unwrap().install(same),
+                    "power {power}, {threads} threads"
+                );
+            }
+            assert!(same(), "power {power}");
+        }
+    }
+
+    #[test]
+    fn graphs_are_sane_and_do_not_depend_on_where_the_domain_begins() {
+        for (nx, ny) in [(1, 1), (2, 2), (4, 4), (10, 10), (3, 7)] {
+            // Quarters are exact, so that the moved points are the same ones.
+            let size = DVec2::new(f64::from(nx), f64::from(ny)) * 0.25;
+            let grid: Vec<DVec2> = (0..nx * ny)
+                .map(|i| DVec2::new(f64::from(i % nx), f64::from(i / nx)) * 0.25)
+                .collect();
+            let graph = |shift: DVec2| {
+                let moved = grid.iter().map(|&p| p + shift).collect();
+                delaunay(&PointSet::new(Domain::torus(DVec2::ZERO, size), moved).unwrap()).unwrap()
+            };
+            let (here, there) = (graph(DVec2::ZERO), graph(DVec2::new(0.125, 0.0625)));
+            assert_eq!(here.all_axes(), there.all_axes(), "{nx} by {ny}");
+            here.sanity_check().unwrap();
+            let four = |point| here.axes(PointIdx(point)).len() == 4;
+            assert!((0..grid.len() as u32).all(four), "{nx} by {ny}");
+        }
+        delaunay(&random(500, 2, DVec2::new(3.0, 0.5)))
+            .unwrap()
+            .sanity_check()
+            .unwrap();
+    }
+
+    #[test]
+    fn value_stability_delaunay() {
+        let graph = delaunay(&random(100, 1, DVec2::ONE)).unwrap();
+        let mut sum = 0_u64;
+        for axis in graph.all_axes() {
+            let bits = [
+                u64::from(axis.to.0),
+                axis.vector.x.to_bits(),
+                axis.vector.y.to_bits(),
+            ];
+            for part in bits {
+                sum = sum.wrapping_mul(31).wrapping_add(part);
+            }
+        }
+        assert_eq!((graph.n_axes(), sum), (600, 0));
+    }
+}

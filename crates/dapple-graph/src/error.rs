@@ -2,6 +2,7 @@
 
 use core::fmt;
 use dapple_points::PointIdx;
+use glam::DVec2;
 
 /// Why a graph could not be made, or is not sane.
 ///
@@ -38,6 +39,46 @@ pub enum GraphErrorKind {
         /// The number of points.
         n_points: usize,
     },
+    /// Fewer than one or too many nearest neighbors were asked for.
+    Neighbors {
+        /// How many.
+        k: u32,
+        /// How many are allowed, or can be had.
+        limit: u32,
+    },
+    /// Fewer than one or too many cones were asked for.
+    Cones {
+        /// How many.
+        cones: u32,
+        /// How many are allowed.
+        limit: u32,
+    },
+    /// More axes than 32 bits can count.
+    TooManyAxes {
+        /// How many.
+        n_axes: usize,
+    },
+    /// A row's axes are not in their order, or one of them comes twice.
+    Order {
+        /// The point whose row it is.
+        point: PointIdx,
+    },
+    /// The vector of an axis does not lead to an image of its point.
+    Vector {
+        /// The point that the axis starts at.
+        from: PointIdx,
+        /// The point that it says it leads to.
+        to: PointIdx,
+        /// Its vector.
+        vector: DVec2,
+    },
+    /// The graph says that it is symmetric, but an axis has no opposite.
+    OneWay {
+        /// The point that the axis starts at.
+        from: PointIdx,
+        /// The point that it leads to.
+        to: PointIdx,
+    },
 }
 
 impl GraphError {
@@ -67,6 +108,35 @@ impl fmt::Display for GraphError {
             GraphErrorKind::NoSuchPoint { from, to, n_points } => write!(
                 f,
                 "the row of point {} names point {}, but the set has {n_points} points",
+                from.0, to.0
+            ),
+            GraphErrorKind::Neighbors { k, limit } => write!(
+                f,
+                "asked for {k} nearest neighbors, but 1 to {limit} can be had"
+            ),
+            GraphErrorKind::Cones { cones, limit } => {
+                write!(f, "asked for {cones} cones, but 1 to {limit} are allowed")
+            }
+            GraphErrorKind::TooManyAxes { n_axes } => {
+                write!(
+                    f,
+                    "the graph has {n_axes} axes, but the limit is {}",
+                    u32::MAX
+                )
+            }
+            GraphErrorKind::Order { point } => write!(
+                f,
+                "the axes of point {} are not in counterclockwise order from the x axis",
+                point.0
+            ),
+            GraphErrorKind::Vector { from, to, vector } => write!(
+                f,
+                "the axis {vector} of point {} does not lead to an image of point {}",
+                from.0, to.0
+            ),
+            GraphErrorKind::OneWay { from, to } => write!(
+                f,
+                "the axis from point {} to point {} has no opposite",
                 from.0, to.0
             ),
         }

@@ -1,8 +1,9 @@
 //! A graph in compressed rows: the axes of each point.
 
 use crate::angle::by_angle;
+use crate::build::{Choice, graph_of};
 use crate::lattice::Lattice;
-use crate::{GraphError, GraphErrorKind};
+use crate::{Direction, GraphError, GraphErrorKind};
 use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
@@ -51,35 +52,24 @@ impl Graph {
         }
         let lattice = Lattice::new(points.domain());
         let sites = lattice.sites(points);
-        let mut offsets = vec![0];
-        let mut axes: Vec<Axis> = Vec::new();
-        for (from, row) in (0..).map(PointIdx).zip(rows) {
-            let start = axes.len();
-            for &to in row.as_ref() {
-                let site = *sites.get(to.index()).ok_or_else(|| {
-                    GraphError::new(GraphErrorKind::NoSuchPoint { from, to, n_points })
-                })?;
-                let vector = lattice.vector(lattice.delta(sites[from.index()], site));
-                if vector == DVec2::ZERO {
+        let row = |(from, row): (PointIdx, &R)| {
+            let choices = row.as_ref().iter().map(|&to| {
+                let kind = GraphErrorKind::NoSuchPoint { from, to, n_points };
+                let site = *sites.get(to.index()).ok_or(GraphError::new(kind))?;
+                let steps = lattice.delta(sites[from.index()], site);
+                if steps == DVec2::ZERO {
                     return Err(GraphError::coincident(from, to));
                 }
-                axes.push(Axis { to, vector });
-            }
-            axes[start..].sort_unstable_by(Axis::order);
-            let mut kept = axes.split_off(start);
-            kept.dedup();
-            axes.append(&mut kept);
-            offsets.push(axes.len() as u32);
-        }
-        let mut graph = Self {
-            lattice,
-            sites,
-            offsets,
-            axes,
-            symmetric: false,
+                Ok(Choice { to: to.0, steps })
+            });
+            let mut choices = choices.collect::<Result<Vec<_>, _>>()?;
+            choices.sort_unstable_by_key(|choice| choice.to);
+            choices.dedup();
+            Ok(choices)
         };
-        graph.symmetric = graph.every_axis_has_its_opposite();
-        Ok(graph)
+        let numbered = (0..).map(PointIdx).zip(rows);
+        let rows = numbered.map(row).collect::<Result<Vec<_>, GraphError>>()?;
+        graph_of(lattice, sites, rows, Direction::Directed)
     }
 
     /// The axes of a point, counterclockwise, from the smallest angle in `[0, 2π)` from the x axis towards y; those of
@@ -123,18 +113,6 @@ impl Graph {
     #[must_use]
     pub fn is_symmetric(&self) -> bool {
         self.symmetric
-    }
-
-    pub(crate) fn every_axis_has_its_opposite(&self) -> bool {
-        (0..self.n_points() as u32).map(PointIdx).all(|from| {
-            self.axes(from).iter().all(|axis| {
-                let back = Axis {
-                    to: from,
-                    vector: -axis.vector,
-                };
-                self.axes(axis.to).contains(&back)
-            })
-        })
     }
 }
 

@@ -75,6 +75,25 @@ impl<'a> Grid<'a> {
         }
     }
 
+    /// The root of the area per point.
+    pub(crate) fn mean_distance(&self) -> f64 {
+        let size = self.lattice.size;
+        (size.x * (size.y / self.sites.len().max(1) as f64)).sqrt()
+    }
+
+    /// A radius that is large enough for all neighbors that a graph may ask for; within it images are still exact.
+    ///
+    /// Without wrapping, all points lie within the domain's diagonal. With it, of each point there are at least ten images within five
+    /// periods, and one in each cone of 1/32 of a turn that has any: 1 / sin(2π / 32) is below 5.2.
+    pub(crate) fn farthest(&self) -> f64 {
+        let size = self.lattice.size;
+        if self.lattice.wraps() {
+            5.2 * size.max_element() + 1.01 * size.min_element()
+        } else {
+            size.length() + 1.0
+        }
+    }
+
     fn cell(&self, site: DVec2) -> usize {
         self.bucket(1, site.y) * self.cells[0] + self.bucket(0, site.x)
     }

@@ -58,7 +58,7 @@ impl Lattice {
     }
 
     /// A vector of the caller's unit, in steps.
-    #[cfg(test)]
+    #[inline]
     pub(crate) fn steps(&self, vector: DVec2) -> DVec2 {
         vector * self.per_step
     }

@@ -10,15 +10,26 @@
 
 #![forbid(unsafe_code)]
 
-mod angle;
-mod delaunay;
 mod error;
 mod graph;
+mod sanity;
+
+mod delaunay;
+mod gabriel;
+mod nearest;
+mod yao;
+
+mod angle;
+mod build;
 mod grid;
 mod lattice;
 
+pub use build::Direction;
 pub use dapple_points as points;
 pub use dapple_points::{PointIdx, PointSet, glam};
 pub use delaunay::delaunay;
 pub use error::{GraphError, GraphErrorKind};
+pub use gabriel::gabriel;
 pub use graph::{Axis, Graph};
+pub use nearest::k_nearest;
+pub use yao::yao;

@@ -1,0 +1,73 @@
+//! Rows of axes put together into a graph, for the graphs that choose each point's axes on their own.
+
+use crate::lattice::Lattice;
+use crate::{Axis, Graph, GraphError, GraphErrorKind};
+use dapple_points::PointIdx;
+use glam::DVec2;
+
+/// Whether an edge counts from one end or from both.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Direction {
+    /// Each point has the axes that it chose itself.
+    #[default]
+    Directed,
+    /// Each point has the axes that it chose, and the opposites of those that lead to it.
+    Symmetric,
+}
+
+/// A candidate for an axis: the point, and where its image lies in steps from the one that chooses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Choice {
+    pub(crate) to: u32,
+    pub(crate) steps: DVec2,
+}
+
+/// The graph of the chosen axes: `rows` has one list for each site, in any order.
+pub(crate) fn graph_of(
+    lattice: Lattice,
+    sites: Vec<DVec2>,
+    mut rows: Vec<Vec<Choice>>,
+    direction: Direction,
+) -> Result<Graph, GraphError> {
+    if direction == Direction::Symmetric {
+        for from in 0..rows.len() {
+            for index in 0..rows[from].len() {
+                let Choice { to, steps } = rows[from][index];
+                let back = Choice {
+                    to: from as u32,
+                    steps: -steps,
+                };
+                let row = &mut rows[to as usize];
+                if !row.contains(&back) {
+                    row.push(back);
+                }
+            }
+        }
+    }
+    let n_axes: usize = rows.iter().map(Vec::len).sum();
+    if u32::try_from(n_axes).is_err() {
+        return Err(GraphError::new(GraphErrorKind::TooManyAxes { n_axes }));
+    }
+    let mut offsets = Vec::with_capacity(rows.len() + 1);
+    offsets.push(0);
+    let mut axes = Vec::with_capacity(n_axes);
+    for row in rows {
+        let start = axes.len();
+        axes.extend(row.into_iter().map(|choice| Axis {
+            to: PointIdx(choice.to),
+            vector: lattice.vector(choice.steps),
+        }));
+        axes[start..].sort_unstable_by(Axis::order);
+        offsets.push(axes.len() as u32);
+    }
+    let mut graph = Graph {
+        lattice,
+        sites,
+        offsets,
+        axes,
+        symmetric: true,
+    };
+    graph.symmetric = direction == Direction::Symmetric || graph.every_axis_has_its_opposite();
+    Ok(graph)
+}

@@ -1,0 +1,66 @@
+//! The Gabriel graph.
+//!
+//! Reference: K. Ruben Gabriel and Robert R. Sokal, "A New Statistical Approach to Geographic Variation Analysis",
+//! Systematic Zoology 18(3), 1969, doi:10.2307/2412323.
+//!
+//! It is a part of the Delaunay graph. A point on the circle itself counts as inside of it, as in the paper, so that the
+//! edges that stay are those that cross the side that their Voronoi cells share.
+
+use crate::build::{Choice, Direction, graph_of};
+use crate::{Axis, Graph, GraphError, delaunay};
+use dapple_points::PointSet;
+use glam::DVec2;
+
+/// The Gabriel graph: two points are connected if the circle whose diameter they are has no other point on it or in
+/// it, counting all images.
+///
+/// It is symmetric, and contains the way from each point to its nearest one if that is unique.
+///
+/// # Errors
+///
+/// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points lie at the same place.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_graph::{PointSet, gabriel, glam::DVec2, points::Domain};
+///
+/// // The third point lies in the circle over the first two.
+/// let positions = [(0.0, 0.0), (1.0, 0.0), (0.5, 0.25)].map(DVec2::from).to_vec();
+/// let points = PointSet::new(Domain::rectangle(DVec2::ZERO, DVec2::ONE), positions)?;
+/// assert_eq!(gabriel(&points)?.n_axes(), 4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn gabriel(points: &PointSet) -> Result<Graph, GraphError> {
+    let Graph {
+        lattice,
+        sites,
+        offsets,
+        axes,
+        ..
+    } = delaunay(points)?;
+    let steps = |axis: &Axis| lattice.steps(axis.vector);
+    let rows = offsets.windows(2).map(|range| {
+        let star = &axes[range[0] as usize..range[1] as usize];
+        // If a point lies in the circle, then so does the third corner of a triangle at the edge; of several triangles
+        // in one circle, all corners lie on it.
+        let empty = |axis: &&Axis| {
+            let edge = steps(axis);
+            star.iter().all(|other| is_outside(edge, steps(other)))
+        };
+        let choice = |axis: &Axis| Choice {
+            to: axis.to.0,
+            steps: steps(axis),
+        };
+        star.iter().filter(empty).map(choice).collect()
+    });
+    let rows: Vec<Vec<Choice>> = rows.collect();
+    graph_of(lattice, sites, rows, Direction::Directed)
+}
+
+/// Whether a place lies outside of the circle from the origin to `edge`, or is its end; exact.
+fn is_outside(edge: DVec2, at: DVec2) -> bool {
+    // The angle at the place is acute: at · (at - edge) > 0. Whole numbers below 2^53 have products below 2^106.
+    let dot = at.x as i128 * (at.x - edge.x) as i128 + at.y as i128 * (at.y - edge.y) as i128;
+    dot > 0 || at == edge
+}

@@ -1,0 +1,89 @@
+//! The graph of nearest neighbors, and the search from near to far that other graphs use as well.
+
+use crate::build::{Choice, Direction, graph_of};
+use crate::grid::Grid;
+use crate::lattice::{Lattice, check_distinct};
+use crate::{Graph, GraphError, GraphErrorKind};
+use dapple_points::PointSet;
+use glam::DVec2;
+
+/// The graph in which each point has axes to its `k` nearest neighbors.
+///
+/// Images count as neighbors of their own, those of the point itself too. Of equally near ones, those with the smaller
+/// index come first, then those with the smaller angle from the x axis.
+///
+/// # Errors
+///
+/// [`GraphErrorKind::Neighbors`] for `k = 0` and past 4096, on a rectangle for more neighbors than there are other
+/// points, and on a domain that wraps for more than ten times as many as there are points; [`GraphErrorKind::Coincident`] if two points lie at the same place;
+/// [`GraphErrorKind::TooManyAxes`] past 2^32 axes.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_graph::{Direction, PointIdx, PointSet, glam::DVec2, k_nearest, points::Domain};
+///
+/// let positions = [(0.0, 0.0), (0.3, 0.0), (0.9, 0.0)].map(DVec2::from).to_vec();
+/// let points = PointSet::new(Domain::torus(DVec2::ZERO, DVec2::ONE), positions)?;
+/// let graph = k_nearest(&points, 1, Direction::Directed)?;
+/// assert_eq!(graph.axes(PointIdx(0))[0].to, PointIdx(2), "around the torus");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn k_nearest(points: &PointSet, k: u32, direction: Direction) -> Result<Graph, GraphError> {
+    let lattice = Lattice::new(points.domain());
+    let limit = if lattice.wraps() {
+        MAX_NEIGHBORS.min(points.len().saturating_mul(10) as u32)
+    } else {
+        MAX_NEIGHBORS.min(points.len().saturating_sub(1) as u32)
+    };
+    if k == 0 || (k > limit && !points.is_empty()) {
+        return Err(GraphError::new(GraphErrorKind::Neighbors { k, limit }));
+    }
+    let sites = lattice.sites(points);
+    check_distinct(&sites)?;
+    let grid = Grid::new(&lattice, &sites);
+    let wanted = k as usize;
+    let rows = sites.iter().map(|&site| {
+        // A disc of this radius holds about twice as many as wanted.
+        let mut radius = 0.8 * grid.mean_distance() * f64::from(k + 1).sqrt();
+        loop {
+            radius = radius.min(grid.farthest());
+            let mut near = near(&grid, site, radius);
+            if near.len() >= wanted || radius == grid.farthest() {
+                near.truncate(wanted);
+                return near;
+            }
+            radius *= 1.5;
+        }
+    });
+    let rows = rows.collect();
+    graph_of(lattice, sites, rows, direction)
+}
+
+/// The largest number of neighbors that can be asked for.
+const MAX_NEIGHBORS: u32 = 4096;
+
+/// All images within a distance of a site but the site itself, nearest first.
+pub(crate) fn near(grid: &Grid<'_>, site: DVec2, radius: f64) -> Vec<Choice> {
+    let mut found: Vec<(i128, Choice)> = Vec::new();
+    let radius_sq = (radius * radius) as i128;
+    grid.visit_box(site - radius, site + radius, |to, at| {
+        let steps = at - site;
+        let distance_sq = length_sq(steps);
+        if distance_sq > 0 && distance_sq <= radius_sq {
+            found.push((distance_sq, Choice { to, steps }));
+        }
+    });
+    found.sort_unstable_by(|(a_sq, a), (b_sq, b)| {
+        (a_sq.cmp(b_sq))
+            .then(a.to.cmp(&b.to))
+            .then_with(|| crate::angle::by_angle(a.steps, b.steps))
+    });
+    found.into_iter().map(|(_, choice)| choice).collect()
+}
+
+/// The squared length in steps, exact: products of whole numbers below 2^53.
+fn length_sq(steps: DVec2) -> i128 {
+    let [x, y] = [steps.x, steps.y].map(|coordinate| coordinate as i128);
+    x * x + y * y
+}

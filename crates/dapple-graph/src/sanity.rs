@@ -1,0 +1,74 @@
+//! What is true of every graph.
+
+use crate::{Axis, Graph, GraphError, GraphErrorKind};
+use core::cmp::Ordering;
+use dapple_points::PointIdx;
+
+impl Graph {
+    /// Looks through the whole graph for what must never be: for tests, and for graphs that went through other hands.
+    ///
+    /// Every axis leads to a point of the graph, with a vector that is not zero and leads exactly to an image of that
+    /// point; the axes of each point are in their order, and none comes twice; and if the graph
+    /// [says so](Self::is_symmetric), every axis has its opposite.
+    ///
+    /// # Errors
+    ///
+    /// The first thing that is wrong: [`GraphErrorKind::NoSuchPoint`], [`GraphErrorKind::Vector`],
+    /// [`GraphErrorKind::Order`] or [`GraphErrorKind::OneWay`].
+    pub fn sanity_check(&self) -> Result<(), GraphError> {
+        let n_points = self.n_points();
+        for from in self.points() {
+            let axes = self.axes(from);
+            for axis in axes {
+                let &Axis { to, vector } = axis;
+                let kind = if to.index() >= n_points {
+                    GraphErrorKind::NoSuchPoint { from, to, n_points }
+                } else if !self.leads_to_an_image(from, axis) {
+                    GraphErrorKind::Vector { from, to, vector }
+                } else if self.is_symmetric() && !self.has_opposite(from, axis) {
+                    GraphErrorKind::OneWay { from, to }
+                } else {
+                    continue;
+                };
+                return Err(GraphError::new(kind));
+            }
+            let in_order = |pair: &[Axis]| pair[0].order(&pair[1]) == Ordering::Less;
+            if !axes.windows(2).all(in_order) {
+                return Err(GraphError::new(GraphErrorKind::Order { point: from }));
+            }
+        }
+        Ok(())
+    }
+
+    fn points(&self) -> impl Iterator<Item = PointIdx> {
+        (0..self.n_points() as u32).map(PointIdx)
+    }
+
+    /// Whether the vector differs from that to the point itself by whole periods.
+    fn leads_to_an_image(&self, from: PointIdx, axis: &Axis) -> bool {
+        let steps = self.lattice.steps(axis.vector);
+        let direct = self.sites[axis.to.index()] - self.sites[from.index()];
+        let around = (steps - direct) / self.lattice.size;
+        let is_whole = |k: f64, wraps: bool| k == 0.0 || (wraps && k.floor() == k);
+        let whole =
+            is_whole(around.x, self.lattice.wrap[0]) && is_whole(around.y, self.lattice.wrap[1]);
+        whole && axis.vector.is_finite() && axis.vector.length_squared() > 0.0
+    }
+
+    fn has_opposite(&self, from: PointIdx, axis: &Axis) -> bool {
+        let opposite = Axis {
+            to: from,
+            vector: -axis.vector,
+        };
+        self.axes(axis.to).contains(&opposite)
+    }
+
+    pub(crate) fn every_axis_has_its_opposite(&self) -> bool {
+        let both_ways = |from| {
+            self.axes(from)
+                .iter()
+                .all(|axis| self.has_opposite(from, axis))
+        };
+        self.points().all(both_ways)
+    }
+}

@@ -1,0 +1,108 @@
+//! The Yao graph: the nearest neighbor in each of several cones.
+//!
+//! Reference: Andrew Chi-Chih Yao, "On Constructing Minimum Spanning Trees in k-Dimensional Spaces and Related
+//! Problems", SIAM Journal on Computing 11(4), 1982, doi:10.1137/0211059. Caron and Mould name it as future work for
+//! partition of unity parametrics.
+//!
+//! Cone `i` of `k` has the directions from the angle `2π i / k` (included) to `2π (i + 1) / k`. The borders are vectors
+//! that are computed once, the same for all points and on every machine; which side of a border a neighbor lies on is exact. The borders
+//! in the directions of the axes are exact themselves, the other ones are rounded.
+
+use crate::angle::{by_angle, turn};
+use crate::build::{Choice, Direction, graph_of};
+use crate::grid::Grid;
+use crate::lattice::{Lattice, check_distinct};
+use crate::nearest::near;
+use crate::{Graph, GraphError, GraphErrorKind};
+use core::cmp::Ordering;
+use core::f64::consts::TAU;
+use dapple_points::PointSet;
+use glam::DVec2;
+
+/// The Yao graph: each point has an axis to its nearest neighbor in each of `cones` equal cones, the first of which
+/// begins at the x axis.
+///
+/// Images count as neighbors of their own, those of the point itself too. Of equally near ones, the one with the
+/// smaller index is taken, then the one with the smaller angle. Where a cone is empty (at the border of a domain that does not wrap) there is no axis.
+///
+/// # Errors
+///
+/// [`GraphErrorKind::Cones`] for no cones and for more than 32; [`GraphErrorKind::Coincident`] if two points lie at the
+/// same place; [`GraphErrorKind::TooManyAxes`] past 2^32 axes.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_graph::{Direction, PointIdx, PointSet, glam::DVec2, points::Domain, yao};
+///
+/// let points = PointSet::new(Domain::torus(DVec2::ZERO, DVec2::ONE), vec![DVec2::ZERO])?;
+/// let graph = yao(&points, 4, Direction::Directed)?;
+/// assert_eq!(graph.axes(PointIdx(0)).len(), 4, "its own images");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn yao(points: &PointSet, cones: u32, direction: Direction) -> Result<Graph, GraphError> {
+    if cones == 0 || cones > MAX_CONES {
+        return Err(GraphError::new(GraphErrorKind::Cones {
+            cones,
+            limit: MAX_CONES,
+        }));
+    }
+    let borders: Vec<DVec2> = (0..cones).map(|index| border(index, cones)).collect();
+    let lattice = Lattice::new(points.domain());
+    let sites = lattice.sites(points);
+    check_distinct(&sites)?;
+    let grid = Grid::new(&lattice, &sites);
+    let rows = sites.iter().map(|&site| {
+        let mut radius = (2.0 * grid.mean_distance()).min(grid.farthest());
+        loop {
+            let chosen = nearest_per_cone(&near(&grid, site, radius), &borders);
+            if chosen.iter().all(Option::is_some) || radius == grid.farthest() {
+                return chosen.into_iter().flatten().collect();
+            }
+            radius = (2.0 * radius).min(grid.farthest());
+        }
+    });
+    let rows = rows.collect();
+    graph_of(lattice, sites, rows, direction)
+}
+
+/// The largest number of cones.
+const MAX_CONES: u32 = 32;
+
+/// The first of the neighbors in each cone.
+fn nearest_per_cone(neighbors: &[Choice], borders: &[DVec2]) -> Vec<Option<Choice>> {
+    let mut chosen = vec![None; borders.len()];
+    let mut left = borders.len();
+    for &neighbor in neighbors {
+        // The first border is the x axis, where angles begin, so that none comes before it.
+        let after = borders.partition_point(|&border| is_at_or_after(neighbor.steps, border));
+        let slot: &mut Option<Choice> = &mut chosen[after - 1];
+        if slot.is_none() {
+            *slot = Some(neighbor);
+            left -= 1;
+            if left == 0 {
+                break;
+            }
+        }
+    }
+    chosen
+}
+
+/// Whether the angle of `v` is at least that of `border`.
+fn is_at_or_after(v: DVec2, border: DVec2) -> bool {
+    turn(border, v) == 0.0 && v.dot(border) > 0.0 || by_angle(v, border) == Ordering::Greater
+}
+
+/// Where a cone begins; exact in multiples of a quarter turn.
+fn border(index: u32, cones: u32) -> DVec2 {
+    let quarter = 4 * index / cones;
+    let rest = f64::from(4 * index % cones) / f64::from(4 * cones);
+    let (sine, cosine) = libm::sincos(rest * TAU);
+    let first = DVec2::new(cosine, sine);
+    match quarter {
+        0 => first,
+        1 => DVec2::new(-first.y, first.x),
+        2 => -first,
+        _ => DVec2::new(first.y, -first.x),
+    }
+}
