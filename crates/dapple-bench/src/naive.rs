@@ -4,9 +4,8 @@
 //! 2013, equations 1 to 3: the weight of a control point `c` at `u` is the product of `A(p)` over its axes `r`, where
 //! `p = (u − c)·r / |r|²` is clamped to [0, 1] and `A(p) = 1 − 3p² + 2p³`; the value is the weighted mean.
 //!
-//! It is naive, not slow on purpose: `f32`, axes already divided by their squared length and flat in memory, the
-//! vertical offset computed once for each row and point, no weight beyond the first axis that makes it zero.
-//! Positions are in a unit torus.
+//! It is naive, not slow on purpose: `f32`, axes already divided by their squared length and flat in memory, and no
+//! further axis of a point once one has made its weight zero. Positions are in a unit torus.
 
 /// Control points with their axes, ready to be evaluated.
 #[derive(Clone, Debug, Default)]
@@ -42,38 +41,22 @@ impl Naive {
     /// Fills one row of an image of the unit square; `y` is that of the pixel centers.
     pub(crate) fn row(&self, y: f64, row: &mut [f32]) {
         let pixel = 1.0 / row.len() as f64;
-        let offsets: Vec<f32> = self
-            .centers
-            .iter()
-            .map(|center| wrapped(y as f32 - center[1]))
-            .collect();
         for (column, value) in row.iter_mut().enumerate() {
-            *value = self.at(((column as f64 + 0.5) * pixel) as f32, &offsets);
+            *value = self.sample([(column as f64 + 0.5) * pixel, y]);
         }
     }
 
-    /// The value at one position of the unit square.
-    #[cfg(any(test, feature = "peers"))]
+    /// The value at a position of the unit square.
     pub(crate) fn sample(&self, position: [f64; 2]) -> f32 {
         let [x, y] = position.map(|coordinate| coordinate as f32);
-        let offsets: Vec<f32> = self
-            .centers
-            .iter()
-            .map(|center| wrapped(y - center[1]))
-            .collect();
-        self.at(x, &offsets)
-    }
-
-    /// The value at a column, given the vertical offset from every center.
-    fn at(&self, x: f32, offsets: &[f32]) -> f32 {
         let (mut sum, mut total) = (0.0, 0.0);
-        for ((center, &dy), (ends, value)) in self
+        for ((center, value), ends) in self
             .centers
             .iter()
-            .zip(offsets)
-            .zip(self.first.windows(2).zip(&self.values))
+            .zip(&self.values)
+            .zip(self.first.windows(2))
         {
-            let dx = wrapped(x - center[0]);
+            let (dx, dy) = (wrapped(x - center[0]), wrapped(y - center[1]));
             let weight = weight(dx, dy, &self.axes[ends[0] as usize..ends[1] as usize]);
             sum += weight * value;
             total += weight;
