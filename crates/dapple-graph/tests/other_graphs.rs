@@ -45,7 +45,7 @@ fn neighbors(points: &PointSet, from: PointIdx) -> Vec<(u32, DVec2)> {
     let key = |v: DVec2| {
         (
             v.length_squared(),
-            v.y.atan2(v.x).rem_euclid(core::f64::consts::TAU),
+            libm::atan2(v.y, v.x).rem_euclid(core::f64::consts::TAU),
         )
     };
     found.sort_by(|a, b| {
@@ -132,7 +132,7 @@ fn yao_equals_a_search_through_all_images() {
             let first_per_cone = |all: Vec<(u32, DVec2)>| {
                 let mut taken = vec![false; cones as usize];
                 let is_first = |&(_, v): &(u32, DVec2)| {
-                    let angle = v.y.atan2(v.x).rem_euclid(core::f64::consts::TAU);
+                    let angle = libm::atan2(v.y, v.x).rem_euclid(core::f64::consts::TAU);
                     // No border but those in the directions of the axes, which are exact, comes closer than 1e-9 to
                     // a direction between these whole numbers; others lie on the near side of rounding.
                     let cone = (angle / core::f64::consts::TAU * f64::from(cones) + 1e-12) as usize;

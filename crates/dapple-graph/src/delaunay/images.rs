@@ -74,13 +74,17 @@ pub(super) struct Missing<'g, 'a> {
     grid: &'g LazyGrid<'a>,
     /// Farther than this from a point no circumcircle of its true triangles reaches (inside of the domain's strip).
     reach: DVec2,
-    /// Where images were found before.
-    known: BTreeSet<(i64, i64)>,
+    /// Where images were inserted before.
+    inserted: BTreeSet<(i64, i64)>,
+    /// Where images were found since.
+    pending: BTreeSet<(i64, i64)>,
     /// The images to insert next, each with the row that it was found for.
-    pub(super) found: Vec<(Image, u32)>,
+    found: Vec<(Image, u32)>,
     scaffolded: bool,
     /// The row whose star is searched.
     row: u32,
+    /// Whether that star will change.
+    changes: bool,
 }
 
 impl<'g, 'a> Missing<'g, 'a> {
@@ -94,19 +98,22 @@ impl<'g, 'a> Missing<'g, 'a> {
             // but both borders of the strip hold a point in each period; width and height change places for the
             // two kinds of cylinder.
             reach: 1.01 * (2.0 * size.element_sum() - size),
-            known: BTreeSet::new(),
+            inserted: BTreeSet::new(),
+            pending: BTreeSet::new(),
             found: Vec::new(),
             scaffolded: false,
             row: 0,
+            changes: false,
         }
     }
 
     /// Adds for each circumcircle of the star at `center` that holds a missing image the one that is nearest to its
-    /// center.
-    pub(super) fn search(&mut self, row: u32, center: DVec2, star: &Star) {
+    /// center. Whether the star will change.
+    pub(super) fn search(&mut self, row: u32, center: DVec2, star: &Star) -> bool {
         self.row = row;
+        self.changes = false;
         if star.wedges().nth(1).is_none() {
-            return self.scaffold();
+            self.scaffold();
         }
         for (a, b) in star.wedges() {
             if a.gap_after {
@@ -116,6 +123,7 @@ impl<'g, 'a> Missing<'g, 'a> {
                 self.search_circle(center, a.at, b.at);
             }
         }
+        self.changes
     }
 
     /// Adds the nearest missing image on an edge beside a gap, or the scaffold if there should be no gap.
@@ -145,6 +153,7 @@ impl<'g, 'a> Missing<'g, 'a> {
 
     /// Adds images around the domain that close all stars in it.
     fn scaffold(&mut self) {
+        self.changes = true;
         if core::mem::replace(&mut self.scaffolded, true) {
             return;
         }
@@ -192,7 +201,7 @@ impl<'g, 'a> Missing<'g, 'a> {
         let mut nearest: Option<(f64, u32, DVec2)> = None;
         let coord = |at: DVec2| Coord { x: at.x, y: at.y };
         self.grid.get().visit_box(low, high, |point, at| {
-            if self.cover.depth(at) >= 0.0 || self.known.contains(&key(at)) {
+            if self.cover.depth(at) >= 0.0 || self.inserted.contains(&key(at)) {
                 return;
             }
             let distance_sq = (at - p - circle.center).length_squared();
@@ -206,11 +215,22 @@ impl<'g, 'a> Missing<'g, 'a> {
         }
     }
 
+    /// Adds an image, if it is not there and was not found before.
     fn add(&mut self, point: u32, at: DVec2) {
-        if self.cover.depth(at) < 0.0 && self.known.insert(key(at)) {
-            self.found
-                .push((Image::new(at, point, Image::FOREIGN), self.row));
+        if self.cover.depth(at) >= 0.0 || self.inserted.contains(&key(at)) {
+            return;
         }
+        self.changes = true;
+        if self.pending.insert(key(at)) {
+            let image = Image::new(at, point, Image::FOREIGN);
+            self.found.push((image, self.row));
+        }
+    }
+
+    /// Takes the images that were found, to be inserted now.
+    pub(super) fn take(&mut self) -> Vec<(Image, u32)> {
+        self.inserted.append(&mut self.pending);
+        core::mem::take(&mut self.found)
     }
 }
 

@@ -72,7 +72,7 @@ impl<'a> Patch<'a> {
     ) -> Option<Self> {
         let n_images = images.len();
         let triangulation =
-            DelaunayTriangulation::<Image>::bulk_load(farthest_first(&images)).ok()?;
+            DelaunayTriangulation::<Image>::bulk_load(farthest_first(images)).ok()?;
         if triangulation.num_vertices() < n_images {
             return None;
         }
@@ -121,17 +121,20 @@ impl<'a> Patch<'a> {
         let mut star = Star::default();
         let mut missing = Missing::new(self.lattice, self.cover, grid);
         let mut changed = false;
+        let mut doubtful = doubtful.to_vec();
         loop {
-            for &row in doubtful {
+            // A star whose circumcircles hold no missing image is true, and no other image changes it any more.
+            doubtful.retain(|&row| {
                 let vertex = self.triangulation.vertex(self.vertices[row as usize]);
                 star.read(vertex, f64::INFINITY);
-                missing.search(row, at(vertex), &star);
-            }
-            if missing.found.is_empty() {
+                missing.search(row, at(vertex), &star)
+            });
+            let found = missing.take();
+            if found.is_empty() {
                 return changed;
             }
             changed = true;
-            for (image, row) in missing.found.drain(..) {
+            for (image, row) in found {
                 let near = self.vertices[row as usize];
                 // Sites are finite whole numbers, which are always accepted.
                 let _ = self.triangulation.insert_with_hint(image, near);
