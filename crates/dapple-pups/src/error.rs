@@ -46,6 +46,11 @@ pub enum PupsErrorKind {
         /// The shortest length that is accepted in this domain.
         limit: f64,
     },
+    /// An axis of the domain has to wrap around, and does not.
+    NotWrapped {
+        /// The axis: 0 for x, 1 for y.
+        axis: usize,
+    },
     /// The points could not be made.
     Points(PointsError),
     /// The graph could not be made.
@@ -134,6 +139,9 @@ impl fmt::Display for PupsError {
                     f,
                     "an axis of point {point} has length {length}, but the limit is {limit}"
                 )
+            }
+            PupsErrorKind::NotWrapped { axis } => {
+                write!(f, "axis {axis} of the domain must wrap around, but does not")
             }
             PupsErrorKind::Points(error) => error.fmt(f),
             PupsErrorKind::Graph(error) => error.fmt(f),

@@ -66,7 +66,7 @@ fn weight_and_gradient(net: &Net, instance: &Instance, position: DVec2) -> (f64,
     let offset = position - instance.center;
     let mut weight = 1.0;
     let mut gradient = DVec2::ZERO;
-    for block in net.blocks(instance.point) {
+    for block in net.blocks(instance) {
         for slot in 0..BLOCK {
             let (value, slope) = axial(net.options.weight, block, slot, offset);
             gradient = gradient * value + slope * weight;

@@ -7,9 +7,14 @@
 //! is projected onto each of them, every projection gives an axial weight, and their product is the weight of the
 //! control point. [`Pups`] holds such a net. [`Texture`] gives the control points values and interpolates them;
 //! [`Pups::strongest`] gives every position the label of its strongest control point.
+//!
+//! The textures of the paper are recipes on top of that, such as [`noise`], [`octaves`], [`cells`] and [`cow`]: each is
+//! one call with options and a seed. For textures of your own, place points, give them attributes ([`random_values`],
+//! [`biased_labels`], [`grouped_labels`], [`random_orientations`] and others), and make a texture of them.
 
 #![forbid(unsafe_code)]
 
+mod assign;
 mod error;
 mod gradient;
 mod line;
@@ -18,6 +23,7 @@ mod options;
 mod power;
 mod profile;
 mod pups;
+mod recipes;
 mod render;
 mod sample;
 mod shift;
@@ -28,6 +34,11 @@ mod texture;
 mod tile;
 mod weight;
 
+pub use assign::{
+    Orientations, ReferenceImage, angle_orientations, biased_labels, field_orientations, field_values,
+    grouped_labels, outward_orientations, own_labels, palette_values, random_labels,
+    random_orientations, random_values, reference_labels, varying_values,
+};
 pub use dapple_graph as graph;
 pub use dapple_hash as hash;
 pub use dapple_points as points;
@@ -36,6 +47,10 @@ pub use error::{PupsError, PupsErrorKind};
 pub use glam;
 pub use options::{Orientation, PupsOptions};
 pub use pups::Pups;
+pub use recipes::{
+    CellsOptions, CowOptions, Folding, LabelTexture, Layers, NetOptions, NoiseOptions, Octave,
+    OctaveSource, OctavesOptions, Spacing, VectorLabelTexture, cells, cow, noise, octaves, turbulence,
+};
 pub use texture::{Texture, VectorTexture};
 pub use weight::AxialWeight;
 

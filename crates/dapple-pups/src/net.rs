@@ -38,8 +38,9 @@ pub(crate) struct AxisBlock {
     pub(crate) y: [f32; BLOCK],
 }
 
-/// A control point, or one of its periodic images.
+/// A control point, or one of its periodic images; one cache line.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub(crate) struct Instance {
     /// Where it is.
     pub(crate) center: DVec2,
@@ -48,6 +49,9 @@ pub(crate) struct Instance {
     pub(crate) max: DVec2,
     /// The control point.
     pub(crate) point: u32,
+    /// Its axes: the first block, and how many.
+    first_block: u32,
+    n_blocks: u32,
 }
 
 /// Everything that the weights depend on.
@@ -57,9 +61,9 @@ pub(crate) struct Net {
     pub(crate) options: PupsOptions,
     /// Control points and their images, in the order in which weights are summed: by point, then by image.
     pub(crate) instances: Vec<Instance>,
-    /// The axes of point `i` are the blocks from `first_block[i]` to `first_block[i + 1]`.
-    pub(crate) first_block: Vec<u32>,
-    pub(crate) blocks: Vec<AxisBlock>,
+    /// The axes of all points, point by point.
+    blocks: Vec<AxisBlock>,
+    n_points: usize,
     /// ε times the orientation in the plane, for each point; empty without orientations.
     pub(crate) shifts: Vec<[f32; 2]>,
     /// For single positions; made when the first is asked for.
@@ -88,8 +92,8 @@ impl Net {
         let mut net = Self {
             domain: *points.domain(),
             instances: Vec::with_capacity(points.len() + points.len() / 4 + 16),
-            first_block: Vec::with_capacity(points.len() + 1),
             blocks: Vec::with_capacity(points.len() + points.len() / 16),
+            n_points: points.len(),
             shifts: options
                 .orientation
                 .iter()
@@ -98,7 +102,6 @@ impl Net {
             options,
             bins: OnceLock::new(),
         };
-        net.first_block.push(0);
         let mut closing = None;
         let mut axes = Vec::new();
         for (point, center) in points.iter() {
@@ -107,8 +110,9 @@ impl Net {
             if has_gap(&axes) {
                 close_gap(point, &mut axes, points, &mut closing)?;
             }
+            let first_block = net.blocks.len();
             net.push_axes(point, &axes)?;
-            net.push_instances(point, center, &axes);
+            net.push_instances(point, center, &axes, first_block);
         }
         Ok(net)
     }
@@ -121,15 +125,13 @@ impl Net {
 
     /// The number of control points.
     pub(crate) fn n_points(&self) -> usize {
-        self.first_block.len() - 1
+        self.n_points
     }
 
-    /// The blocks of a control point.
+    /// The axes of a control point.
     #[inline(always)]
-    pub(crate) fn blocks(&self, point: u32) -> &[AxisBlock] {
-        let [start, end] =
-            [point, point + 1].map(|point| self.first_block[point as usize] as usize);
-        &self.blocks[start..end]
+    pub(crate) fn blocks(&self, instance: &Instance) -> &[AxisBlock] {
+        &self.blocks[instance.first_block as usize..][..instance.n_blocks as usize]
     }
 
     /// A coordinate along `axis` as the evaluation takes it: in the domain where it wraps, and not too far out where it
@@ -168,13 +170,20 @@ impl Net {
             }
             self.blocks.push(block);
         }
-        // At most 2^31 points with few blocks each; a graph with more axes than that does not fit into memory.
-        self.first_block.push(self.blocks.len() as u32);
         Ok(())
     }
 
     /// Adds the images of the next point whose supports reach into the domain.
-    fn push_instances(&mut self, point: PointIdx, center: DVec2, axes: &[Axis]) {
+    fn push_instances(
+        &mut self,
+        point: PointIdx,
+        center: DVec2,
+        axes: &[Axis],
+        first_block: usize,
+    ) {
+        // A graph whose axes do not fit into 2^32 blocks does not fit into memory.
+        let n_blocks = (self.blocks.len() - first_block) as u32;
+        let first_block = first_block as u32;
         let (min, max) = support_box(axes, self.options.axis_scale);
         let slack = (max - min) * SLACK;
         let (min, max) = (min - slack, max + slack);
@@ -188,6 +197,8 @@ impl Net {
                     min: center + min,
                     max: center + max,
                     point: point.0,
+                    first_block,
+                    n_blocks,
                 });
             }
         }

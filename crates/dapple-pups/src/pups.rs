@@ -203,7 +203,7 @@ impl Pups {
 pub(crate) const LEAST_TOTAL: f32 = 1e-30;
 
 /// Keeps the largest weight and whose it is, as the bits of a number.
-struct Strongest;
+pub(crate) struct Strongest;
 
 impl Sink for Strongest {
     type Value = PointIdx;

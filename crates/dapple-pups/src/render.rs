@@ -163,7 +163,7 @@ impl<K: Sink> Band<'_, '_, K> {
         let mut tile = Tile::default();
         for &member in &self.members {
             let instance = &self.net.instances[member as usize];
-            let blocks = self.net.blocks(instance.point);
+            let blocks = self.net.blocks(instance);
             let shift = self.net.shifts.get(instance.point as usize).copied();
             splatter.add(
                 simd,

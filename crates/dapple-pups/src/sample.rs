@@ -130,7 +130,7 @@ impl Bins {
                 a.max(b).max(c.max(d)) > 0.0
             })
         };
-        net.blocks(instance.point).iter().all(reached)
+        net.blocks(instance).iter().all(reached)
     }
 
     /// The instances that can have a weight at a position (which [`Net::local`] has brought into range).
@@ -160,7 +160,7 @@ impl Net {
     fn weight(&self, instance: &Instance, position: DVec2) -> f32 {
         let x = (position.x - instance.center.x) as f32;
         let y = (position.y - instance.center.y) as f32;
-        let blocks = self.blocks(instance.point);
+        let blocks = self.blocks(instance);
         let weight = match self.options.weight {
             AxialWeight::Cubic => product(Cubic, blocks, x, y),
             other => product(other, blocks, x, y),

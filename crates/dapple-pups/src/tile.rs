@@ -4,6 +4,9 @@
 //! 0 over a whole tile has no weight there. Both are decided with the very numbers that the pixels would get: `u` is
 //! computed by a subtraction and products, whose rounding is monotonic, so the corners of the tile have the least and the
 //! most.
+//!
+//! Here, as in the rest of the evaluation, registers pass through plain loops only: a closure in an iterator or an array's
+//! `map` is compiled for the baseline processor if it is not inlined, and then costs more than what it does.
 
 use crate::net::{AxisBlock, BLOCK};
 use crate::splat::{ROWS, TILE};
@@ -51,8 +54,12 @@ impl Tile {
         ends: [f32; 2],
     ) -> bool {
         self.blocks.resize(blocks.len(), ActiveBlock::default());
-        let mut pairs = blocks.iter().zip(&mut self.blocks);
-        pairs.all(|(block, active)| active.select(simd, block, ends, &self.y))
+        for (block, active) in blocks.iter().zip(&mut self.blocks) {
+            if !active.select(simd, block, ends, &self.y) {
+                return false;
+            }
+        }
+        true
     }
 
     /// Goes to the columns `xs`, which begin at `start` in a plane.
@@ -81,8 +88,8 @@ impl ActiveBlock {
         let zero = f32x8::splat(simd, 0.0);
         let one = f32x8::splat(simd, 1.0);
         let ax = f32x8::from_slice(simd, &block.x);
-        let [left, right] = ends.map(|x| ax * x);
-        let [top, bottom] = rest_at_ends(simd, block, y);
+        let (left, right) = (ax * ends[0], ax * ends[1]);
+        let (top, bottom) = rest_at_ends(simd, block, y);
         let least = top.min(bottom) - left.max(right);
         let most = top.max(bottom) - left.min(right);
         if most.simd_le(zero).any_true() {
@@ -114,7 +121,7 @@ pub(crate) fn reach<S: Simd>(simd: S, blocks: &[AxisBlock], y: &[f32; ROWS]) -> 
     let (mut from, mut to) = (f32::NEG_INFINITY, f32::INFINITY);
     for block in blocks {
         let ax = f32x8::from_slice(simd, &block.x);
-        let [top, bottom] = rest_at_ends(simd, block, y);
+        let (top, bottom) = rest_at_ends(simd, block, y);
         let bound = top.max(bottom) / ax;
         let slack = bound.abs() * SLACK;
         to = to.min(ax.simd_gt(zero).select(bound + slack, far).reduce_min());
@@ -129,7 +136,8 @@ pub(crate) fn reach<S: Simd>(simd: S, blocks: &[AxisBlock], y: &[f32; ROWS]) -> 
 
 /// `1 − a_y d_y` of every axis, for the first and the last row.
 #[inline(always)]
-fn rest_at_ends<S: Simd>(simd: S, block: &AxisBlock, y: &[f32; ROWS]) -> [f32x8<S>; 2] {
+fn rest_at_ends<S: Simd>(simd: S, block: &AxisBlock, y: &[f32; ROWS]) -> (f32x8<S>, f32x8<S>) {
+    let one = f32x8::splat(simd, 1.0);
     let ay = f32x8::from_slice(simd, &block.y);
-    [y[0], y[ROWS - 1]].map(|y| f32x8::splat(simd, 1.0) - ay * y)
+    (one - ay * y[0], one - ay * y[ROWS - 1])
 }

@@ -1,0 +1,23 @@
+//! Attributes of control points, by small functions that can be combined.
+//!
+//! Reference: Jack Caron and David Mould, "Partition of Unity Parametrics for Texture Synthesis", Graphics Interface
+//! 2013, section 3: control points get their attributes "randomly, according to spatial location or graph connectivity,
+//! or according to a reference image".
+//!
+//! Every function returns a column: one value, label or vector for each control point, in their order. What is random
+//! depends on the seed and the index of the point alone, so a point that keeps its index keeps its attribute. Give each
+//! column a seed of its own: [`Seed::child`](dapple_hash::Seed::child).
+
+mod groups;
+mod labels;
+mod orientations;
+mod reference;
+mod values;
+
+pub use groups::grouped_labels;
+pub use labels::{biased_labels, own_labels, random_labels};
+pub use orientations::{
+    Orientations, angle_orientations, field_orientations, outward_orientations, random_orientations,
+};
+pub use reference::{ReferenceImage, reference_labels};
+pub use values::{field_values, palette_values, random_values, varying_values};

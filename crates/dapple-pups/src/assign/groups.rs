@@ -1,0 +1,215 @@
+//! Groups of points that the graph connects (figure 9b).
+//!
+//! The paper groups points "into clusters of three or four points" and does not say how. Here groups grow one after
+//! another, each from the free point that has the fewest free neighbors, and by such points, so that few are left in
+//! corners. Where some are left, they and one or two groups around them are divided anew by an exhaustive search.
+
+mod divide;
+
+use crate::PupsError;
+use dapple_graph::Graph;
+use dapple_hash::{Seed, hash1};
+use dapple_points::PointIdx;
+use divide::divide;
+use std::collections::BTreeSet;
+
+/// The most points that a group can be asked to have.
+const LARGEST_GROUP: u32 = 16;
+
+/// A label for every point, the same for the points of a group, from 0 without gaps.
+///
+/// Every point is in one group, the edges of the graph connect each group, and a group has between `sizes[0]` and
+/// `sizes[1]` points, each such number with the same chance as long as there is room. A smaller group is left over only
+/// where no division of it and two groups around it has the sizes asked for: where the number of points in a
+/// connected part of the graph is no sum of them (5 points in groups of three or four), or at a loose end of the graph.
+///
+/// # Errors
+///
+/// [`Range`](crate::PupsErrorKind::Range) if the sizes are not between 1 and 16, or descend.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{graph::delaunay, grouped_labels, hash::Seed, points::{Domain, poisson_disk}};
+///
+/// let points = poisson_disk(Domain::paper_torus(), 0.1, Seed(1))?;
+/// let labels = grouped_labels(&delaunay(&points)?, [3, 4], Seed(2))?;
+/// let n_in_first = labels.iter().filter(|&&label| label == 0).count();
+/// assert!((3..=4).contains(&n_in_first));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn grouped_labels(graph: &Graph, sizes: [u32; 2], seed: Seed) -> Result<Vec<u32>, PupsError> {
+    for size in sizes {
+        let holds = size >= sizes[0] && (1..=LARGEST_GROUP).contains(&size);
+        PupsError::check(
+            holds,
+            "number of points in a group",
+            f64::from(size),
+            "1 to 16, the least first",
+        )?;
+    }
+    let neighbors = neighbors(graph);
+    let mut groups = Growth::new(&neighbors, seed).grow_all(sizes, seed.child("size", 0));
+    mend(&neighbors, &mut groups, sizes);
+    Ok(labels(&groups, neighbors.len()))
+}
+
+/// The neighbors of each point, whichever way an edge goes, without the point itself.
+fn neighbors(graph: &Graph) -> Vec<Vec<u32>> {
+    let mut neighbors = vec![Vec::new(); graph.n_points()];
+    for point in 0..graph.n_points() as u32 {
+        for axis in graph.axes(PointIdx(point)) {
+            neighbors[point as usize].push(axis.to.0);
+            neighbors[axis.to.index()].push(point);
+        }
+    }
+    for (point, row) in (0..).zip(&mut neighbors) {
+        row.sort_unstable();
+        row.dedup();
+        row.retain(|&other| other != point);
+    }
+    neighbors
+}
+
+/// The points that have no group yet.
+struct Growth<'a> {
+    neighbors: &'a [Vec<u32>],
+    /// How many free neighbors a point has; none of a point that has a group.
+    free_neighbors: Vec<Option<u32>>,
+    ranks: Vec<u64>,
+    /// The free points: those with the fewest free neighbors first, then by random rank.
+    queue: BTreeSet<(u32, u64, u32)>,
+}
+
+impl<'a> Growth<'a> {
+    fn new(neighbors: &'a [Vec<u32>], seed: Seed) -> Self {
+        let ranks = (0..neighbors.len() as i64).map(|point| hash1(seed, [point], 0));
+        let mut growth = Self {
+            neighbors,
+            free_neighbors: neighbors.iter().map(|row| Some(row.len() as u32)).collect(),
+            ranks: ranks.collect(),
+            queue: BTreeSet::new(),
+        };
+        growth.queue = (0..neighbors.len() as u32)
+            .filter_map(|point| growth.key(point))
+            .collect();
+        growth
+    }
+
+    fn key(&self, point: u32) -> Option<(u32, u64, u32)> {
+        let free = self.free_neighbors[point as usize]?;
+        Some((free, self.ranks[point as usize], point))
+    }
+
+    /// Takes a point out of the free ones.
+    fn take(&mut self, point: u32) {
+        if let Some(key) = self.key(point) {
+            self.queue.remove(&key);
+        }
+        self.free_neighbors[point as usize] = None;
+        for &other in &self.neighbors[point as usize] {
+            let Some(key) = self.key(other) else {
+                continue;
+            };
+            self.queue.remove(&key);
+            self.free_neighbors[other as usize] = Some(key.0 - 1);
+            self.queue.insert((key.0 - 1, key.1, other));
+        }
+    }
+
+    fn grow_all(mut self, sizes: [u32; 2], seed: Seed) -> Vec<Vec<u32>> {
+        let mut groups = Vec::new();
+        while let Some(&(_, _, first)) = self.queue.first() {
+            let random = hash1(seed, [groups.len() as i64], 0) >> 32;
+            let more = (random * u64::from(sizes[1] - sizes[0] + 1)) >> 32;
+            groups.push(self.grow(first, sizes[0] as usize + more as usize));
+        }
+        groups
+    }
+
+    /// A group of up to `size` points around `first`.
+    fn grow(&mut self, first: u32, size: usize) -> Vec<u32> {
+        let mut group = vec![first];
+        self.take(first);
+        while group.len() < size {
+            let around = group
+                .iter()
+                .flat_map(|&point| &self.neighbors[point as usize]);
+            let next = around.filter_map(|&point| self.key(point)).min();
+            let Some((_, _, point)) = next else {
+                break;
+            };
+            group.push(point);
+            self.take(point);
+        }
+        group
+    }
+}
+
+/// Divides groups that are too small anew, together with one or two groups around them.
+fn mend(neighbors: &[Vec<u32>], groups: &mut Vec<Vec<u32>>, sizes: [u32; 2]) {
+    let mut group_of = vec![0; neighbors.len()];
+    for (index, group) in groups.iter().enumerate() {
+        group.iter().for_each(|&point| group_of[point as usize] = index);
+    }
+    for small in 0..groups.len() {
+        if groups[small].len() >= sizes[0] as usize {
+            continue;
+        }
+        for region in regions(neighbors, groups, &group_of, small) {
+            let points: Vec<u32> = region.iter().flat_map(|&g| groups[g].clone()).collect();
+            let Some(parts) = divide(neighbors, &points, sizes) else {
+                continue;
+            };
+            region.iter().for_each(|&group| groups[group].clear());
+            // Emptied groups take the parts, further parts are further groups.
+            let mut homes = region.into_iter();
+            for part in parts {
+                let home = homes.next().unwrap_or(groups.len());
+                part.iter().for_each(|&point| group_of[point as usize] = home);
+                if home == groups.len() {
+                    groups.push(part);
+                } else {
+                    groups[home] = part;
+                }
+            }
+            break;
+        }
+    }
+}
+
+/// A group with one group beside it, then with two.
+fn regions(
+    neighbors: &[Vec<u32>],
+    groups: &[Vec<u32>],
+    group_of: &[usize],
+    small: usize,
+) -> Vec<Vec<usize>> {
+    let beside = |group: usize| -> BTreeSet<usize> {
+        let points = groups[group].iter();
+        points
+            .flat_map(|&point| &neighbors[point as usize])
+            .map(|&point| group_of[point as usize])
+            .filter(|&other| other != group)
+            .collect()
+    };
+    let near = beside(small);
+    let mut regions: Vec<Vec<usize>> = near.iter().map(|&first| vec![small, first]).collect();
+    for &first in &near {
+        let others: BTreeSet<usize> = near.union(&beside(first)).copied().collect();
+        let others = others.into_iter().filter(|&other| other != small && other != first);
+        regions.extend(others.map(|second| vec![small, first, second]));
+    }
+    regions
+}
+
+/// Labels in the order of the first point of each group.
+fn labels(groups: &[Vec<u32>], n_points: usize) -> Vec<u32> {
+    let mut order: Vec<&Vec<u32>> = groups.iter().filter(|group| !group.is_empty()).collect();
+    order.sort_by_key(|group| group.iter().min());
+    let mut labels = vec![0; n_points];
+    for (label, group) in (0..).zip(order) {
+        group.iter().for_each(|&point| labels[point as usize] = label);
+    }
+    labels
+}

@@ -1,0 +1,69 @@
+//! Labels: one for each point, random ones, and binary ones whose probability depends on the position.
+
+use super::values::random_value;
+use crate::PupsError;
+use dapple_hash::{Seed, hash1};
+use dapple_points::PointSet;
+use dapple_raster::Varying;
+
+/// A label of its own for every point: each is a cell.
+#[must_use]
+pub fn own_labels(n_points: usize) -> Vec<u32> {
+    (0..).take(n_points).collect()
+}
+
+/// Independent random labels, each of `0..n_labels` with the same probability (to within 2^-32).
+///
+/// # Errors
+///
+/// [`Range`](crate::PupsErrorKind::Range) if `n_labels` is zero.
+pub fn random_labels(n_points: usize, n_labels: u32, seed: Seed) -> Result<Vec<u32>, PupsError> {
+    PupsError::check(
+        n_labels > 0,
+        "number of labels",
+        f64::from(n_labels),
+        "at least 1",
+    )?;
+    let label =
+        |index: i64| ((hash1(seed, [index], 0) >> 32) * u64::from(n_labels) >> 32) as u32;
+    Ok((0..n_points as i64).map(label).collect())
+}
+
+/// Binary labels: 1 with the probability that is given for the position of a point, else 0.
+///
+/// This is the "logic that depends on spatial location" of figure 17; with 0.5 everywhere it is the cow's coin.
+///
+/// # Errors
+///
+/// [`Range`](crate::PupsErrorKind::Range) if a probability is not between 0 and 1.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::points::{Domain, poisson_disk};
+/// use dapple_pups::{biased_labels, hash::Seed};
+///
+/// let points = poisson_disk(Domain::paper_torus(), 0.1, Seed(1))?;
+/// let labels = biased_labels(&points, &0.9.into(), Seed(2))?;
+/// assert!(labels.iter().sum::<u32>() > 220);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn biased_labels(
+    points: &PointSet,
+    probability: &Varying,
+    seed: Seed,
+) -> Result<Vec<u32>, PupsError> {
+    let label = |(index, &position)| {
+        let probability = probability.at(position);
+        PupsError::check(
+            (0.0..=1.0).contains(&probability),
+            "probability of a label",
+            probability,
+            "between 0 and 1",
+        )?;
+        Ok(u32::from(
+            f64::from(random_value(seed, index)) < probability,
+        ))
+    };
+    (0..).zip(points.positions()).map(label).collect()
+}

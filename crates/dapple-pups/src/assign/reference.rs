@@ -1,0 +1,64 @@
+//! Labels and intensities from a reference image (figures 13 and 14).
+//!
+//! The paper takes "the intensity of the corresponding pixel": the pixel in which a control point lies, without
+//! interpolation. The image covers the domain of the points, its first row along the smallest y.
+
+use super::values::random_value;
+use crate::PupsError;
+use dapple_hash::Seed;
+use dapple_points::{Domain, PointSet};
+use dapple_raster::{Raster, Wrap};
+use glam::DVec2;
+
+/// A grayscale image with intensities from 0 (black) to 1 (white), to take labels from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReferenceImage {
+    intensities: Raster<f32>,
+}
+
+impl ReferenceImage {
+    /// Takes an image after a look at every pixel.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::PupsErrorKind::Range) if an intensity is not between 0 and 1, or not a number.
+    pub fn new(intensities: Raster<f32>) -> Result<Self, PupsError> {
+        for &intensity in intensities.pixels() {
+            PupsError::check(
+                (0.0..=1.0).contains(&intensity),
+                "intensity in the reference image",
+                f64::from(intensity),
+                "between 0 and 1",
+            )?;
+        }
+        Ok(Self { intensities })
+    }
+
+    /// The intensities.
+    #[must_use]
+    pub fn intensities(&self) -> &Raster<f32> {
+        &self.intensities
+    }
+
+    /// The intensity of the pixel at a position, where the image covers `domain`; past an edge it repeats if the domain
+    /// wraps there, and else goes on with its last pixel.
+    #[must_use]
+    pub fn intensity(&self, domain: &Domain, position: DVec2) -> f32 {
+        let uv = (domain.wrap(position) - domain.origin) / domain.size;
+        let [column, row] =
+            [0, 1].map(|axis| (uv[axis] * f64::from(self.intensities.size()[axis])).floor() as i64);
+        let wrap = domain.wrap.map(|wrap| if wrap { Wrap::Repeat } else { Wrap::Clamp });
+        *self.intensities.at(column, row, wrap)
+    }
+}
+
+/// Binary labels from a reference image that covers the domain: 1 (white) where a random number is below the intensity
+/// at the point, else 0 (black).
+#[must_use]
+pub fn reference_labels(points: &PointSet, image: &ReferenceImage, seed: Seed) -> Vec<u32> {
+    let label = |(index, &position)| {
+        let intensity = image.intensity(points.domain(), position);
+        u32::from(random_value(seed, index) < intensity)
+    };
+    (0..).zip(points.positions()).map(label).collect()
+}

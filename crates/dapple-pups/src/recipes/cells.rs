@@ -1,0 +1,80 @@
+//! Cells (section 3.2): of one control point each (figure 9a), or of a few that the graph connects (figure 9b).
+
+use crate::{
+    LabelTexture, NetOptions, PupsError, Spacing, grouped_labels, own_labels, random_values,
+};
+use dapple_graph::delaunay;
+use dapple_hash::Seed;
+use dapple_points::Domain;
+
+/// What [`cells`] are to be like.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct CellsOptions {
+    /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    pub domain: Domain,
+    /// How far apart the control points are; at least 0.1 by default, in units of the domain.
+    pub spacing: Spacing,
+    /// How many control points a cell has, from the least to the most, 1 to 16; `[1, 1]` by default, as in figure 9a.
+    pub points_per_cell: [u32; 2],
+    /// How the control points are weighted; with random orientations by default.
+    pub net: NetOptions,
+}
+
+impl Default for CellsOptions {
+    fn default() -> Self {
+        Self {
+            domain: Domain::paper_torus(),
+            spacing: Spacing::from(0.1),
+            points_per_cell: [1, 1],
+            net: NetOptions::randomly_oriented(),
+        }
+    }
+}
+
+impl CellsOptions {
+    /// Cells of three or four points each, as in figure 9b; else the defaults.
+    #[must_use]
+    pub fn of_three_or_four() -> Self {
+        Self {
+            points_per_cell: [3, 4],
+            ..Self::default()
+        }
+    }
+}
+
+/// Cells with a label each, from 0, and a random value in `[0, 1)`.
+///
+/// # Errors
+///
+/// [`Points`](crate::PupsErrorKind::Points) for points that cannot be placed, [`Range`](crate::PupsErrorKind::Range)
+/// for a number of points per cell outside of its range, and what [`PupsOptions::check`](crate::PupsOptions::check)
+/// refuses.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{CellsOptions, cells, hash::Seed};
+///
+/// let texture = cells(&CellsOptions::of_three_or_four(), Seed(7))?;
+/// assert!((70..=95).contains(&texture.values().len()));
+/// # Ok::<(), dapple_pups::PupsError>(())
+/// ```
+pub fn cells(options: &CellsOptions, seed: Seed) -> Result<LabelTexture, PupsError> {
+    let points = options
+        .spacing
+        .points(options.domain, seed.child("points", 0))?;
+    let graph = delaunay(&points)?;
+    let labels = if options.points_per_cell == [1, 1] {
+        own_labels(points.len())
+    } else {
+        grouped_labels(&graph, options.points_per_cell, seed.child("label", 0))?
+    };
+    let n_labels = labels.iter().max().map_or(0, |&label| label as usize + 1);
+    let values = random_values(n_labels, seed.child("value", 0));
+    LabelTexture::new(options.net.with_graph(&points, &graph, seed)?, labels, values)
+}

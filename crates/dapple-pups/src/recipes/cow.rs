@@ -1,0 +1,65 @@
+//! Cow (section 3.2, figure 11): control points with random binary labels.
+//!
+//! With a spacing that varies it is figure 15, with a probability that varies figure 17.
+
+use crate::{LabelTexture, NetOptions, PupsError, Spacing, biased_labels};
+use dapple_hash::Seed;
+use dapple_points::Domain;
+use dapple_raster::Varying;
+
+/// What a [`cow`] is to be like.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct CowOptions {
+    /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    pub domain: Domain,
+    /// How far apart the control points are; at least 0.1 by default, in units of the domain.
+    pub spacing: Spacing,
+    /// How probable it is that a control point gets label 1, between 0 and 1; ½ by default.
+    pub probability: Varying,
+    /// The values of the labels 0 and 1; black (0) and white (1) by default.
+    pub values: [f32; 2],
+    /// How the control points are weighted.
+    pub net: NetOptions,
+}
+
+impl Default for CowOptions {
+    fn default() -> Self {
+        Self {
+            domain: Domain::paper_torus(),
+            spacing: Spacing::from(0.1),
+            probability: Varying::Constant(0.5),
+            values: [0.0, 1.0],
+            net: NetOptions::default(),
+        }
+    }
+}
+
+/// Patches of two values, like those of a cow.
+///
+/// # Errors
+///
+/// [`Points`](crate::PupsErrorKind::Points) for points that cannot be placed, [`Range`](crate::PupsErrorKind::Range)
+/// for a probability outside of `[0, 1]`, and what [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{CowOptions, cow, glam::DVec2, hash::Seed, raster::Field};
+///
+/// let texture = cow(&CowOptions::default(), Seed(7))?;
+/// assert!([0.0, 1.0].contains(&texture.sample(DVec2::new(0.25, -0.5))));
+/// # Ok::<(), dapple_pups::PupsError>(())
+/// ```
+pub fn cow(options: &CowOptions, seed: Seed) -> Result<LabelTexture, PupsError> {
+    let points = options
+        .spacing
+        .points(options.domain, seed.child("points", 0))?;
+    let labels = biased_labels(&points, &options.probability, seed.child("label", 0))?;
+    let pups = options.net.pups(&points, seed)?;
+    LabelTexture::new(pups, labels, options.values.to_vec())
+}

@@ -1,0 +1,225 @@
+//! Textures of labels: every position has the label of its strongest control point, and each label a value.
+//!
+//! The paper labels a pixel by "the control point with the highest weight"; of equal ones it is the first. Labels that
+//! several control points share are not summed up.
+
+use crate::pups::Strongest;
+use crate::render::render;
+use crate::{Pups, PupsError};
+use dapple_points::PointIdx;
+use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
+use glam::DVec2;
+
+/// A value for the label of the strongest control point, at every position.
+///
+/// It takes no other values than those of its labels. At a position that is not finite it is NaN.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::points::{Domain, white_noise};
+/// use dapple_pups::raster::{Field, glam::DVec2};
+/// use dapple_pups::{LabelTexture, Pups, hash::Seed, random_labels};
+///
+/// let points = white_noise(Domain::paper_torus(), 50, Seed(1))?;
+/// let labels = random_labels(50, 3, Seed(2))?;
+/// let texture = LabelTexture::new(Pups::delaunay(&points)?, labels, vec![0.0, 0.5, 1.0])?;
+/// let position = DVec2::new(0.3, -0.2);
+/// let label = texture.label(position).unwrap();
+/// assert_eq!(texture.sample(position), texture.values()[label as usize]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct LabelTexture {
+    pups: Pups,
+    labels: Vec<u32>,
+    values: Vec<f32>,
+}
+
+/// A vector, such as a color, for the label of the strongest control point: [`LabelTexture`] for `N` numbers at once.
+#[derive(Clone, Debug)]
+pub struct VectorLabelTexture<const N: usize> {
+    pups: Pups,
+    labels: Vec<u32>,
+    values: Vec<[f32; N]>,
+}
+
+/// Refuses labels without a value, and values that are not finite.
+fn check(pups: &Pups, labels: &[u32], n_values: usize, numbers: &[f32]) -> Result<(), PupsError> {
+    PupsError::check_count("labels", labels.len(), pups.n_points())?;
+    if let Some(&label) = labels.iter().find(|&&label| label as usize >= n_values) {
+        PupsError::check_count("values of labels", n_values, label as usize + 1)?;
+    }
+    for &number in numbers {
+        let finite = number.is_finite();
+        PupsError::check(finite, "value of a label", f64::from(number), "finite")?;
+    }
+    Ok(())
+}
+
+/// The label of each pixel of a window, changed by `value` and written into memory of its size.
+fn render_labels<T: Copy>(
+    pups: &Pups,
+    window: &Window,
+    mut out: RasterViewMut<'_, T>,
+    value: impl Fn(PointIdx) -> T,
+) -> Result<(), RasterError> {
+    window.check_size(out.size())?;
+    let mut strongest = Raster::filled(window.size, PointIdx(u32::MAX))?;
+    let rows = strongest
+        .pixels_mut()
+        .chunks_exact_mut(window.size[0] as usize);
+    render(&pups.net, window, &Strongest, rows.collect());
+    for (row, values) in (0..).zip(out.rows_mut()) {
+        for (out, &point) in values.iter_mut().zip(strongest.row(row)) {
+            *out = value(point);
+        }
+    }
+    Ok(())
+}
+
+impl LabelTexture {
+    /// A texture of `values[label]`, where `labels` holds the label of each control point.
+    ///
+    /// # Errors
+    ///
+    /// [`Count`](crate::PupsErrorKind::Count) if there is not one label for each control point or a label has no value,
+    /// [`Range`](crate::PupsErrorKind::Range) if a value is not finite.
+    pub fn new(pups: Pups, labels: Vec<u32>, values: Vec<f32>) -> Result<Self, PupsError> {
+        check(&pups, &labels, values.len(), &values)?;
+        Ok(Self {
+            pups,
+            labels,
+            values,
+        })
+    }
+
+    /// The net that the labels belong to.
+    #[must_use]
+    pub fn pups(&self) -> &Pups {
+        &self.pups
+    }
+
+    /// The labels of the control points.
+    #[must_use]
+    pub fn labels(&self) -> &[u32] {
+        &self.labels
+    }
+
+    /// The values of the labels.
+    #[must_use]
+    pub fn values(&self) -> &[f32] {
+        &self.values
+    }
+
+    /// The label at a position; none at one that is not finite.
+    #[must_use]
+    pub fn label(&self, position: DVec2) -> Option<u32> {
+        let point = self.pups.strongest(position)?;
+        Some(self.labels[point.index()])
+    }
+
+    /// The labels at the pixel centers of a window; `u32::MAX` at a position that is not finite.
+    ///
+    /// # Errors
+    ///
+    /// [`Empty`](dapple_raster::RasterErrorKind::Empty) or [`TooLarge`](dapple_raster::RasterErrorKind::TooLarge) if
+    /// the window has a bad size.
+    pub fn label_raster(&self, window: &Window) -> Result<Raster<u32>, RasterError> {
+        let mut raster = Raster::filled(window.size, u32::MAX)?;
+        let label = |point: PointIdx| self.labels.get(point.index()).copied();
+        render_labels(&self.pups, window, raster.view_mut(), |point| {
+            label(point).unwrap_or(u32::MAX)
+        })?;
+        Ok(raster)
+    }
+
+    /// The same labels with other values.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn with_values(self, values: Vec<f32>) -> Result<Self, PupsError> {
+        Self::new(self.pups, self.labels, values)
+    }
+
+    /// The same labels with a vector, such as a color, for each.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn with_vectors<const N: usize>(
+        self,
+        values: Vec<[f32; N]>,
+    ) -> Result<VectorLabelTexture<N>, PupsError> {
+        VectorLabelTexture::new(self.pups, self.labels, values)
+    }
+
+    /// The value of a point's label; NaN where there is no point.
+    fn value(&self, point: Option<PointIdx>) -> f32 {
+        let label = point.and_then(|point| self.labels.get(point.index()));
+        label.map_or(f32::NAN, |&label| self.values[label as usize])
+    }
+}
+
+impl Field for LabelTexture {
+    fn sample(&self, position: DVec2) -> f32 {
+        self.value(self.pups.strongest(position))
+    }
+
+    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        render_labels(&self.pups, window, out, |point| self.value(Some(point)))
+    }
+}
+
+impl<const N: usize> VectorLabelTexture<N> {
+    /// A texture of `values[label]`, where `labels` holds the label of each control point.
+    ///
+    /// # Errors
+    ///
+    /// As [`LabelTexture::new`].
+    pub fn new(pups: Pups, labels: Vec<u32>, values: Vec<[f32; N]>) -> Result<Self, PupsError> {
+        check(&pups, &labels, values.len(), values.as_flattened())?;
+        Ok(Self {
+            pups,
+            labels,
+            values,
+        })
+    }
+
+    /// The vector at a position; NaN at one that is not finite.
+    #[must_use]
+    pub fn sample(&self, position: DVec2) -> [f32; N] {
+        self.value(self.pups.strongest(position))
+    }
+
+    /// The vectors at the pixel centers of a window, into memory of its size.
+    ///
+    /// # Errors
+    ///
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if `out` has another size than the window.
+    pub fn render(
+        &self,
+        window: &Window,
+        out: RasterViewMut<'_, [f32; N]>,
+    ) -> Result<(), RasterError> {
+        render_labels(&self.pups, window, out, |point| self.value(Some(point)))
+    }
+
+    /// The vectors at the pixel centers of a window, as a new raster.
+    ///
+    /// # Errors
+    ///
+    /// [`Empty`](dapple_raster::RasterErrorKind::Empty) or [`TooLarge`](dapple_raster::RasterErrorKind::TooLarge) if
+    /// the window has a bad size.
+    pub fn to_raster(&self, window: &Window) -> Result<Raster<[f32; N]>, RasterError> {
+        let mut raster = Raster::filled(window.size, [0.0; N])?;
+        self.render(window, raster.view_mut())?;
+        Ok(raster)
+    }
+
+    fn value(&self, point: Option<PointIdx>) -> [f32; N] {
+        let label = point.and_then(|point| self.labels.get(point.index()));
+        label.map_or([f32::NAN; N], |&label| self.values[label as usize])
+    }
+}

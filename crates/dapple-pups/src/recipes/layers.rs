@@ -1,0 +1,110 @@
+//! Sums of layers, each with an amplitude: octaves of noise (equation 5) and cells of several sizes (figure 10).
+
+use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
+use glam::DVec2;
+
+/// A weighted sum of fields whose values are between 0 and 1.
+///
+/// Its values are at least 0 and at most the sum of the amplitudes: 1.875 for the four octaves of equation 5.
+/// To show it as an image, divide by that: [`normalized`](Self::normalized).
+#[derive(Clone, Debug)]
+pub struct Layers<F> {
+    layers: Vec<F>,
+    amplitudes: Vec<f32>,
+    maximum: f32,
+}
+
+impl<F> Layers<F> {
+    /// Layer i with the amplitude `gain^i`.
+    pub(crate) fn geometric(layers: Vec<F>, gain: f64) -> Self {
+        let amplitudes = core::iter::successors(Some(1.0), |amplitude| Some(amplitude * gain));
+        let amplitudes = amplitudes.take(layers.len());
+        Self::new(layers, amplitudes.map(|amplitude| amplitude as f32).collect())
+    }
+
+    fn new(layers: Vec<F>, amplitudes: Vec<f32>) -> Self {
+        let maximum = amplitudes.iter().sum();
+        Self {
+            layers,
+            amplitudes,
+            maximum,
+        }
+    }
+
+    /// The layers, from the coarsest to the finest.
+    #[must_use]
+    pub fn layers(&self) -> &[F] {
+        &self.layers
+    }
+
+    /// What each layer is multiplied with.
+    #[must_use]
+    pub fn amplitudes(&self) -> &[f32] {
+        &self.amplitudes
+    }
+
+    /// The sum of the amplitudes: no value is larger.
+    #[must_use]
+    pub fn maximum(&self) -> f32 {
+        self.maximum
+    }
+
+    /// The same sum divided by its maximum, with values in `[0, 1]`: the mapping for display.
+    #[must_use]
+    pub fn normalized(self) -> Self {
+        let maximum = self.maximum;
+        let amplitudes = self.amplitudes.iter().map(|amplitude| amplitude / maximum);
+        let amplitudes = amplitudes.collect();
+        Self {
+            maximum: 1.0,
+            ..Self::new(self.layers, amplitudes)
+        }
+    }
+
+    /// The same amplitudes over other layers.
+    pub(crate) fn map<G>(self, change: impl FnMut(F) -> G) -> Layers<G> {
+        Layers {
+            layers: self.layers.into_iter().map(change).collect(),
+            amplitudes: self.amplitudes,
+            maximum: self.maximum,
+        }
+    }
+
+    /// The last step: rounding must not leave the range. What is not a number stays so.
+    fn finish(&self, sum: f32) -> f32 {
+        if sum > self.maximum { self.maximum } else { sum }
+    }
+}
+
+/// A value of a layer, kept between 0 and 1 against rounding, times its amplitude.
+fn part(value: f32, amplitude: f32) -> f32 {
+    value.clamp(0.0, 1.0) * amplitude
+}
+
+impl<F: Field> Field for Layers<F> {
+    fn sample(&self, position: DVec2) -> f32 {
+        let mut sum = 0.0;
+        for (layer, &amplitude) in self.layers.iter().zip(&self.amplitudes) {
+            sum += part(layer.sample(position), amplitude);
+        }
+        self.finish(sum)
+    }
+
+    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        window.check_size(out.size())?;
+        let mut values = Raster::filled(window.size, 0.0)?;
+        out.fill(0.0);
+        for (layer, &amplitude) in self.layers.iter().zip(&self.amplitudes) {
+            layer.render(window, values.view_mut())?;
+            for (row, sums) in (0..).zip(out.rows_mut()) {
+                for (sum, &value) in sums.iter_mut().zip(values.row(row)) {
+                    *sum += part(value, amplitude);
+                }
+            }
+        }
+        for sum in out.rows_mut().flatten() {
+            *sum = self.finish(*sum);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,56 @@
+//! Noise (section 3.1): random values at Poisson-disk control points, interpolated. One octave of figure 7.
+
+use crate::{NetOptions, PupsError, Spacing, Texture, random_values};
+use dapple_hash::Seed;
+use dapple_points::Domain;
+
+/// What [`noise`] is to be like.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct NoiseOptions {
+    /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    pub domain: Domain,
+    /// How far apart the control points are; at least 0.1 by default, in units of the domain.
+    pub spacing: Spacing,
+    /// How the control points are weighted.
+    pub net: NetOptions,
+}
+
+impl Default for NoiseOptions {
+    fn default() -> Self {
+        Self {
+            domain: Domain::paper_torus(),
+            spacing: Spacing::from(0.1),
+            net: NetOptions::default(),
+        }
+    }
+}
+
+/// One octave of noise: a smooth field of values in `[0, 1]`, but for the rounding of single precision.
+///
+/// # Errors
+///
+/// [`Points`](crate::PupsErrorKind::Points) for points that cannot be placed, and what
+/// [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{NoiseOptions, glam::DVec2, hash::Seed, noise, raster::Field};
+///
+/// let texture = noise(&NoiseOptions::default(), Seed(7))?;
+/// let position = DVec2::new(0.25, -0.5);
+/// assert_eq!(texture.sample(position), texture.sample(position + DVec2::new(2.0, -2.0)));
+/// # Ok::<(), dapple_pups::PupsError>(())
+/// ```
+pub fn noise(options: &NoiseOptions, seed: Seed) -> Result<Texture, PupsError> {
+    let points = options
+        .spacing
+        .points(options.domain, seed.child("points", 0))?;
+    let values = random_values(points.len(), seed.child("value", 0));
+    options.net.pups(&points, seed)?.texture(values)
+}

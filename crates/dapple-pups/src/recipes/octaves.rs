@@ -1,0 +1,246 @@
+//! Octaves of noise, their sum (equation 5, figure 6), folding (figure 7) and turbulence (figure 8).
+//!
+//! Octave i has control points that are 2^i times as dense along each axis. The paper takes separate points for every
+//! octave and notes that one tile, rescaled, would do; both are here. A rescaled octave is `tile(2^i · position)`: since
+//! the factor is a power of two and the tile repeats, this is exact, and the octave repeats with the tile's period.
+//!
+//! The sum of equation 5 lies between 0 and 1 + ½ + ¼ + ⅛ = 1.875; the paper does not say how it is shown. We divide by
+//! the largest possible value: [`Layers::normalized`].
+
+use crate::{
+    Layers, NetOptions, NoiseOptions, PupsError, PupsErrorKind, Spacing, Texture, noise,
+};
+use dapple_hash::Seed;
+use dapple_points::Domain;
+use dapple_raster::{Field, RasterError, RasterViewMut, Window};
+use glam::DVec2;
+
+/// What [`octaves`] and [`turbulence`] are to be like.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct OctavesOptions {
+    /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    pub domain: Domain,
+    /// How far apart the control points of the first octave are; at least 0.1 by default, in units of the domain.
+    pub spacing: Spacing,
+    /// How many octaves there are, 1 to 16; 4 by default.
+    pub octaves: u32,
+    /// By how much the spacing is divided from octave to octave, above 1 and at most 16; 2 by default. A power of two if
+    /// octaves are rescaled.
+    pub lacunarity: f64,
+    /// The amplitude of an octave as a multiple of the one before, above 0 and at most 1; ½ by default.
+    pub gain: f64,
+    /// Where the octaves come from; separate points by default, as in the paper.
+    pub source: OctaveSource,
+    /// How the control points are weighted.
+    pub net: NetOptions,
+}
+
+/// Where octaves come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum OctaveSource {
+    /// Each octave has control points of its own: the paper's choice.
+    #[default]
+    Separate,
+    /// All octaves are one tile, rescaled about the origin of the plane. The domain has to wrap along both axes. It
+    /// takes less memory, and the octaves are correlated: all of them are alike at the origin.
+    Rescaled,
+}
+
+/// Whether an octave is folded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Folding {
+    /// It is as it was interpolated.
+    #[default]
+    Plain,
+    /// T' = 2 · |T − ½|.
+    Folded,
+}
+
+impl Default for OctavesOptions {
+    fn default() -> Self {
+        Self {
+            domain: Domain::paper_torus(),
+            spacing: Spacing::from(0.1),
+            octaves: 4,
+            lacunarity: 2.0,
+            gain: 0.5,
+            source: OctaveSource::Separate,
+            net: NetOptions::default(),
+        }
+    }
+}
+
+/// One octave: a texture with values in `[0, 1]`, rescaled and perhaps folded.
+#[derive(Clone, Debug)]
+pub struct Octave {
+    texture: Texture,
+    scale: f64,
+    folding: Folding,
+}
+
+/// Octaves of noise and, as a field, their sum after equation 5.
+///
+/// # Errors
+///
+/// As [`noise`]; [`Range`](PupsErrorKind::Range) for options outside of their ranges;
+/// [`NotWrapped`](PupsErrorKind::NotWrapped) if octaves are rescaled and the domain does not wrap along both axes.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{OctavesOptions, hash::Seed, octaves};
+/// use dapple_pups::raster::{Field, Window, glam::DVec2};
+///
+/// let sum = octaves(&OctavesOptions::default(), Seed(7))?;
+/// assert_eq!(sum.maximum(), 1.875);
+/// let window = Window::new(DVec2::NEG_ONE, DVec2::splat(2.0), [64, 64])?;
+/// let image = sum.normalized().to_raster(&window)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn octaves(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, PupsError> {
+    options.check()?;
+    let scales = core::iter::successors(Some(1.0), |scale| Some(scale * options.lacunarity));
+    let scales = scales.take(options.octaves as usize);
+    let octaves: Result<Vec<Octave>, PupsError> = match options.source {
+        OctaveSource::Separate => (0..)
+            .zip(scales)
+            .map(|(index, scale)| {
+                let texture = options.texture(scale, seed.child("octave", index))?;
+                Ok(Octave::new(texture, 1.0))
+            })
+            .collect(),
+        OctaveSource::Rescaled => {
+            let texture = options.texture(1.0, seed.child("octave", 0))?;
+            Ok(scales
+                .map(|scale| Octave::new(texture.clone(), scale))
+                .collect())
+        }
+    };
+    Ok(Layers::geometric(octaves?, options.gain))
+}
+
+/// Perlin's turbulence: the sum of the [`octaves`], each of which is folded. Between 0 and 1.875 by default.
+///
+/// # Errors
+///
+/// As [`octaves`].
+pub fn turbulence(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, PupsError> {
+    Ok(octaves(options, seed)?.folded())
+}
+
+impl Layers<Octave> {
+    /// The same octaves, each of them folded.
+    #[must_use]
+    pub fn folded(self) -> Self {
+        self.map(|octave| octave.with_folding(Folding::Folded))
+    }
+}
+
+impl OctavesOptions {
+    fn texture(&self, scale: f64, seed: Seed) -> Result<Texture, PupsError> {
+        let options = NoiseOptions {
+            domain: self.domain,
+            spacing: self.spacing.finer(scale),
+            net: self.net.clone(),
+        };
+        noise(&options, seed)
+    }
+
+    fn check(&self) -> Result<(), PupsError> {
+        check_series("octaves", self.octaves, self.lacunarity, self.gain)?;
+        if self.source == OctaveSource::Rescaled {
+            let power = [2.0, 4.0, 8.0, 16.0].contains(&self.lacunarity);
+            PupsError::check(
+                power,
+                "lacunarity of rescaled octaves",
+                self.lacunarity,
+                "2, 4, 8 or 16",
+            )?;
+            if let Some(axis) = self.domain.wrap.iter().position(|wrap| !wrap) {
+                return Err(PupsError::new(PupsErrorKind::NotWrapped { axis }));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a series of layers that is too long or does not get finer and fainter.
+pub(crate) fn check_series(
+    what: &'static str,
+    count: u32,
+    lacunarity: f64,
+    gain: f64,
+) -> Result<(), PupsError> {
+    PupsError::check((1..=16).contains(&count), what, f64::from(count), "1 to 16")?;
+    let finer = lacunarity > 1.0 && lacunarity <= 16.0;
+    PupsError::check(finer, "lacunarity", lacunarity, "above 1 and at most 16")?;
+    let fainter = gain > 0.0 && gain <= 1.0;
+    PupsError::check(fainter, "gain", gain, "above 0 and at most 1")
+}
+
+impl Octave {
+    fn new(texture: Texture, scale: f64) -> Self {
+        Self {
+            texture,
+            scale,
+            folding: Folding::Plain,
+        }
+    }
+
+    /// The same octave, folded or not.
+    #[must_use]
+    pub fn with_folding(self, folding: Folding) -> Self {
+        Self { folding, ..self }
+    }
+
+    /// The texture that it shows.
+    #[must_use]
+    pub fn texture(&self) -> &Texture {
+        &self.texture
+    }
+
+    /// What positions are multiplied with: 1, or a power of two if octaves are rescaled.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+}
+
+/// T' = 2 · |T − ½|, between 0 and 1 for values between 0 and 1.
+fn fold(value: f32) -> f32 {
+    2.0 * (value - 0.5).abs()
+}
+
+impl Field for Octave {
+    fn sample(&self, position: DVec2) -> f32 {
+        let value = self.texture.sample(position * self.scale);
+        match self.folding {
+            Folding::Plain => value,
+            Folding::Folded => fold(value),
+        }
+    }
+
+    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        // With a power of two, the positions of this window are those of the other times the scale, to the last bit.
+        let window = Window {
+            origin: window.origin * self.scale,
+            pixel: window.pixel * self.scale,
+            ..*window
+        };
+        self.texture.render(&window, out.reborrow())?;
+        if self.folding == Folding::Folded {
+            out.rows_mut().flatten().for_each(|value| *value = fold(*value));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,4 @@
+//! What the recipes promise, each of them and all together.
+
+mod common;
+mod noise;
