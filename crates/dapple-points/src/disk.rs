@@ -24,6 +24,7 @@ mod solve;
 
 use crate::{Domain, PointIdx, PointSet, PointsError, PointsErrorKind};
 use dapple_hash::Seed;
+use fearless_simd::Level;
 use grid::{Cell, Grid};
 use mask::Coverage;
 use solve::Solution;
@@ -178,7 +179,7 @@ impl PoissonDisk {
     ///
     /// None for what [`new`](Self::new) accepts.
     pub fn sample(&self, seed: Seed) -> Result<PointSet, PointsError> {
-        let mut solution = Solution::new(&self.grid, &self.coverage);
+        let mut solution = Solution::new(&self.grid, &self.coverage, level());
         solution.fill(seed);
         PointSet::new(self.grid.domain, solution.positions())
     }
@@ -197,7 +198,7 @@ impl PoissonDisk {
             }));
         }
         let places = self.places(given)?;
-        let mut solution = Solution::new(&self.grid, &self.coverage);
+        let mut solution = Solution::new(&self.grid, &self.coverage, level());
         solution.give(places.into_iter());
         solution.fill(seed);
         let mut positions = given.positions().to_vec();
@@ -251,6 +252,16 @@ impl PoissonDisk {
             radius: self.radius,
         }))
     }
+}
+
+/// The SIMD level of this machine, but for 16 lanes, which rows of five neighbors do not fill.
+fn level() -> Level {
+    let level = Level::new();
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(token) = level.as_avx2() {
+        return Level::Avx2(token);
+    }
+    level
 }
 
 #[cfg(test)]

@@ -1,129 +1,203 @@
 //! The exact search of a cell for places that no disc covers.
 //!
-//! The set subcells of a cell are squares of places. A square that lies wholly in one disc is dropped; of the others a
-//! few random places are tried, then each square is cut in four, and so on down to single places. Whatever the
+//! The set subcells of a cell are squares of places. A square that lies wholly in one disc is dropped; of the others
+//! one random place is tried, then each square is cut in four, and so on down to single places. Whatever the
 //! search returns is uniformly random among the free places of the cell, and if it returns none there is none.
 //!
-//! Nothing rounds here: the corners of squares are places, and [`Grid::distance_sq`] keeps their order, so a square
+//! Nothing rounds here: the corners of squares are places, and the distance keeps their order, so a square
 //! whose farthest corner is covered is covered at every place.
 
-use super::grid::{Grid, LATTICE, STEP};
-use super::mask::{SIDE, select};
+use super::grid::{Cell, FAR, Grid, HALO, LATTICE, STEP};
+use super::mask::{REACH, SIDE};
+use super::sheet::{COLUMNS, LANES, Sheet};
 use dapple_hash::CellHash;
-
-/// Random places tried for each size of squares.
-const TRIES: u32 = 2;
+use fearless_simd::{f32x8, prelude::*};
 
 /// A square of places: its first corner in steps of the lattice.
 type Corner = [u32; 2];
 
+/// The largest number of discs that reach into a cell, one for each cell around it, in whole lanes.
+const MAX_DISCS: usize = (REACH * REACH).next_multiple_of(LANES);
+
 /// The search, with memory that is used again for the next cell.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct GapSearch {
-    /// The discs that reach into the cell, by their centers relative to it.
-    discs: Vec<[f32; 2]>,
+    /// The centers of the discs that reach into the cell, relative to it; the rest of the last lanes is far away.
+    x: [f32; MAX_DISCS],
+    y: [f32; MAX_DISCS],
+    n_discs: usize,
     squares: Vec<Corner>,
-    halves: Vec<Corner>,
+    quarters: Vec<Corner>,
+}
+
+impl Default for GapSearch {
+    fn default() -> Self {
+        Self {
+            x: [FAR; MAX_DISCS],
+            y: [FAR; MAX_DISCS],
+            n_discs: 0,
+            squares: Vec::new(),
+            quarters: Vec::new(),
+        }
+    }
 }
 
 impl GapSearch {
     /// A random free place of a cell whose mask is `mask`, or none if all of its places are covered.
     ///
-    /// `points` are the places of points around the cell, relative to it. The bits of subcells that turn out to be
-    /// covered by one disc are cleared.
-    pub(crate) fn find(
+    /// The sheet must hold points only. The bits of subcells that turn out to be covered by one disc are cleared.
+    #[inline(always)]
+    pub(crate) fn find<S: Simd>(
         &mut self,
+        simd: S,
         grid: &Grid,
+        sheet: &Sheet,
+        cell: Cell,
         mask: &mut u64,
-        points: impl Iterator<Item = [f32; 2]>,
         hash: CellHash,
     ) -> Option<[f32; 2]> {
-        self.discs.clear();
-        self.discs.extend(points.filter(|&disc| {
-            let whole = span([0, 0], LATTICE);
-            near_sq(grid, &whole, disc) < 1.0
-        }));
+        self.gather(simd, grid, sheet, cell);
         let mut size = LATTICE / SIDE as u32;
-        self.start(grid, mask, size);
-        let mut draws = 0;
+        self.start(simd, grid, mask, size);
+        let mut draws = 1;
         while !self.squares.is_empty() {
-            for _ in 0..TRIES {
-                let place = self.random_place(size, hash.at(draws));
-                draws += 1;
-                if self.is_free(grid, place) {
-                    return Some(place);
-                }
+            let place = self.random_place(size, hash.at(draws));
+            if !self.is_covered(simd, grid, [[place[0]; 2], [place[1]; 2]]) {
+                return Some(place);
             }
+            draws += 1;
             size /= 2;
-            self.cut(grid, size);
+            self.cut(simd, grid, size);
         }
         None
     }
 
+    /// Collects the discs that reach into the cell.
+    #[inline(always)]
+    fn gather<S: Simd>(&mut self, simd: S, grid: &Grid, sheet: &Sheet, cell: Cell) {
+        let [first, last] = span(0, LATTICE);
+        self.n_discs = 0;
+        for row in 0..REACH {
+            let start =
+                grid.index(cell) + row * grid.stride() - HALO as usize * (grid.stride() + 1);
+            let xs = f32x8::from_slice(simd, &sheet.x[start..start + LANES]);
+            let ys = f32x8::from_slice(simd, &sheet.y[start..start + LANES]);
+            let xs = xs + f32x8::from_slice(simd, &COLUMNS);
+            let ys = ys + (row as f32 - HALO as f32);
+            // From the nearest place of the cell.
+            let dx = (first - xs).max(xs - last).max(0.0) * grid.scale[0];
+            let dy = (first - ys).max(ys - last).max(0.0) * grid.scale[1];
+            let mut near = (dx * dx + dy * dy).simd_lt(1.0).to_bitmask();
+            while near != 0 {
+                let column = near.trailing_zeros() as usize;
+                near &= near - 1;
+                self.x[self.n_discs] = sheet.x[start + column] + COLUMNS[column];
+                self.y[self.n_discs] = sheet.y[start + column] + (row as f32 - HALO as f32);
+                self.n_discs += 1;
+            }
+        }
+        let end = self.n_discs.next_multiple_of(LANES);
+        self.x[self.n_discs..end].fill(FAR);
+        self.y[self.n_discs..end].fill(FAR);
+    }
+
     /// Takes the set subcells that no disc covers alone as the first squares.
-    fn start(&mut self, grid: &Grid, mask: &mut u64, size: u32) {
+    #[inline(always)]
+    fn start<S: Simd>(&mut self, simd: S, grid: &Grid, mask: &mut u64, size: u32) {
         self.squares.clear();
-        for rank in 0..mask.count_ones() {
-            let bit = select(*mask, rank);
+        let mut left = *mask;
+        while left != 0 {
+            let bit = left.trailing_zeros();
+            left &= left - 1;
             let square = [bit % SIDE as u32 * size, bit / SIDE as u32 * size];
-            if !self.is_covered(grid, square, size) {
+            if self.is_covered(simd, grid, [span(square[0], size), span(square[1], size)]) {
+                *mask &= !(1 << bit);
+            } else {
                 self.squares.push(square);
             }
         }
-        *mask = self.squares.iter().fold(0, |bits, &[x, y]| {
-            bits | 1 << (y / size * SIDE as u32 + x / size)
-        });
     }
 
     /// Cuts every square in four of side `size` and keeps those that no disc covers alone.
-    fn cut(&mut self, grid: &Grid, size: u32) {
-        let mut halves = core::mem::take(&mut self.halves);
-        halves.clear();
+    #[inline(always)]
+    fn cut<S: Simd>(&mut self, simd: S, grid: &Grid, size: u32) {
+        let mut quarters = core::mem::take(&mut self.quarters);
+        quarters.resize(4 * self.squares.len(), [0; 2]);
+        let mut n_open = 0;
         for &[x, y] in &self.squares {
-            for square in [[x, y], [x + size, y], [x, y + size], [x + size, y + size]] {
-                if !self.is_covered(grid, square, size) {
-                    halves.push(square);
-                }
+            let covered = self.covered_quarters(simd, grid, [x, y], size);
+            for (quarter, covered) in covered.into_iter().enumerate() {
+                let [right, down] = [quarter as u32 & 1, quarter as u32 >> 1];
+                quarters[n_open] = [x + right * size, y + down * size];
+                n_open += usize::from(covered == 0);
             }
         }
-        self.halves = core::mem::replace(&mut self.squares, halves);
+        quarters.truncate(n_open);
+        self.quarters = core::mem::replace(&mut self.squares, quarters);
     }
 
-    fn is_covered(&self, grid: &Grid, square: Corner, size: u32) -> bool {
-        let square = span(square, size);
-        self.discs
-            .iter()
-            .any(|&disc| far_sq(grid, &square, disc) < 1.0)
+    /// Which discs cover the quarters of side `size` of a square wholly, as bits that are set; the quarters in rows.
+    #[inline(always)]
+    fn covered_quarters<S: Simd>(
+        &self,
+        simd: S,
+        grid: &Grid,
+        [x, y]: Corner,
+        size: u32,
+    ) -> [u64; 4] {
+        // Written out, since closures given to `array::map` are not compiled for the SIMD level.
+        let (left, right) = (span(x, size), span(x + size, size));
+        let (top, bottom) = (span(y, size), span(y + size, size));
+        let [sx, sy] = grid.scale;
+        let discs = self.x.chunks_exact(LANES).zip(self.y.chunks_exact(LANES));
+        let mut covered = [0; 4];
+        for (xs, ys) in discs.take(self.n_discs.div_ceil(LANES)) {
+            let xs = f32x8::from_slice(simd, xs);
+            let ys = f32x8::from_slice(simd, ys);
+            let (left, right) = (far_sq(xs, left, sx), far_sq(xs, right, sx));
+            let (top, bottom) = (far_sq(ys, top, sy), far_sq(ys, bottom, sy));
+            covered[0] |= (left + top).simd_lt(1.0).to_bitmask();
+            covered[1] |= (right + top).simd_lt(1.0).to_bitmask();
+            covered[2] |= (left + bottom).simd_lt(1.0).to_bitmask();
+            covered[3] |= (right + bottom).simd_lt(1.0).to_bitmask();
+        }
+        covered
     }
 
-    fn is_free(&self, grid: &Grid, [x, y]: [f32; 2]) -> bool {
-        self.discs
-            .iter()
-            .all(|disc| grid.distance_sq(x - disc[0], y - disc[1]) >= 1.0)
+    /// Whether one disc covers a whole square, given by its first and last place along each axis.
+    #[inline(always)]
+    fn is_covered<S: Simd>(&self, simd: S, grid: &Grid, [x, y]: [[f32; 2]; 2]) -> bool {
+        let discs = self.x.chunks_exact(LANES).zip(self.y.chunks_exact(LANES));
+        let mut covered = 0;
+        for (xs, ys) in discs.take(self.n_discs.div_ceil(LANES)) {
+            let xs = f32x8::from_slice(simd, xs);
+            let ys = f32x8::from_slice(simd, ys);
+            let far_sq = far_sq(xs, x, grid.scale[0]) + far_sq(ys, y, grid.scale[1]);
+            covered |= far_sq.simd_lt(1.0).to_bitmask();
+        }
+        covered != 0
     }
 
     /// A place of the squares, each as likely as the others.
+    #[inline(always)]
     fn random_place(&self, size: u32, bits: u64) -> [f32; 2] {
-        let rank = (bits >> 40) * self.squares.len() as u64 >> 24;
+        let rank = ((bits >> 40) * self.squares.len() as u64) >> 24;
         let [x, y] = self.squares[rank as usize];
         let within = |bits: u64| bits as u32 & (size - 1);
-        [x + within(bits), y + within(bits >> 20)].map(|steps| steps as f32 * STEP)
+        let [x, y] = [x + within(bits), y + within(bits >> 20)];
+        [x as f32 * STEP, y as f32 * STEP]
     }
 }
 
-/// First and last place of a square, along each axis.
-fn span(square: Corner, size: u32) -> [[f32; 2]; 2] {
-    square.map(|first| [first as f32 * STEP, (first + size - 1) as f32 * STEP])
+/// First and last place of a square along an axis.
+#[inline(always)]
+fn span(first: u32, size: u32) -> [f32; 2] {
+    [first as f32 * STEP, (first + size - 1) as f32 * STEP]
 }
 
-/// The square of the distance from a disc's center to the farthest place of a square.
-fn far_sq(grid: &Grid, [x, y]: &[[f32; 2]; 2], disc: [f32; 2]) -> f32 {
-    let far = |[first, last]: [f32; 2], at: f32| (at - first).max(last - at);
-    grid.distance_sq(far(*x, disc[0]), far(*y, disc[1]))
-}
-
-/// The square of the distance from a disc's center to the nearest place of a square.
-fn near_sq(grid: &Grid, [x, y]: &[[f32; 2]; 2], disc: [f32; 2]) -> f32 {
-    let near = |[first, last]: [f32; 2], at: f32| (first - at).max(at - last).max(0.0);
-    grid.distance_sq(near(*x, disc[0]), near(*y, disc[1]))
+/// The squares of the distances along an axis from the centers of discs to the farther end of a span.
+#[inline(always)]
+fn far_sq<S: Simd>(centers: f32x8<S>, [first, last]: [f32; 2], scale: f32) -> f32x8<S> {
+    let far = (centers - first).max(last - centers) * scale;
+    far * far
 }

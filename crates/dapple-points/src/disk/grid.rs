@@ -7,12 +7,13 @@
 //!
 //! **Units.** A place is a cell and an offset in `[0, 1)²` of the cell, a multiple of 2^-22 ([`LATTICE`] steps per
 //! cell). Differences of offsets across up to three cells are exact in `f32`, in whatever frame they are taken.
-//! Two places conflict if [`Grid::distance_sq`] is below 1: the square of the distance over [`Grid::reach`], rounded in
-//! one fixed way. The reach is larger than the radius by [`SLACK`], which is more than all rounding together, so the
+//! Two places conflict if the square of their distance over the reach is below 1: `(dx * scale)² + (dy * scale)²` in
+//! `f32` with [`Grid::scale`], rounded after each operation. It never falls where `|dx|` or `|dy|` grows. The reach is larger than the radius by [`SLACK`], which is more than all rounding together, so the
 //! conflict test needs no second, exact one: points that do not conflict are at least a radius apart as `f64`, and
 //! where everything conflicts no empty circle is larger than the radius times 1 + 1e-6.
 
 use crate::{Domain, PointsError, PointsErrorKind};
+use dapple_hash::{CellHash, Seed};
 use glam::DVec2;
 
 /// Copies of cells beyond each side of the grid.
@@ -90,13 +91,12 @@ impl Grid {
         cell.row as usize * self.stride() + cell.column as usize
     }
 
-    /// The square of the distance, in reaches, of two places whose offsets differ by `(dx, dy)` cells.
-    ///
-    /// It never falls where `|dx|` or `|dy|` grows, since neither rounding nor squaring turns an order around.
+    /// The random bits of a cell of the domain.
     #[inline(always)]
-    pub(crate) fn distance_sq(&self, dx: f32, dy: f32) -> f32 {
-        let [x, y] = [dx * self.scale[0], dy * self.scale[1]];
-        x * x + y * y
+    pub(crate) fn hash(&self, seed: Seed, cell: Cell) -> CellHash {
+        // There are less than 2^32 cells. One word per cell is half the work of two.
+        let number = (cell.row - HALO) * self.cells[0] + (cell.column - HALO);
+        CellHash::new(seed, [i64::from(number)])
     }
 
     /// The cell of the domain that a cell of the margin is a copy of.

@@ -3,24 +3,22 @@
 use super::grid::{Cell, FAR, Grid, HALO};
 use super::mask::REACH;
 use core::ops::Range;
+use fearless_simd::{f32x8, i32x8, prelude::*};
 
 /// The rank of a point that was placed in this run; above all proposals.
-pub(crate) const POINT: u32 = u32::MAX;
+pub(crate) const POINT: i32 = i32::MAX;
 
 /// The rank of a point that was given; above all proposals.
-pub(crate) const GIVEN: u32 = u32::MAX - 1;
+pub(crate) const GIVEN: i32 = i32::MAX - 1;
 
 /// The highest rank of a proposal.
-pub(crate) const HIGHEST_PROPOSAL: u32 = u32::MAX - 2;
+pub(crate) const HIGHEST_PROPOSAL: i32 = i32::MAX - 2;
 
 /// Lanes that are looked at together; a row of [`REACH`] cells fits.
-const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 
 /// The columns of a row of neighbors, relative to the middle one; lanes beyond the reach are far away.
-const COLUMNS: [f32; LANES] = [-2.0, -1.0, 0.0, 1.0, 2.0, FAR, FAR, FAR];
-
-/// Rows of neighbors, the most likely to conflict first.
-const ROWS: [isize; REACH] = [0, -1, 1, -2, 2];
+pub(crate) const COLUMNS: [f32; LANES] = [-2.0, -1.0, 0.0, 1.0, 2.0, FAR, FAR, FAR];
 
 /// Offsets and ranks of all cells, margin included, row by row.
 ///
@@ -29,7 +27,7 @@ const ROWS: [isize; REACH] = [0, -1, 1, -2, 2];
 pub(crate) struct Sheet {
     pub(crate) x: Vec<f32>,
     pub(crate) y: Vec<f32>,
-    pub(crate) rank: Vec<u32>,
+    pub(crate) rank: Vec<i32>,
 }
 
 /// Some rows of a [`Sheet`], to be written.
@@ -38,7 +36,7 @@ pub(crate) struct SheetRows<'a> {
     first_row: u32,
     x: &'a mut [f32],
     y: &'a mut [f32],
-    rank: &'a mut [u32],
+    rank: &'a mut [i32],
 }
 
 impl Sheet {
@@ -90,84 +88,83 @@ impl Sheet {
         }
     }
 
-    /// Where the points around a cell are, relative to the cell.
-    pub(crate) fn points_around<'a>(
-        &'a self,
+    /// Which of the five cells from `start` hold a place that conflicts with `place`, and which of these hold one whose
+    /// rank is at least `rank`: a bit for each.
+    #[inline(always)]
+    fn conflicts_in_row<S: Simd>(
+        &self,
+        simd: S,
         grid: &Grid,
-        cell: Cell,
-    ) -> impl Iterator<Item = [f32; 2]> + 'a {
-        let (middle, stride) = (grid.index(cell), grid.stride());
-        (0..REACH).flat_map(move |row| {
-            let start = middle + row * stride - HALO as usize * stride - HALO as usize;
-            (0..REACH).filter_map(move |column| {
-                let (x, y) = (self.x[start + column], self.y[start + column]);
-                (x < FAR).then(|| {
-                    [
-                        x + column as f32 - HALO as f32,
-                        y + row as f32 - HALO as f32,
-                    ]
-                })
-            })
-        })
+        start: usize,
+        [x, y]: [f32; 2],
+        rank: i32,
+    ) -> [u64; 2] {
+        let xs = f32x8::from_slice(simd, &self.x[start..start + LANES]);
+        let ys = f32x8::from_slice(simd, &self.y[start..start + LANES]);
+        let ranks = i32x8::from_slice(simd, &self.rank[start..start + LANES]);
+        let columns = f32x8::from_slice(simd, &COLUMNS);
+        let dx = (xs + columns - x) * grid.scale[0];
+        let dy = (ys - y) * grid.scale[1];
+        let near = (dx * dx + dy * dy).simd_lt(1.0);
+        let above = near & ranks.simd_ge(rank);
+        let points = near & ranks.simd_ge(GIVEN);
+        [points.to_bitmask(), above.to_bitmask()]
     }
 
-    /// Calls `rival` with every cell around `cell` that holds a place in conflict and of no lower rank, until it
-    /// returns true; returns whether it did.
+    /// What the place of `cell` is in conflict with.
     #[inline(always)]
-    pub(crate) fn any_rival(
-        &self,
-        grid: &Grid,
-        cell: Cell,
-        mut rival: impl FnMut(Cell) -> bool,
-    ) -> bool {
+    pub(crate) fn rivals<S: Simd>(&self, simd: S, grid: &Grid, cell: Cell) -> Rivals {
         let middle = grid.index(cell);
         let (x, y, rank) = (self.x[middle], self.y[middle], self.rank[middle]);
-        for row in ROWS {
-            let start = (middle as isize + row * grid.stride() as isize) as usize - HALO as usize;
-            let mut found = self.rivals_in_row(grid, start, [x, y - row as f32], rank);
-            if row == 0 {
-                found &= !(1 << HALO);
-            }
-            while found != 0 {
-                let column = found.trailing_zeros();
-                found &= found - 1;
-                let other = Cell {
-                    row: (cell.row as isize + row) as u32,
-                    column: cell.column + column - HALO,
-                };
-                if rival(other) {
-                    return true;
-                }
+        let mut found = [0; 2];
+        for row in 0..REACH {
+            let start = middle + row * grid.stride() - (HALO as usize) * (grid.stride() + 1);
+            let place = [x, y - (row as f32 - HALO as f32)];
+            let [points, above] = self.conflicts_in_row(simd, grid, start, place, rank);
+            found[0] |= points;
+            found[1] |= above << (LANES * row);
+        }
+        if found[0] != 0 {
+            return Rivals::Point;
+        }
+        Rivals::Proposals(found[1] & !(1 << (LANES as u32 * HALO + HALO)))
+    }
+}
+
+/// What a proposal is in conflict with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rivals {
+    /// A point, and perhaps proposals.
+    Point,
+    /// The proposals whose rank is no lower, by the cells around; none at all if no bit is set.
+    Proposals(u64),
+}
+
+impl Rivals {
+    /// Calls `rival` with the cells around `cell` that hold the proposals until it returns true; returns whether it did.
+    #[inline(always)]
+    pub(crate) fn any(bits: u64, cell: Cell, mut rival: impl FnMut(Cell) -> bool) -> bool {
+        let mut left = bits;
+        while left != 0 {
+            let bit = left.trailing_zeros();
+            left &= left - 1;
+            let (row, column) = (bit / LANES as u32, bit % LANES as u32);
+            let other = Cell {
+                row: cell.row + row - HALO,
+                column: cell.column + column - HALO,
+            };
+            if rival(other) {
+                return true;
             }
         }
         false
-    }
-
-    /// Which of the five cells from `start` hold a place in conflict with `place` and of no lower rank than `rank`.
-    #[inline(always)]
-    fn rivals_in_row(&self, grid: &Grid, start: usize, [x, y]: [f32; 2], rank: u32) -> u32 {
-        let xs: &[f32; LANES] = self.x[start..start + LANES]
-            .try_into()
-            .expect("a slice of this length");
-        let ys: &[f32; LANES] = self.y[start..start + LANES]
-            .try_into()
-            .expect("a slice of this length");
-        let ranks: &[u32; LANES] = self.rank[start..start + LANES]
-            .try_into()
-            .expect("a slice of this length");
-        let mut found = 0;
-        for lane in 0..LANES {
-            let distance_sq = grid.distance_sq(xs[lane] + COLUMNS[lane] - x, ys[lane] - y);
-            found |= u32::from(distance_sq < 1.0 && ranks[lane] >= rank) << lane;
-        }
-        found
     }
 }
 
 impl SheetRows<'_> {
     /// Puts a place into a cell, and into its copies in the margin of the same row.
     #[inline(always)]
-    pub(crate) fn put(&mut self, grid: &Grid, cell: Cell, offset: [f32; 2], rank: u32) {
+    pub(crate) fn put(&mut self, grid: &Grid, cell: Cell, offset: [f32; 2], rank: i32) {
         let own = Cell {
             row: cell.row - self.first_row,
             ..cell
@@ -199,7 +196,7 @@ impl SheetRows<'_> {
     }
 
     #[inline(always)]
-    fn put_one(&mut self, index: usize, [x, y]: [f32; 2], rank: u32) {
+    fn put_one(&mut self, index: usize, [x, y]: [f32; 2], rank: i32) {
         self.x[index] = x;
         self.y[index] = y;
         self.rank[index] = rank;

@@ -5,39 +5,44 @@
 //! only on a few around it, so nobody has to go in order.
 
 use super::gap::GapSearch;
-use super::grid::{Cell, Grid, HALO};
+use super::grid::{Cell, FAR, Grid, HALO, LATTICE, STEP};
 use super::mask::{Coverage, REACH, SIDE, select};
-use super::sheet::{GIVEN, HIGHEST_PROPOSAL, Sheet, SheetRows};
+use super::sheet::{HIGHEST_PROPOSAL, Rivals, Sheet, SheetRows};
 use core::ops::Range;
-use dapple_hash::{CellHash, Seed};
+use dapple_hash::Seed;
+use fearless_simd::{Level, dispatch, prelude::*};
 
 /// A place that a cell would like to have a point at.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     pub(crate) cell: Cell,
     pub(crate) offset: [f32; 2],
-    pub(crate) rank: u32,
-    pub(crate) accepted: bool,
+    pub(crate) rank: i32,
+    pub(crate) verdict: Verdict,
 }
 
-/// How cells come to their proposals.
-#[derive(Clone, Debug)]
-pub(crate) enum Draw {
-    /// By throwing darts at the set subcells: the chance to propose, as a part of 2^32, by the number of set bits.
-    Darts([u64; SIDE * SIDE + 1]),
-    /// By an exact search for free places; a cell without any is closed.
-    Gaps,
+/// What is known about a proposal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    Accepted,
+    Rejected,
+    /// It depends on these proposals, which are in conflict with it and of no lower rank.
+    Open(u64),
 }
 
-impl Draw {
-    /// Darts at a cell for a time in which a cell without points is hit `mean` times on average.
-    pub(crate) fn darts(mean: f64) -> Self {
-        let subcells = (SIDE * SIDE) as f64;
-        Self::Darts(core::array::from_fn(|open| {
-            let hit = -libm::expm1(-mean * open as f64 / subcells);
-            (hit * f64::from(u32::MAX)) as u64
-        }))
-    }
+/// Cells whose darts are drawn together.
+const BATCH: usize = 64;
+
+/// The chance that a cell proposes, as a part of 2^32, by the number of its set subcells.
+pub(crate) type Chances = [u64; SIDE * SIDE + 1];
+
+/// The chances in a slice in which a cell without points is hit by `mean` darts on average.
+pub(crate) fn dart_chances(mean: f64) -> Chances {
+    let subcells = (SIDE * SIDE) as f64;
+    core::array::from_fn(|open| {
+        let hit = -libm::expm1(-mean * open as f64 / subcells);
+        (hit * f64::from(u32::MAX)) as u64
+    })
 }
 
 /// Consecutive rows of cells, which are worked on together.
@@ -48,75 +53,106 @@ pub(crate) struct Band {
     /// Cells that may still take a point.
     pub(crate) open: Vec<Cell>,
     pub(crate) proposals: Vec<Proposal>,
-    /// What is known about the proposals of this band, by cell.
-    verdicts: Vec<Verdict>,
+    /// The number of the proposal of a cell; left over from earlier slices where there is none.
+    slots: Vec<u32>,
     search: GapSearch,
-}
-
-/// What is known about a proposal.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Verdict {
-    #[default]
-    Unknown,
-    Accepted,
-    Rejected,
 }
 
 impl Band {
     /// A band whose cells are all open.
     pub(crate) fn new(grid: &Grid, rows: Range<u32>) -> Self {
         let columns = HALO..HALO + grid.cells[0];
-        let open = rows
-            .clone()
-            .flat_map(|row| columns.clone().map(move |column| Cell { row, column }))
-            .collect();
+        let mut open = Vec::with_capacity(rows.len() * columns.len());
+        for row in rows.clone() {
+            open.extend(columns.clone().map(|column| Cell { row, column }));
+        }
         Self {
             open,
-            verdicts: vec![Verdict::Unknown; rows.len() * grid.stride()],
+            slots: vec![0; rows.len() * grid.stride()],
             rows,
             ..Self::default()
         }
     }
 
-    /// Drops the closed cells and draws the proposals of the others. `masks` are those of the band's rows.
-    pub(crate) fn draw(
+    /// Draws the proposals of the open cells by throwing darts, and drops the cells that are closed. `masks` are those
+    /// of the band's rows.
+    ///
+    /// `chances` are those of [`dart_chances`].
+    #[inline(always)]
+    pub(crate) fn draw_darts(&mut self, grid: &Grid, masks: &[u64], chances: &Chances, seed: Seed) {
+        let first = self.rows.start as usize * grid.stride();
+        let mut kept = 0;
+        self.proposals.clear();
+        for start in (0..self.open.len()).step_by(BATCH) {
+            // Three loops: one that fits into lanes, one without branches, one over the few cells that propose.
+            let mut lots = [0; BATCH];
+            let end = self.open.len().min(start + BATCH);
+            for (lot, &cell) in lots.iter_mut().zip(&self.open[start..end]) {
+                *lot = grid.hash(seed, cell).at(0);
+            }
+            let mut hits = [0; BATCH];
+            let mut n_hits = 0;
+            for at in start..end {
+                let cell = self.open[at];
+                let mask = masks[grid.index(cell) - first];
+                self.open[kept] = cell;
+                kept += usize::from(mask != 0);
+                hits[n_hits] = kept.wrapping_sub(1);
+                let lot = lots[at - start];
+                lots[n_hits] = lot;
+                n_hits += usize::from((lot & 0xFFFF_FFFF) < chances[mask.count_ones() as usize]);
+            }
+            for (&at, &lot) in hits[..n_hits].iter().zip(&lots) {
+                let cell = self.open[at];
+                let index = grid.index(cell) - first;
+                let offset = dart(masks[index], grid.hash(seed, cell).at(1));
+                self.propose(index, cell, offset, lot);
+            }
+        }
+        self.open.truncate(kept);
+    }
+
+    /// Draws the proposals of the open cells by an exact search, and drops the cells that have no free place. `masks`
+    /// are those of the band's rows.
+    #[inline(always)]
+    pub(crate) fn draw_gaps<S: Simd>(
         &mut self,
+        simd: S,
         grid: &Grid,
         sheet: &Sheet,
         masks: &mut [u64],
-        draw: &Draw,
         seed: Seed,
     ) {
-        let Self {
-            rows,
-            open,
-            proposals,
-            search,
-            ..
-        } = self;
-        proposals.clear();
-        open.retain(|&cell| {
-            let mask = &mut masks[grid.index(Cell {
-                row: cell.row - rows.start,
-                ..cell
-            })];
-            if *mask == 0 {
-                return false;
+        let first = self.rows.start as usize * grid.stride();
+        let mut kept = 0;
+        self.proposals.clear();
+        for at in 0..self.open.len() {
+            let cell = self.open[at];
+            let index = grid.index(cell) - first;
+            if masks[index] == 0 {
+                continue;
             }
-            let hash = CellHash::new(seed, [i64::from(cell.column), i64::from(cell.row)]);
-            let place = match draw {
-                Draw::Darts(chances) => dart(*mask, chances, hash),
-                Draw::Gaps => search.find(grid, mask, sheet.points_around(grid, cell), hash),
-            };
-            let rank = (hash.at(u32::MAX) >> 32) as u32;
-            proposals.extend(place.map(|offset| Proposal {
-                cell,
-                offset,
-                rank: rank.clamp(1, HIGHEST_PROPOSAL),
-                accepted: false,
-            }));
-            // An exact search that found nothing has proved that there is nothing.
-            place.is_some() || matches!(draw, Draw::Darts(_))
+            let hash = grid.hash(seed, cell);
+            let place = self
+                .search
+                .find(simd, grid, sheet, cell, &mut masks[index], hash);
+            if let Some(offset) = place {
+                self.propose(index, cell, offset, hash.at(0));
+                self.open[kept] = cell;
+                kept += 1;
+            }
+        }
+        self.open.truncate(kept);
+    }
+
+    #[inline(always)]
+    fn propose(&mut self, index: usize, cell: Cell, offset: [f32; 2], lot: u64) {
+        self.slots[index] = self.proposals.len() as u32;
+        self.proposals.push(Proposal {
+            cell,
+            offset,
+            rank: ((lot >> 33) as i32).clamp(1, HIGHEST_PROPOSAL),
+            verdict: Verdict::Rejected,
         });
     }
 
@@ -127,17 +163,26 @@ impl Band {
         }
     }
 
+    /// Finds out which proposals are in conflict with what.
+    #[inline(always)]
+    pub(crate) fn judge<S: Simd>(&mut self, simd: S, grid: &Grid, sheet: &Sheet) {
+        for proposal in &mut self.proposals {
+            proposal.verdict = match sheet.rivals(simd, grid, proposal.cell) {
+                Rivals::Point => Verdict::Rejected,
+                Rivals::Proposals(0) => Verdict::Accepted,
+                Rivals::Proposals(rivals) => Verdict::Open(rivals),
+            }
+        }
+    }
+
     /// Decides which proposals are accepted.
     pub(crate) fn settle(&mut self, grid: &Grid, sheet: &Sheet) {
-        let mut proposals = core::mem::take(&mut self.proposals);
-        for proposal in &mut proposals {
-            proposal.accepted = self.is_accepted(grid, sheet, proposal.cell);
+        for slot in 0..self.proposals.len() {
+            let Proposal { cell, verdict, .. } = self.proposals[slot];
+            if matches!(verdict, Verdict::Open(_)) {
+                self.is_accepted(grid, sheet, cell);
+            }
         }
-        for proposal in &proposals {
-            let index = self.own_index(grid, proposal.cell);
-            self.verdicts[index] = Verdict::Unknown;
-        }
-        self.proposals = proposals;
     }
 
     /// Whether the proposal of a cell is accepted.
@@ -145,23 +190,30 @@ impl Band {
     /// The answers within the band are kept; those of proposals in other bands are worked out again by each band that
     /// needs them, so that bands share nothing.
     fn is_accepted(&mut self, grid: &Grid, sheet: &Sheet, cell: Cell) -> bool {
-        let own = self
-            .rows
-            .contains(&cell.row)
-            .then(|| self.own_index(grid, cell));
-        match own.map_or(Verdict::Unknown, |own| self.verdicts[own]) {
+        let slot = self.rows.contains(&cell.row).then(|| {
+            let index = grid.index(cell) - self.rows.start as usize * grid.stride();
+            self.slots[index] as usize
+        });
+        let verdict = match slot {
+            Some(slot) => self.proposals[slot].verdict,
+            None => match dispatch!(Level::baseline(), simd => sheet.rivals(simd, grid, cell)) {
+                Rivals::Point => Verdict::Rejected,
+                Rivals::Proposals(rivals) => Verdict::Open(rivals),
+            },
+        };
+        let rivals = match verdict {
             Verdict::Accepted => return true,
             Verdict::Rejected => return false,
-            Verdict::Unknown => {}
-        }
-        let accepted = !sheet.any_rival(grid, cell, |rival| {
-            let rank = sheet.rank[grid.index(rival)];
+            Verdict::Open(rivals) => rivals,
+        };
+        let rank = sheet.rank[grid.index(cell)];
+        let accepted = !Rivals::any(rivals, cell, |rival| {
             let original = grid.original(rival);
-            let above = (rank, original) > (sheet.rank[grid.index(cell)], cell);
-            above && (rank >= GIVEN || self.is_accepted(grid, sheet, original))
+            (sheet.rank[grid.index(rival)], original) > (rank, cell)
+                && self.is_accepted(grid, sheet, original)
         });
-        if let Some(own) = own {
-            self.verdicts[own] = if accepted {
+        if let Some(slot) = slot {
+            self.proposals[slot].verdict = if accepted {
                 Verdict::Accepted
             } else {
                 Verdict::Rejected
@@ -170,51 +222,35 @@ impl Band {
         accepted
     }
 
-    fn own_index(&self, grid: &Grid, cell: Cell) -> usize {
-        grid.index(Cell {
-            row: cell.row - self.rows.start,
-            ..cell
-        })
-    }
-
     /// Makes points of the accepted proposals and takes the others out of the sheet.
-    pub(crate) fn keep_accepted(&self, grid: &Grid, mut rows: SheetRows<'_>, rank: u32) {
+    pub(crate) fn keep_accepted(&self, grid: &Grid, mut rows: SheetRows<'_>, rank: i32) {
         for proposal in &self.proposals {
-            if proposal.accepted {
+            if proposal.verdict == Verdict::Accepted {
                 rows.put(grid, proposal.cell, proposal.offset, rank);
             } else {
-                rows.put(grid, proposal.cell, [super::grid::FAR; 2], 0);
+                rows.put(grid, proposal.cell, [FAR; 2], 0);
             }
         }
     }
-
-    /// The accepted proposals.
-    pub(crate) fn accepted(&self) -> impl DoubleEndedIterator<Item = &Proposal> {
-        self.proposals.iter().filter(|proposal| proposal.accepted)
-    }
 }
 
-/// A dart into the set subcells of `mask`, if one hits within the slice.
+/// A random place in the set subcells of `mask`.
 #[inline(always)]
-fn dart(mask: u64, chances: &[u64; SIDE * SIDE + 1], hash: CellHash) -> Option<[f32; 2]> {
-    let open = mask.count_ones();
-    if (hash.at(0) & 0xFFFF_FFFF) >= chances[open as usize] {
-        return None;
-    }
-    let bits = hash.at(1);
-    let subcell = select(mask, ((bits >> 38) * u64::from(open) >> 26) as u32);
-    let within = super::grid::LATTICE / SIDE as u32;
-    let along = |subcell: u32, bits: u64| {
-        (subcell * within + (bits as u32 & (within - 1))) as f32 * super::grid::STEP
-    };
+fn dart(mask: u64, bits: u64) -> [f32; 2] {
+    let rank = ((bits >> 38) * u64::from(mask.count_ones())) >> 26;
+    let subcell = select(mask, rank as u32);
+    let size = LATTICE / SIDE as u32;
+    let along =
+        |subcell: u32, bits: u64| (subcell * size + (bits as u32 & (size - 1))) as f32 * STEP;
     let side = SIDE as u32;
-    Some([
+    [
         along(subcell % side, bits),
         along(subcell / side, bits >> 19),
-    ])
+    ]
 }
 
 /// Clears in `masks`, those of the rows `rows`, what the accepted proposals of a band cover.
+#[inline(always)]
 pub(crate) fn cover(
     grid: &Grid,
     coverage: &Coverage,
@@ -222,7 +258,11 @@ pub(crate) fn cover(
     rows: &Range<u32>,
     band: &Band,
 ) {
-    for proposal in band.accepted() {
+    let accepted = band
+        .proposals
+        .iter()
+        .filter(|proposal| proposal.verdict == Verdict::Accepted);
+    for proposal in accepted {
         let kept = coverage.kept(proposal.offset);
         for (row, kept) in (0..).zip(kept) {
             let row = grid.original_index(1, proposal.cell.row + row - HALO);

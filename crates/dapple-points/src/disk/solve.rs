@@ -6,15 +6,16 @@
 use super::grid::{Cell, Grid, HALO};
 use super::mask::Coverage;
 use super::sheet::{GIVEN, POINT, Sheet, domain_rows};
-use super::slice::{Band, Draw, Proposal, cover};
+use super::slice::{Band, Proposal, Verdict, cover, dart_chances};
 use dapple_hash::Seed;
+use fearless_simd::{Level, dispatch};
 use glam::DVec2;
 
 /// Rows of cells in a band: few enough to keep several cores busy, many enough that little is done twice.
 const BAND_ROWS: u32 = 128;
 
 /// For how long each slice throws darts: the mean number of darts at a cell.
-const DARTS: [f64; 9] = [0.5, 0.5, 0.7, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
+const DARTS: [f64; 8] = [0.5, 0.7, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
 
 /// A set in the making.
 #[derive(Debug)]
@@ -24,11 +25,12 @@ pub(crate) struct Solution<'a> {
     sheet: Sheet,
     masks: Vec<u64>,
     bands: Vec<Band>,
+    level: Level,
 }
 
 impl<'a> Solution<'a> {
     /// The domain without points.
-    pub(crate) fn new(grid: &'a Grid, coverage: &'a Coverage) -> Self {
+    pub(crate) fn new(grid: &'a Grid, coverage: &'a Coverage, level: Level) -> Self {
         let end = HALO + grid.cells[1];
         let bands = (HALO..end)
             .step_by(BAND_ROWS as usize)
@@ -40,6 +42,7 @@ impl<'a> Solution<'a> {
             sheet: Sheet::new(grid),
             masks: vec![u64::MAX; grid.stride() * grid.rows()],
             bands,
+            level,
         }
     }
 
@@ -51,7 +54,7 @@ impl<'a> Solution<'a> {
                 cell,
                 offset,
                 rank: GIVEN,
-                accepted: true,
+                verdict: Verdict::Accepted,
             });
         }
         self.keep_accepted(GIVEN);
@@ -60,11 +63,13 @@ impl<'a> Solution<'a> {
     /// Adds points until none fits.
     pub(crate) fn fill(&mut self, seed: Seed) {
         for (slice, mean) in (0..).zip(DARTS) {
-            self.slice(&Draw::darts(mean), seed.child("darts", slice));
+            self.throw_darts(mean, seed.child("darts", slice));
+            self.settle();
         }
         let mut round = 0;
         while self.bands.iter().any(|band| !band.open.is_empty()) {
-            self.slice(&Draw::Gaps, seed.child("gaps", round));
+            self.search_gaps(seed.child("gaps", round));
+            self.settle();
             round += 1;
         }
     }
@@ -73,7 +78,7 @@ impl<'a> Solution<'a> {
     pub(crate) fn positions(&self) -> Vec<DVec2> {
         let columns = HALO..HALO + self.grid.cells[0];
         let rows = HALO..HALO + self.grid.cells[1];
-        let mut positions = Vec::new();
+        let mut positions = Vec::with_capacity(rows.len() * columns.len() * 2 / 5);
         for cell in rows.flat_map(|row| columns.clone().map(move |column| Cell { row, column })) {
             let index = self.grid.index(cell);
             if self.sheet.rank[index] == POINT {
@@ -84,38 +89,59 @@ impl<'a> Solution<'a> {
         positions
     }
 
-    fn slice(&mut self, draw: &Draw, seed: Seed) {
-        let (grid, sheet) = (self.grid, &self.sheet);
+    /// Lets open cells propose the places of random darts.
+    fn throw_darts(&mut self, mean: f64, seed: Seed) {
+        let (grid, level) = (self.grid, self.level);
+        let chances = dart_chances(mean);
+        let band = BAND_ROWS as usize * grid.stride();
+        let masks = self.masks[domain_rows(grid)].chunks(band);
+        for_each(self.bands.iter_mut().zip(masks), |(band, masks)| {
+            dispatch!(level, _simd => band.draw_darts(grid, masks, &chances, seed));
+        });
+    }
+
+    /// Lets open cells propose random free places.
+    fn search_gaps(&mut self, seed: Seed) {
+        let (grid, sheet, level) = (self.grid, &self.sheet, self.level);
         let band = BAND_ROWS as usize * grid.stride();
         let masks = self.masks[domain_rows(grid)].chunks_mut(band);
         for_each(self.bands.iter_mut().zip(masks), |(band, masks)| {
-            band.draw(grid, sheet, masks, draw, seed);
+            dispatch!(level, simd => band.draw_gaps(simd, grid, sheet, masks, seed));
         });
+    }
+
+    /// Settles the proposals.
+    fn settle(&mut self) {
+        let (grid, level) = (self.grid, self.level);
         let rows = self.sheet.bands(grid, BAND_ROWS);
         for_each(self.bands.iter().zip(rows), |(band, rows)| {
             band.place(grid, rows)
         });
         self.sheet.wrap_rows(grid);
         let sheet = &self.sheet;
-        for_each(self.bands.iter_mut(), |band| band.settle(grid, sheet));
+        for_each(self.bands.iter_mut(), |band| {
+            dispatch!(level, simd => band.judge(simd, grid, sheet));
+            band.settle(grid, sheet);
+        });
         self.keep_accepted(POINT);
     }
 
-    fn keep_accepted(&mut self, rank: u32) {
+    fn keep_accepted(&mut self, rank: i32) {
         let grid = self.grid;
         let rows = self.sheet.bands(grid, BAND_ROWS);
         for_each(self.bands.iter().zip(rows), |(band, rows)| {
             band.keep_accepted(grid, rows, rank);
         });
         self.sheet.wrap_rows(grid);
-        let (bands, coverage) = (&self.bands, self.coverage);
+        let (bands, coverage, level) = (&self.bands, self.coverage, self.level);
         let band = BAND_ROWS as usize * grid.stride();
         let masks = self.masks[domain_rows(grid)].chunks_mut(band);
         for_each(
             bands.iter().enumerate().zip(masks),
             |((own, band), masks)| {
                 for neighbor in neighbors(own, bands.len()) {
-                    cover(grid, coverage, masks, &band.rows, &bands[neighbor]);
+                    let neighbor = &bands[neighbor];
+                    dispatch!(level, _simd => cover(grid, coverage, masks, &band.rows, neighbor));
                 }
             },
         );
