@@ -141,7 +141,10 @@ impl fmt::Display for PupsError {
                 )
             }
             PupsErrorKind::NotWrapped { axis } => {
-                write!(f, "axis {axis} of the domain must wrap around, but does not")
+                write!(
+                    f,
+                    "axis {axis} of the domain must wrap around, but does not"
+                )
             }
             PupsErrorKind::Points(error) => error.fmt(f),
             PupsErrorKind::Graph(error) => error.fmt(f),

@@ -35,8 +35,8 @@ mod tile;
 mod weight;
 
 pub use assign::{
-    Orientations, ReferenceImage, angle_orientations, biased_labels, field_orientations, field_values,
-    grouped_labels, outward_orientations, own_labels, palette_values, random_labels,
+    Orientations, ReferenceImage, angle_orientations, biased_labels, field_orientations,
+    field_values, grouped_labels, outward_orientations, own_labels, palette_values, random_labels,
     random_orientations, random_values, reference_labels, varying_values,
 };
 pub use dapple_graph as graph;
@@ -49,7 +49,8 @@ pub use options::{Orientation, PupsOptions};
 pub use pups::Pups;
 pub use recipes::{
     CellsOptions, CowOptions, Folding, LabelTexture, Layers, NetOptions, NoiseOptions, Octave,
-    OctaveSource, OctavesOptions, Spacing, VectorLabelTexture, cells, cow, noise, octaves, turbulence,
+    OctaveSource, OctavesOptions, Spacing, VectorLabelTexture, cells, cow, noise, octaves,
+    turbulence,
 };
 pub use texture::{Texture, VectorTexture};
 pub use weight::AxialWeight;

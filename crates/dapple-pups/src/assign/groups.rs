@@ -150,7 +150,9 @@ impl<'a> Growth<'a> {
 fn mend(neighbors: &[Vec<u32>], groups: &mut Vec<Vec<u32>>, sizes: [u32; 2]) {
     let mut group_of = vec![0; neighbors.len()];
     for (index, group) in groups.iter().enumerate() {
-        group.iter().for_each(|&point| group_of[point as usize] = index);
+        group
+            .iter()
+            .for_each(|&point| group_of[point as usize] = index);
     }
     for small in 0..groups.len() {
         if groups[small].len() >= sizes[0] as usize {
@@ -166,7 +168,8 @@ fn mend(neighbors: &[Vec<u32>], groups: &mut Vec<Vec<u32>>, sizes: [u32; 2]) {
             let mut homes = region.into_iter();
             for part in parts {
                 let home = homes.next().unwrap_or(groups.len());
-                part.iter().for_each(|&point| group_of[point as usize] = home);
+                part.iter()
+                    .for_each(|&point| group_of[point as usize] = home);
                 if home == groups.len() {
                     groups.push(part);
                 } else {
@@ -197,7 +200,9 @@ fn regions(
     let mut regions: Vec<Vec<usize>> = near.iter().map(|&first| vec![small, first]).collect();
     for &first in &near {
         let others: BTreeSet<usize> = near.union(&beside(first)).copied().collect();
-        let others = others.into_iter().filter(|&other| other != small && other != first);
+        let others = others
+            .into_iter()
+            .filter(|&other| other != small && other != first);
         regions.extend(others.map(|second| vec![small, first, second]));
     }
     regions
@@ -209,7 +214,9 @@ fn labels(groups: &[Vec<u32>], n_points: usize) -> Vec<u32> {
     order.sort_by_key(|group| group.iter().min());
     let mut labels = vec![0; n_points];
     for (label, group) in (0..).zip(order) {
-        group.iter().for_each(|&point| labels[point as usize] = label);
+        group
+            .iter()
+            .for_each(|&point| labels[point as usize] = label);
     }
     labels
 }

@@ -55,7 +55,12 @@ pub fn outward_orientations(points: &PointSet, center: DVec2) -> Result<Vec<DVec
 pub fn angle_orientations(points: &PointSet, angle: &Varying) -> Result<Vec<DVec3>, PupsError> {
     let vector = |&position: &DVec2| {
         let angle = angle.at(position);
-        PupsError::check(angle.is_finite(), "angle of an orientation", angle, "finite")?;
+        PupsError::check(
+            angle.is_finite(),
+            "angle of an orientation",
+            angle,
+            "finite",
+        )?;
         Ok(DVec3::new(libm::cos(angle), libm::sin(angle), 0.0))
     };
     points.positions().iter().map(vector).collect()

@@ -47,7 +47,9 @@ impl ReferenceImage {
         let uv = (domain.wrap(position) - domain.origin) / domain.size;
         let [column, row] =
             [0, 1].map(|axis| (uv[axis] * f64::from(self.intensities.size()[axis])).floor() as i64);
-        let wrap = domain.wrap.map(|wrap| if wrap { Wrap::Repeat } else { Wrap::Clamp });
+        let wrap = domain
+            .wrap
+            .map(|wrap| if wrap { Wrap::Repeat } else { Wrap::Clamp });
         *self.intensities.at(column, row, wrap)
     }
 }

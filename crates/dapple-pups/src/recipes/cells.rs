@@ -76,5 +76,9 @@ pub fn cells(options: &CellsOptions, seed: Seed) -> Result<LabelTexture, PupsErr
     };
     let n_labels = labels.iter().max().map_or(0, |&label| label as usize + 1);
     let values = random_values(n_labels, seed.child("value", 0));
-    LabelTexture::new(options.net.with_graph(&points, &graph, seed)?, labels, values)
+    LabelTexture::new(
+        options.net.with_graph(&points, &graph, seed)?,
+        labels,
+        values,
+    )
 }

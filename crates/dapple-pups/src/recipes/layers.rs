@@ -19,7 +19,10 @@ impl<F> Layers<F> {
     pub(crate) fn geometric(layers: Vec<F>, gain: f64) -> Self {
         let amplitudes = core::iter::successors(Some(1.0), |amplitude| Some(amplitude * gain));
         let amplitudes = amplitudes.take(layers.len());
-        Self::new(layers, amplitudes.map(|amplitude| amplitude as f32).collect())
+        Self::new(
+            layers,
+            amplitudes.map(|amplitude| amplitude as f32).collect(),
+        )
     }
 
     fn new(layers: Vec<F>, amplitudes: Vec<f32>) -> Self {
@@ -72,7 +75,11 @@ impl<F> Layers<F> {
 
     /// The last step: rounding must not leave the range. What is not a number stays so.
     fn finish(&self, sum: f32) -> f32 {
-        if sum > self.maximum { self.maximum } else { sum }
+        if sum > self.maximum {
+            self.maximum
+        } else {
+            sum
+        }
     }
 }
 

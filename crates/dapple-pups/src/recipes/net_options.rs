@@ -64,7 +64,9 @@ impl NetOptions {
         graph: &Graph,
         seed: Seed,
     ) -> Result<Pups, PupsError> {
-        let vectors = self.orientations.vectors(points, seed.child("orientation", 0))?;
+        let vectors = self
+            .orientations
+            .vectors(points, seed.child("orientation", 0))?;
         let orientation = vectors.map(|vectors| Orientation {
             strength: self.strength,
             vectors,

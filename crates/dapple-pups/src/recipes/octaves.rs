@@ -7,9 +7,7 @@
 //! The sum of equation 5 lies between 0 and 1 + ½ + ¼ + ⅛ = 1.875; the paper does not say how it is shown. We divide by
 //! the largest possible value: [`Layers::normalized`].
 
-use crate::{
-    Layers, NetOptions, NoiseOptions, PupsError, PupsErrorKind, Spacing, Texture, noise,
-};
+use crate::{Layers, NetOptions, NoiseOptions, PupsError, PupsErrorKind, Spacing, Texture, noise};
 use dapple_hash::Seed;
 use dapple_points::Domain;
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
@@ -239,7 +237,9 @@ impl Field for Octave {
         };
         self.texture.render(&window, out.reborrow())?;
         if self.folding == Folding::Folded {
-            out.rows_mut().flatten().for_each(|value| *value = fold(*value));
+            out.rows_mut()
+                .flatten()
+                .for_each(|value| *value = fold(*value));
         }
         Ok(())
     }

@@ -3,8 +3,8 @@
 use crate::PupsError;
 use dapple_hash::Seed;
 use dapple_points::{
-    Domain, PointSet, VariablePoissonOptions, poisson_disk, poisson_disk_about, radius_from_density,
-    variable_poisson_disk,
+    Domain, PointSet, VariablePoissonOptions, poisson_disk, poisson_disk_about,
+    radius_from_density, variable_poisson_disk,
 };
 use dapple_raster::{Ramp, Varying};
 
