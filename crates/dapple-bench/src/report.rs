@@ -46,9 +46,9 @@ pub(crate) fn markdown(machine: &Machine, filters: &[String], rows: &[Row]) -> S
 
 /// How to read the tables.
 const EXPLANATION: &str = "\
-Times are of the processor, not of the wall, medians of interleaved runs on one thread; rows on two threads are explained\n\
-in `src/harness.rs`. The ratio is theirs over ours where the bar is a `≥`, and ours over theirs where it is a `≤`. Every\n\
-row also confirms that both sides did the work: see the modules of the groups.";
+Times are of the processor, not of the wall, medians of interleaved runs on one thread; `src/harness/two_threads.rs`
+explains the rows on two. The ratio is theirs over ours where the bar is a `≥`, and ours over theirs where it is a `≤`.
+Every row also confirms that both sides did the work: see the modules of the groups.";
 
 /// One group as a table, and the notes of its rows.
 fn table(rows: &[&Row]) -> String {
@@ -129,18 +129,13 @@ pub(crate) fn three_digits(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// Failure if `check` was asked for and a row does not hold, after saying which.
+/// Failure if `check` was asked for and a row does not hold.
 pub(crate) fn exit_code(rows: &[Row], check: bool) -> ExitCode {
-    if check && failures(rows).next().is_some() {
+    if check && rows.iter().any(|row| !row.holds) {
         ExitCode::FAILURE
     } else {
         ExitCode::SUCCESS
     }
-}
-
-/// The rows below their bar.
-pub(crate) fn failures(rows: &[Row]) -> impl Iterator<Item = &Row> {
-    rows.iter().filter(|row| !row.holds)
 }
 
 /// Prints the page.
