@@ -28,8 +28,8 @@ pub fn radius_from_density(density: &Varying) -> Varying {
 
 /// The radius at which about `n_points` points follow a density that is given up to a factor.
 ///
-/// The density is read at 256 × 256 places. Along sides that do not wrap there is room for some more points; expect
-/// more by about 0.4 for each radius of such a side.
+/// The density is read at 256 × 256 places. Along sides that do not wrap there is room for some more points, about 0.24
+/// for each radius of their length (measured).
 ///
 /// # Errors
 ///

@@ -1,7 +1,7 @@
 //! Cutting the domain into rectangles in which the radius hardly changes.
 //!
 //! A rectangle is halved along its longer side until a few hundred points fit and the radius varies by less than
-//! half. What the radius does in it is read on a lattice of 8 × 8 places. From the differences of neighboring places
+//! half. What the radius does in it is read on a lattice of 10 × 10 places. From the differences of neighboring places
 //! comes the slope; between the places the radius is taken to fall by no more than 1.5 times this slope allows, and,
 //! where an exact result depends on it, to rise with any slope below 1.
 
@@ -13,10 +13,10 @@ use dapple_raster::Varying;
 use glam::DVec2;
 
 /// Places per side of the lattice on which the radius is read.
-const LATTICE: usize = 8;
+const LATTICE: usize = 10;
 
 /// A leaf has at most as many cells along a side.
-const MOST_CELLS: f64 = 24.0;
+const MOST_CELLS: f64 = 32.0;
 
 /// A leaf of no more cells along its sides is left as it is, however much the radius varies in it.
 const FEW_CELLS: f64 = 4.0;

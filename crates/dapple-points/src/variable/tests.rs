@@ -75,7 +75,7 @@ fn emptiest_place(set: &PointSet, radius: &Varying, rule: DiskRule) -> f64 {
         ratios.fold(f64::INFINITY, f64::min)
     };
     let step = domain.size / DVec2::new(96.0, 48.0);
-    let lattice = (0..256 * 128)
+    let lattice = (0..96 * 48)
         .map(|i| domain.origin + step * DVec2::new(f64::from(i % 96), f64::from(i / 96)));
     let mut places: Vec<(f64, DVec2)> = lattice.map(|place| (freedom(place), place)).collect();
     places.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -178,14 +178,14 @@ fn value_stability_variable_poisson_disk() {
         7,
     );
     let sum = set.positions().iter().sum::<DVec2>();
-    assert_eq!(set.len(), 843);
+    assert_eq!(set.len(), 826);
     assert_eq!(
         sum.to_array().map(f64::to_bits),
-        [13880325351842488706, 4666091485260799218]
+        [13880228453613919101, 4665990759175357223]
     );
     assert_eq!(
         set.positions()[100].to_array().map(f64::to_bits),
-        [13836925847568252928, 4622044226266502198]
+        [13836882418797759003, 4621995713490304162]
     );
 }
 
