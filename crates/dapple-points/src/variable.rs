@@ -33,6 +33,10 @@ pub use rule::DiskRule;
 /// are thin, so that it does not matter which of two blocks has its turn first.
 const ROUNDS: [f64; 7] = [0.125, 0.125, 0.25, 0.25, 0.5, 0.5, 1.0];
 
+/// The slope with which a radius may rise, unseen, between the places where it is read, before everything is done over
+/// with more room.
+const RISE: f64 = 0.1;
+
 /// What a Poisson disk set with a varying radius is to be like.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
@@ -100,16 +104,35 @@ pub fn variable_poisson_disk(
     seed: Seed,
 ) -> Result<PointSet, PointsError> {
     let domain = domain.checked()?;
-    let setting = Setting {
-        field: RadiusField {
+    let place = |rise| {
+        let field = RadiusField {
             domain: &domain,
             radius,
-        },
+            rise,
+        };
+        place_points(field, options, seed.child("variable poisson disk", 0))
+    };
+    match place(RISE) {
+        // Rougher than it seemed at first: once more with room for anything below 1.
+        Err(error) if matches!(error.kind(), PointsErrorKind::TooSteep { .. }) => place(1.0),
+        result => result,
+    }
+}
+
+/// The points, for a radius that rises no faster between the places where it is read than along them, or than
+/// `field.rise`.
+fn place_points(
+    field: RadiusField<'_>,
+    options: &VariablePoissonOptions,
+    seed: Seed,
+) -> Result<PointSet, PointsError> {
+    let setting = Setting {
+        field,
         rule: options.rule,
-        seed: seed.child("variable poisson disk", 0),
+        seed,
     };
     let tree = Tree::new(setting.field, options.point_limit)?;
-    check_periods(&domain, &tree)?;
+    check_periods(field.domain, &tree)?;
     let mut blocks = blocks_of(&tree, &setting);
     let colors = colors_of(&blocks);
     let n_colors = colors.len() as u64;
@@ -129,7 +152,7 @@ pub fn variable_poisson_disk(
             Filler::default().fill(block, &setting);
         });
     }
-    collect(domain, blocks)
+    collect(*field.domain, blocks)
 }
 
 /// Refuses domains in which the largest disc meets itself.

@@ -2,8 +2,8 @@
 //!
 //! A rectangle is halved along its longer side until a few hundred points fit and the radius varies by less than
 //! half. What the radius does in it is read on a lattice of 10 × 10 places. From the differences of neighboring places
-//! comes the slope; between the places the radius is taken to fall by no more than 1.5 times this slope allows, and,
-//! where an exact result depends on it, to rise with any slope below 1.
+//! comes the slope; between the places the radius is taken to fall and rise by no more than 1.5 times this slope allows.
+//! That it does not rise any further is checked wherever it is read, since the distances of points depend on it.
 
 use super::density::RSA_DENSITY;
 use super::rule::DiskRule;
@@ -64,7 +64,7 @@ pub(super) struct Radii {
     pub(super) least: f64,
     /// The largest radius that was read.
     pub(super) largest: f64,
-    /// The radius is at most this, if its slope is below 1.
+    /// The radius is at most this; checked wherever it is read later.
     pub(super) most: f64,
     /// The change of the radius per distance, with a margin.
     pub(super) slope: f64,
@@ -99,6 +99,8 @@ enum Below {
 pub(super) struct RadiusField<'a> {
     pub(super) domain: &'a Domain,
     pub(super) radius: &'a Varying,
+    /// The slope with which the radius may rise between the places where it is read, if it is larger than along them.
+    pub(super) rise: f64,
 }
 
 impl RadiusField<'_> {
@@ -163,7 +165,7 @@ impl RadiusField<'_> {
         let radii = Radii {
             least: least - slope * spread,
             largest,
-            most: largest + spread,
+            most: largest + slope.max(self.rise) * spread,
             slope,
             spread,
         };

@@ -366,6 +366,7 @@ fn leaves_cover_the_domain_with_their_radii() {
         RadiusField {
             domain: &domain,
             radius: &radius,
+            rise: 0.1,
         },
         1 << 24,
     )
