@@ -199,7 +199,7 @@ impl PoissonDisk {
         }
         let places = self.places(given)?;
         let mut solution = Solution::new(&self.grid, &self.coverage, level());
-        solution.give(places.into_iter());
+        solution.give(&places);
         solution.fill(seed);
         let mut positions = given.positions().to_vec();
         positions.extend(solution.positions());

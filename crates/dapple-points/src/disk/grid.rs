@@ -37,7 +37,7 @@ const SLACK: f64 = 4e-7;
 const CELL_SLACK: f64 = 1e-6;
 
 /// A cell of the grid by its place in the arrays, margin included: the first cell of the domain is `(HALO, HALO)`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Cell {
     pub(crate) row: u32,
     pub(crate) column: u32,

@@ -22,7 +22,7 @@ pub(crate) const COLUMNS: [f32; LANES] = [-2.0, -1.0, 0.0, 1.0, 2.0, FAR, FAR, F
 
 /// Offsets and ranks of all cells, margin included, row by row.
 ///
-/// An empty cell is at [`FAR`] and has rank 0.
+/// An empty cell is [`FAR`] away along x; its other numbers mean nothing.
 #[derive(Clone, Debug)]
 pub(crate) struct Sheet {
     pub(crate) x: Vec<f32>,
@@ -116,18 +116,18 @@ impl Sheet {
     pub(crate) fn rivals<S: Simd>(&self, simd: S, grid: &Grid, cell: Cell) -> Rivals {
         let middle = grid.index(cell);
         let (x, y, rank) = (self.x[middle], self.y[middle], self.rank[middle]);
-        let mut found = [0; 2];
+        let (mut points, mut proposals) = (0, 0);
         for row in 0..REACH {
             let start = middle + row * grid.stride() - (HALO as usize) * (grid.stride() + 1);
             let place = [x, y - (row as f32 - HALO as f32)];
-            let [points, above] = self.conflicts_in_row(simd, grid, start, place, rank);
-            found[0] |= points;
-            found[1] |= above << (LANES * row);
+            let [found, above] = self.conflicts_in_row(simd, grid, start, place, rank);
+            points |= found;
+            proposals |= (above as u32) << (REACH * row);
         }
-        if found[0] != 0 {
+        if points != 0 {
             return Rivals::Point;
         }
-        Rivals::Proposals(found[1] & !(1 << (LANES as u32 * HALO + HALO)))
+        Rivals::Proposals(proposals & !(1 << (REACH as u32 * HALO + HALO)))
     }
 }
 
@@ -137,18 +137,18 @@ pub(crate) enum Rivals {
     /// A point, and perhaps proposals.
     Point,
     /// The proposals whose rank is no lower, by the cells around; none at all if no bit is set.
-    Proposals(u64),
+    Proposals(u32),
 }
 
 impl Rivals {
     /// Calls `rival` with the cells around `cell` that hold the proposals until it returns true; returns whether it did.
     #[inline(always)]
-    pub(crate) fn any(bits: u64, cell: Cell, mut rival: impl FnMut(Cell) -> bool) -> bool {
+    pub(crate) fn any(bits: u32, cell: Cell, mut rival: impl FnMut(Cell) -> bool) -> bool {
         let mut left = bits;
         while left != 0 {
             let bit = left.trailing_zeros();
             left &= left - 1;
-            let (row, column) = (bit / LANES as u32, bit % LANES as u32);
+            let (row, column) = (bit / REACH as u32, bit % REACH as u32);
             let other = Cell {
                 row: cell.row + row - HALO,
                 column: cell.column + column - HALO,

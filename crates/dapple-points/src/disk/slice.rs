@@ -7,7 +7,7 @@
 use super::gap::GapSearch;
 use super::grid::{Cell, FAR, Grid, HALO, LATTICE, STEP};
 use super::mask::{Coverage, REACH, SIDE, select};
-use super::sheet::{HIGHEST_PROPOSAL, Rivals, Sheet, SheetRows};
+use super::sheet::{HIGHEST_PROPOSAL, POINT, Rivals, Sheet, SheetRows};
 use core::ops::Range;
 use dapple_hash::Seed;
 use fearless_simd::{Level, dispatch, prelude::*};
@@ -17,7 +17,6 @@ use fearless_simd::{Level, dispatch, prelude::*};
 pub(crate) struct Proposal {
     pub(crate) cell: Cell,
     pub(crate) offset: [f32; 2],
-    pub(crate) rank: i32,
     pub(crate) verdict: Verdict,
 }
 
@@ -27,7 +26,7 @@ pub(crate) enum Verdict {
     Accepted,
     Rejected,
     /// It depends on these proposals, which are in conflict with it and of no lower rank.
-    Open(u64),
+    Open(u32),
 }
 
 /// Cells whose darts are drawn together.
@@ -52,7 +51,9 @@ pub(crate) struct Band {
     pub(crate) rows: Range<u32>,
     /// Cells that may still take a point.
     pub(crate) open: Vec<Cell>,
-    pub(crate) proposals: Vec<Proposal>,
+    proposals: Vec<Proposal>,
+    /// The places of the accepted proposals of the latest slice.
+    pub(crate) accepted: Vec<(Cell, [f32; 2])>,
     /// The number of the proposal of a cell; left over from earlier slices where there is none.
     slots: Vec<u32>,
     search: GapSearch,
@@ -79,7 +80,14 @@ impl Band {
     ///
     /// `chances` are those of [`dart_chances`].
     #[inline(always)]
-    pub(crate) fn draw_darts(&mut self, grid: &Grid, masks: &[u64], chances: &Chances, seed: Seed) {
+    pub(crate) fn draw_darts(
+        &mut self,
+        grid: &Grid,
+        mut sheet: SheetRows<'_>,
+        masks: &[u64],
+        chances: &Chances,
+        seed: Seed,
+    ) {
         let first = self.rows.start as usize * grid.stride();
         let mut kept = 0;
         self.proposals.clear();
@@ -106,7 +114,8 @@ impl Band {
                 let cell = self.open[at];
                 let index = grid.index(cell) - first;
                 let offset = dart(masks[index], grid.hash(seed, cell).at(1));
-                self.propose(index, cell, offset, lot);
+                self.propose(index, cell, offset);
+                sheet.put(grid, cell, offset, rank(lot));
             }
         }
         self.open.truncate(kept);
@@ -137,7 +146,7 @@ impl Band {
                 .search
                 .find(simd, grid, sheet, cell, &mut masks[index], hash);
             if let Some(offset) = place {
-                self.propose(index, cell, offset, hash.at(0));
+                self.propose(index, cell, offset);
                 self.open[kept] = cell;
                 kept += 1;
             }
@@ -146,20 +155,20 @@ impl Band {
     }
 
     #[inline(always)]
-    fn propose(&mut self, index: usize, cell: Cell, offset: [f32; 2], lot: u64) {
+    fn propose(&mut self, index: usize, cell: Cell, offset: [f32; 2]) {
         self.slots[index] = self.proposals.len() as u32;
         self.proposals.push(Proposal {
             cell,
             offset,
-            rank: ((lot >> 33) as i32).clamp(1, HIGHEST_PROPOSAL),
             verdict: Verdict::Rejected,
         });
     }
 
-    /// Writes the proposals into the sheet.
-    pub(crate) fn place(&self, grid: &Grid, mut rows: SheetRows<'_>) {
+    /// Writes the proposals of an exact search into the sheet, which the search itself reads.
+    pub(crate) fn place_gaps(&self, grid: &Grid, mut sheet: SheetRows<'_>, seed: Seed) {
         for proposal in &self.proposals {
-            rows.put(grid, proposal.cell, proposal.offset, proposal.rank);
+            let lot = grid.hash(seed, proposal.cell).at(0);
+            sheet.put(grid, proposal.cell, proposal.offset, rank(lot));
         }
     }
 
@@ -175,7 +184,7 @@ impl Band {
         }
     }
 
-    /// Decides which proposals are accepted.
+    /// Decides which proposals are accepted, once they are judged.
     pub(crate) fn settle(&mut self, grid: &Grid, sheet: &Sheet) {
         for slot in 0..self.proposals.len() {
             let Proposal { cell, verdict, .. } = self.proposals[slot];
@@ -183,6 +192,15 @@ impl Band {
                 self.is_accepted(grid, sheet, cell);
             }
         }
+        // Every proposal is written, and stays if the next one does not go to the same slot: no branch is guessed.
+        self.accepted
+            .resize(self.proposals.len() + 1, (Cell::default(), [0.0; 2]));
+        let mut n_accepted = 0;
+        for proposal in &self.proposals {
+            self.accepted[n_accepted] = (proposal.cell, proposal.offset);
+            n_accepted += usize::from(proposal.verdict == Verdict::Accepted);
+        }
+        self.accepted.truncate(n_accepted);
     }
 
     /// Whether the proposal of a cell is accepted.
@@ -223,15 +241,22 @@ impl Band {
     }
 
     /// Makes points of the accepted proposals and takes the others out of the sheet.
-    pub(crate) fn keep_accepted(&self, grid: &Grid, mut rows: SheetRows<'_>, rank: i32) {
+    pub(crate) fn keep_accepted(&self, grid: &Grid, mut sheet: SheetRows<'_>) {
         for proposal in &self.proposals {
-            if proposal.verdict == Verdict::Accepted {
-                rows.put(grid, proposal.cell, proposal.offset, rank);
+            let x = if proposal.verdict == Verdict::Accepted {
+                proposal.offset[0]
             } else {
-                rows.put(grid, proposal.cell, [FAR; 2], 0);
-            }
+                FAR
+            };
+            sheet.put(grid, proposal.cell, [x, proposal.offset[1]], POINT);
         }
     }
+}
+
+/// The rank of a proposal with the given random bits, of which the lower half has served already.
+#[inline(always)]
+fn rank(lot: u64) -> i32 {
+    ((lot >> 33) as i32).min(HIGHEST_PROPOSAL)
 }
 
 /// A random place in the set subcells of `mask`.
@@ -249,36 +274,33 @@ fn dart(mask: u64, bits: u64) -> [f32; 2] {
     ]
 }
 
-/// Clears in `masks`, those of the rows `rows`, what the accepted proposals of a band cover.
+/// Clears in `masks`, those of the rows `rows`, what the points accepted in a band cover.
 #[inline(always)]
 pub(crate) fn cover(
     grid: &Grid,
     coverage: &Coverage,
     masks: &mut [u64],
     rows: &Range<u32>,
-    band: &Band,
+    accepted: &[(Cell, [f32; 2])],
 ) {
-    let accepted = band
-        .proposals
-        .iter()
-        .filter(|proposal| proposal.verdict == Verdict::Accepted);
-    for proposal in accepted {
-        let kept = coverage.kept(proposal.offset);
+    for &(cell, offset) in accepted {
+        let kept = coverage.kept(offset);
         for (row, kept) in (0..).zip(kept) {
-            let row = grid.original_index(1, proposal.cell.row + row - HALO);
+            let row = grid.original_index(1, cell.row + row - HALO);
             if rows.contains(&row) {
-                let row =
-                    &mut masks[(row - rows.start) as usize * grid.stride()..][..grid.stride()];
-                cover_row(grid, row, proposal.cell.column, kept);
+                let start = (row - rows.start) as usize * grid.stride();
+                cover_row(
+                    grid,
+                    &mut masks[start..start + grid.stride()],
+                    cell.column,
+                    kept,
+                );
             }
         }
-        if rows.contains(&proposal.cell.row) {
+        if rows.contains(&cell.row) {
             // The table leaves the edges of the cell, but the cell is no wider than the disc.
-            let row = proposal.cell.row - rows.start;
-            masks[grid.index(Cell {
-                row,
-                ..proposal.cell
-            })] = 0;
+            let row = cell.row - rows.start;
+            masks[grid.index(Cell { row, ..cell })] = 0;
         }
     }
 }

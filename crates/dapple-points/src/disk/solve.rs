@@ -3,10 +3,10 @@
 //! Each step of a slice runs over bands of rows, which read what the step before has written and write only their own
 //! rows, so the number of threads changes nothing.
 
-use super::grid::{Cell, Grid, HALO};
+use super::grid::{Cell, FAR, Grid, HALO};
 use super::mask::Coverage;
 use super::sheet::{GIVEN, POINT, Sheet, domain_rows};
-use super::slice::{Band, Proposal, Verdict, cover, dart_chances};
+use super::slice::{Band, cover, dart_chances};
 use dapple_hash::Seed;
 use fearless_simd::{Level, dispatch};
 use glam::DVec2;
@@ -15,7 +15,7 @@ use glam::DVec2;
 const BAND_ROWS: u32 = 128;
 
 /// For how long each slice throws darts: the mean number of darts at a cell.
-const DARTS: [f64; 8] = [0.5, 0.7, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
+const DARTS: [f64; 8] = [0.3, 0.4, 0.6, 1.0, 2.0, 4.0, 8.0, 16.0];
 
 /// A set in the making.
 #[derive(Debug)]
@@ -47,17 +47,21 @@ impl<'a> Solution<'a> {
     }
 
     /// Takes given points, each in a cell of its own.
-    pub(crate) fn give(&mut self, places: impl Iterator<Item = (Cell, [f32; 2])>) {
-        for (cell, offset) in places {
+    pub(crate) fn give(&mut self, places: &[(Cell, [f32; 2])]) {
+        for &(cell, offset) in places {
             let band = (cell.row - HALO) / BAND_ROWS;
-            self.bands[band as usize].proposals.push(Proposal {
-                cell,
-                offset,
-                rank: GIVEN,
-                verdict: Verdict::Accepted,
-            });
+            self.bands[band as usize].accepted.push((cell, offset));
         }
-        self.keep_accepted(GIVEN);
+        for (band, mut sheet) in self
+            .bands
+            .iter()
+            .zip(self.sheet.bands(self.grid, BAND_ROWS))
+        {
+            for &(cell, offset) in &band.accepted {
+                sheet.put(self.grid, cell, offset, GIVEN);
+            }
+        }
+        self.cover();
     }
 
     /// Adds points until none fits.
@@ -65,11 +69,13 @@ impl<'a> Solution<'a> {
         for (slice, mean) in (0..).zip(DARTS) {
             self.throw_darts(mean, seed.child("darts", slice));
             self.settle();
+            self.cover();
         }
         let mut round = 0;
         while self.bands.iter().any(|band| !band.open.is_empty()) {
             self.search_gaps(seed.child("gaps", round));
             self.settle();
+            self.cover();
             round += 1;
         }
     }
@@ -81,7 +87,7 @@ impl<'a> Solution<'a> {
         let mut positions = Vec::with_capacity(rows.len() * columns.len() * 2 / 5);
         for cell in rows.flat_map(|row| columns.clone().map(move |column| Cell { row, column })) {
             let index = self.grid.index(cell);
-            if self.sheet.rank[index] == POINT {
+            if self.sheet.x[index] < FAR && self.sheet.rank[index] == POINT {
                 let offset = [self.sheet.x[index], self.sheet.y[index]];
                 positions.push(self.grid.position(cell, offset));
             }
@@ -93,55 +99,53 @@ impl<'a> Solution<'a> {
     fn throw_darts(&mut self, mean: f64, seed: Seed) {
         let (grid, level) = (self.grid, self.level);
         let chances = dart_chances(mean);
-        let band = BAND_ROWS as usize * grid.stride();
-        let masks = self.masks[domain_rows(grid)].chunks(band);
-        for_each(self.bands.iter_mut().zip(masks), |(band, masks)| {
-            dispatch!(level, _simd => band.draw_darts(grid, masks, &chances, seed));
+        let masks = self.masks[domain_rows(grid)].chunks(BAND_ROWS as usize * grid.stride());
+        let rows = self.sheet.bands(grid, BAND_ROWS).zip(masks);
+        for_each(self.bands.iter_mut().zip(rows), |(band, (sheet, masks))| {
+            dispatch!(level, _simd => band.draw_darts(grid, sheet, masks, &chances, seed));
         });
     }
 
     /// Lets open cells propose random free places.
     fn search_gaps(&mut self, seed: Seed) {
         let (grid, sheet, level) = (self.grid, &self.sheet, self.level);
-        let band = BAND_ROWS as usize * grid.stride();
-        let masks = self.masks[domain_rows(grid)].chunks_mut(band);
+        let masks = self.masks[domain_rows(grid)].chunks_mut(BAND_ROWS as usize * grid.stride());
         for_each(self.bands.iter_mut().zip(masks), |(band, masks)| {
             dispatch!(level, simd => band.draw_gaps(simd, grid, sheet, masks, seed));
         });
+        let rows = self.sheet.bands(grid, BAND_ROWS);
+        for_each(self.bands.iter().zip(rows), |(band, sheet)| {
+            band.place_gaps(grid, sheet, seed);
+        });
     }
 
-    /// Settles the proposals.
+    /// Settles the proposals and makes points of those that are accepted.
     fn settle(&mut self) {
         let (grid, level) = (self.grid, self.level);
-        let rows = self.sheet.bands(grid, BAND_ROWS);
-        for_each(self.bands.iter().zip(rows), |(band, rows)| {
-            band.place(grid, rows)
-        });
         self.sheet.wrap_rows(grid);
         let sheet = &self.sheet;
         for_each(self.bands.iter_mut(), |band| {
             dispatch!(level, simd => band.judge(simd, grid, sheet));
             band.settle(grid, sheet);
         });
-        self.keep_accepted(POINT);
-    }
-
-    fn keep_accepted(&mut self, rank: i32) {
-        let grid = self.grid;
         let rows = self.sheet.bands(grid, BAND_ROWS);
-        for_each(self.bands.iter().zip(rows), |(band, rows)| {
-            band.keep_accepted(grid, rows, rank);
+        for_each(self.bands.iter().zip(rows), |(band, sheet)| {
+            band.keep_accepted(grid, sheet);
         });
         self.sheet.wrap_rows(grid);
-        let (bands, coverage, level) = (&self.bands, self.coverage, self.level);
-        let band = BAND_ROWS as usize * grid.stride();
-        let masks = self.masks[domain_rows(grid)].chunks_mut(band);
+    }
+
+    /// Clears from the masks what the newest points cover.
+    fn cover(&mut self) {
+        let (grid, coverage, level) = (self.grid, self.coverage, self.level);
+        let bands = &self.bands;
+        let masks = self.masks[domain_rows(grid)].chunks_mut(BAND_ROWS as usize * grid.stride());
         for_each(
             bands.iter().enumerate().zip(masks),
             |((own, band), masks)| {
                 for neighbor in neighbors(own, bands.len()) {
-                    let neighbor = &bands[neighbor];
-                    dispatch!(level, _simd => cover(grid, coverage, masks, &band.rows, neighbor));
+                    let accepted = &bands[neighbor].accepted;
+                    dispatch!(level, _simd => cover(grid, coverage, masks, &band.rows, accepted));
                 }
             },
         );
