@@ -6,10 +6,20 @@ mod fig_02;
 mod fig_03;
 mod fig_04;
 mod fig_05;
+mod fig_06;
+mod fig_07;
+mod fig_08;
+mod fig_09a;
+mod fig_09b;
+mod fig_11;
+mod fig_15;
+mod fig_17;
+mod fig_extra_weights;
 mod weight;
 
-use crate::Paper;
-use dapple_pups::hash::{Seed, hash1, unit_f32};
+use crate::{Panel, Paper};
+use dapple_points::Domain;
+use dapple_raster::{Field, Raster, RasterError, Window};
 
 /// The paper, with its figures in its own order.
 pub(super) const PAPER: Paper = Paper {
@@ -23,12 +33,50 @@ pub(super) const PAPER: Paper = Paper {
         fig_03::FIGURE,
         fig_04::FIGURE,
         fig_05::FIGURE,
+        fig_06::FIGURE,
+        fig_07::FIGURE,
+        fig_08::FIGURE,
+        fig_09a::FIGURE,
+        fig_09b::FIGURE,
+        fig_11::FIGURE,
+        fig_15::FIGURE,
+        fig_17::FIGURE,
+        fig_extra_weights::FIGURE,
     ],
 };
 
-/// A random value in `[0, 1)` for each of `n` points.
-fn random_values(n: usize, seed: Seed) -> Vec<f32> {
-    let seed = seed.child("value", 0);
-    let value = |point| unit_f32((hash1(seed, [point], 0) >> 32) as u32);
-    (0..n as i64).map(value).collect()
+/// A texture on the paper's square `[-1, 1]²`, in shades of gray.
+fn picture(label: impl Into<String>, texture: &dyn Field, size: u32) -> Result<Panel, RasterError> {
+    Ok(Panel::gray(label, texture.to_raster(&square(size)?)?))
+}
+
+/// The same for a texture of labels, whose hard edges are smoothed: every pixel is the mean of 4 × 4 samples.
+fn picture_of_labels(
+    label: impl Into<String>,
+    texture: &dyn Field,
+    size: u32,
+) -> Result<Panel, RasterError> {
+    const SIDE: u32 = 4;
+    let fine = texture.to_raster(&square(size.saturating_mul(SIDE))?)?;
+    let pixel = |column: u32, row: u32| {
+        let rows = row * SIDE..(row + 1) * SIDE;
+        let columns = (column * SIDE) as usize..((column + 1) * SIDE) as usize;
+        let samples = rows.flat_map(|row| &fine.row(row)[columns.clone()]);
+        samples.sum::<f32>() / (SIDE * SIDE) as f32
+    };
+    Ok(Panel::gray(label, Raster::from_fn([size; 2], pixel)?))
+}
+
+/// The pixels of the paper's square.
+fn square(size: u32) -> Result<Window, RasterError> {
+    let square = Domain::paper_torus();
+    Window::new(square.origin, square.size, [size; 2])
+}
+
+/// The paper's square, joined from top to bottom but not from left to right, for what changes along x.
+fn cylinder() -> Domain {
+    Domain {
+        wrap: [false, true],
+        ..Domain::paper_torus()
+    }
 }

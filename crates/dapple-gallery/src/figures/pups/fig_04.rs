@@ -1,12 +1,11 @@
 //! The same point set with (a) normal axis length and (b) axes twice as long.
 
-use super::random_values;
+use super::picture;
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_graph::delaunay;
 use dapple_points::{Domain, poisson_disk};
-use dapple_pups::{Pups, PupsOptions, hash::Seed};
-use dapple_raster::{Field, Window};
+use dapple_pups::{Pups, PupsOptions, hash::Seed, random_values};
 
 pub(super) const FIGURE: Figure = Figure {
     number: "4a, 4b",
@@ -20,12 +19,10 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let domain = Domain::paper_torus();
-    let points = poisson_disk(domain, 0.2, Seed(4))?;
+    let points = poisson_disk(Domain::paper_torus(), 0.2, Seed(4))?;
     let graph = delaunay(&points)?;
     let values = random_values(points.len(), Seed(4));
 
-    let window = Window::new(domain.origin, domain.size, [size; 2])?;
     let mut panels = Vec::new();
     for (label, axis_scale) in [("a", 1.0), ("b", 2.0)] {
         let options = PupsOptions {
@@ -33,7 +30,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
             ..PupsOptions::default()
         };
         let texture = Pups::new(&points, &graph, options)?.texture(values.clone())?;
-        panels.push(Panel::gray(label, texture.to_raster(&window)?));
+        panels.push(picture(label, &texture, size)?);
     }
     Ok(panels)
 }

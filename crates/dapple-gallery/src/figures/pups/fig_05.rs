@@ -6,9 +6,9 @@ use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_graph::delaunay;
 use dapple_points::{Domain, poisson_disk};
-use dapple_pups::{Orientation, Pups, PupsOptions, hash::Seed};
+use dapple_pups::{Orientation, Pups, PupsOptions, hash::Seed, outward_orientations};
 use dapple_raster::Window;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 pub(super) const FIGURE: Figure = Figure {
     number: "5a–c",
@@ -22,7 +22,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let points = poisson_disk(domain, 0.3, Seed(5))?;
     let graph = delaunay(&points)?;
     let shades: Vec<f32> = (0..points.len() as u32).map(label_gray).collect();
-    let outward = points.positions().iter().map(|at| at.extend(0.0)).collect();
+    let outward = outward_orientations(&points, DVec2::ZERO)?;
 
     let window = Window::new(domain.origin, domain.size, [size; 2])?;
     let mut panels = Vec::new();
