@@ -51,6 +51,8 @@ pub enum PupsErrorKind {
         /// The axis: 0 for x, 1 for y.
         axis: usize,
     },
+    /// The spacing of points has to be the same everywhere, and is not.
+    SpacingVaries,
     /// The points could not be made.
     Points(PointsError),
     /// The graph could not be made.
@@ -145,6 +147,9 @@ impl fmt::Display for PupsError {
                     f,
                     "axis {axis} of the domain must wrap around, but does not"
                 )
+            }
+            PupsErrorKind::SpacingVaries => {
+                f.write_str("the spacing of nested points must be the same everywhere")
             }
             PupsErrorKind::Points(error) => error.fmt(f),
             PupsErrorKind::Graph(error) => error.fmt(f),

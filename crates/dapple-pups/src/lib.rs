@@ -15,6 +15,7 @@
 #![forbid(unsafe_code)]
 
 mod assign;
+mod bins;
 mod error;
 mod gradient;
 mod line;
@@ -48,9 +49,12 @@ pub use glam;
 pub use options::{Orientation, PupsOptions};
 pub use pups::Pups;
 pub use recipes::{
-    CellsOptions, CowOptions, Folding, LabelTexture, Layers, NetOptions, NoiseOptions, Octave,
-    OctaveSource, OctavesOptions, Spacing, VectorLabelTexture, cells, cow, noise, octaves,
-    turbulence,
+    CellsOptions, CellularNoiseOptions, ColorNoiseOptions, CowOptions, Folding, IteratedOptions,
+    IterationPoints, LabelRampOptions, LabelTexture, Layers, NetOptions, NoiseOptions, Octave,
+    OctaveSource, OctavesOptions, ProgressionOptions, ReferenceOptions, SpaceGiraffeOptions,
+    Spacing, Spots, VectorLabelTexture, cells, cellular_noise, color_noise, cow, cow_progression,
+    giraffe_progression, iterated_reference, label_ramp, noise, octaves, reference_texture,
+    space_giraffe, turbulence,
 };
 pub use texture::{Texture, VectorTexture};
 pub use weight::AxialWeight;

@@ -8,22 +8,37 @@
 //! Each can progress: the spacing of the points and the probability of a label may depend on the position. A
 //! progression from left to right belongs on a domain that does not wrap in x.
 
-mod cells;
-mod cow;
 mod label_texture;
 mod layers;
 mod net_options;
-mod noise;
-mod octaves;
 mod spacing;
 
+mod cells;
+mod cellular_noise;
+mod color_noise;
+mod cow;
+mod iterated;
+mod noise;
+mod octaves;
+mod progression;
+mod reference;
+mod space_giraffe;
+
 pub use cells::{CellsOptions, cells};
+pub use cellular_noise::{CellularNoiseOptions, cellular_noise};
+pub use color_noise::{ColorNoiseOptions, color_noise};
 pub use cow::{CowOptions, cow};
+pub use iterated::{IteratedOptions, IterationPoints, iterated_reference};
 pub use label_texture::{LabelTexture, VectorLabelTexture};
 pub use layers::Layers;
 pub use net_options::NetOptions;
 pub use noise::{NoiseOptions, noise};
 pub use octaves::{Folding, Octave, OctaveSource, OctavesOptions, octaves, turbulence};
+pub use progression::{
+    LabelRampOptions, ProgressionOptions, cow_progression, giraffe_progression, label_ramp,
+};
+pub use reference::{ReferenceOptions, reference_texture};
+pub use space_giraffe::{SpaceGiraffeOptions, Spots, space_giraffe};
 pub use spacing::Spacing;
 
 #[cfg(test)]

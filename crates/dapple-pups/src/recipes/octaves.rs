@@ -155,7 +155,12 @@ impl OctavesOptions {
     }
 
     fn check(&self) -> Result<(), PupsError> {
-        check_series("octaves", self.octaves, self.lacunarity, self.gain)?;
+        check_series(
+            "number of octaves",
+            self.octaves,
+            self.lacunarity,
+            self.gain,
+        )?;
         if self.source == OctaveSource::Rescaled {
             let power = [2.0, 4.0, 8.0, 16.0].contains(&self.lacunarity);
             PupsError::check(

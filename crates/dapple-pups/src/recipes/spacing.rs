@@ -4,7 +4,7 @@ use crate::PupsError;
 use dapple_hash::Seed;
 use dapple_points::{
     Domain, PointSet, VariablePoissonOptions, poisson_disk, poisson_disk_about,
-    radius_from_density, variable_poisson_disk,
+    poisson_disk_radius, radius_from_density, variable_poisson_disk,
 };
 use dapple_raster::{Ramp, Varying};
 
@@ -61,6 +61,19 @@ impl Spacing {
                 let options = VariablePoissonOptions::default();
                 variable_poisson_disk(domain, &radius, &options, seed)?
             }
+        })
+    }
+
+    /// The smallest distance, if it is the same everywhere.
+    pub(crate) fn uniform_distance(&self, domain: Domain) -> Result<Option<f64>, PupsError> {
+        let distance = match self {
+            Self::Distance(distance) => distance.clone(),
+            Self::Density(density) => radius_from_density(density),
+            Self::Count(n_points) => poisson_disk_radius(domain, *n_points)?.into(),
+        };
+        Ok(match distance {
+            Varying::Constant(distance) => Some(distance),
+            _ => None,
         })
     }
 

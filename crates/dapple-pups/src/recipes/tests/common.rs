@@ -1,6 +1,7 @@
 //! What all recipes promise: they repeat, windows are crops, doors agree, threads do not matter.
 
 use crate::recipes::*;
+use crate::{ReferenceImage, Texture};
 use dapple_hash::Seed;
 use dapple_raster::{Field, Raster, Window};
 use glam::DVec2;
@@ -18,6 +19,17 @@ pub(super) fn digest(raster: &Raster<f32>) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |state: u64, value| {
             (state ^ u64::from(value.to_bits())).wrapping_mul(0x0100_0000_01b3)
         })
+}
+
+/// A gray ramp from top to bottom and back.
+fn reference() -> ReferenceImage {
+    let triangle = |row: u32| row.min(31 - row) as f32 / 15.0;
+    ReferenceImage::new(Raster::from_fn([1, 32], |_, row| triangle(row)).unwrap()).unwrap()
+}
+
+fn last_iteration(seed: Seed) -> Texture {
+    let textures = iterated_reference(&reference(), &IteratedOptions::default(), seed);
+    textures.unwrap().remove(3)
 }
 
 /// Every recipe on its default torus, as a field.
@@ -52,6 +64,19 @@ fn recipes(seed: Seed) -> Vec<(&'static str, Box<dyn Field>)> {
             Box::new(cells(&CellsOptions::of_three_or_four(), seed).unwrap()),
         ),
         ("cow", Box::new(cow(&CowOptions::default(), seed).unwrap())),
+        (
+            "cellular noise",
+            Box::new(cellular_noise(&CellularNoiseOptions::default(), seed).unwrap()),
+        ),
+        (
+            "space giraffe",
+            Box::new(space_giraffe(&SpaceGiraffeOptions::default(), seed).unwrap()),
+        ),
+        (
+            "reference",
+            Box::new(reference_texture(&reference(), &ReferenceOptions::default(), seed).unwrap()),
+        ),
+        ("iterated reference", Box::new(last_iteration(seed))),
     ]
 }
 
@@ -133,5 +158,20 @@ fn value_stability_recipes() {
         (name, digest(&field.to_raster(&window).unwrap()))
     };
     let digests: Vec<_> = recipes(Seed(7)).into_iter().map(digest_of).collect();
-    assert_eq!(digests, [("", 0)]);
+    assert_eq!(
+        digests,
+        [
+            ("noise", 3568823462909858107),
+            ("octaves", 11706274319335040841),
+            ("rescaled octaves", 5112517512299127254),
+            ("turbulence", 11831666416403925966),
+            ("cells", 4851137778972051317),
+            ("cells of three or four", 17659775131150400474),
+            ("cow", 2292993172515091237),
+            ("cellular noise", 11005285225756051155),
+            ("space giraffe", 10427205954245784357),
+            ("reference", 1735835802462090021),
+            ("iterated reference", 274647018259932788)
+        ]
+    );
 }

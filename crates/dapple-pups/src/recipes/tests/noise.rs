@@ -1,6 +1,6 @@
 //! Noise, its octaves, folding and turbulence.
 
-use super::common::{digest, paper_window};
+use super::common::paper_window;
 use crate::recipes::*;
 use crate::{PupsErrorKind, points::Domain};
 use dapple_hash::Seed;

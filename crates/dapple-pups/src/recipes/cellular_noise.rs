@@ -1,0 +1,88 @@
+//! Cellular noise in layers (section 3.2, figure 10): cells of several sizes, summed.
+//!
+//! "We created 4 layers of cellular textures of increasing density and summed them; higher densities have lower
+//! amplitude." The paper does not give the numbers; by default we take those of equation 5.
+
+use super::octaves::check_series;
+use crate::{CellsOptions, LabelTexture, Layers, NetOptions, PupsError, Spacing, cells};
+use dapple_hash::Seed;
+use dapple_points::Domain;
+
+/// What [`cellular_noise`] is to be like.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct CellularNoiseOptions {
+    /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    pub domain: Domain,
+    /// How far apart the control points of the first layer are; at least 0.4 by default, in units of the domain.
+    pub spacing: Spacing,
+    /// How many layers there are, 1 to 16; 4 by default.
+    pub layers: u32,
+    /// By how much the spacing is divided from layer to layer, above 1 and at most 16; 2 by default.
+    pub lacunarity: f64,
+    /// The amplitude of a layer as a multiple of the one before, above 0 and at most 1; ½ by default.
+    pub gain: f64,
+    /// How many control points a cell has, from the least to the most, 1 to 16; `[1, 1]` by default.
+    pub points_per_cell: [u32; 2],
+    /// How the control points are weighted; with random orientations by default.
+    pub net: NetOptions,
+}
+
+impl Default for CellularNoiseOptions {
+    fn default() -> Self {
+        Self {
+            domain: Domain::paper_torus(),
+            spacing: Spacing::from(0.4),
+            layers: 4,
+            lacunarity: 2.0,
+            gain: 0.5,
+            points_per_cell: [1, 1],
+            net: NetOptions::randomly_oriented(),
+        }
+    }
+}
+
+/// Layers of [`cells`] and, as a field, their sum: between 0 and 1.875 by default.
+///
+/// # Errors
+///
+/// As [`cells`]; [`Range`](crate::PupsErrorKind::Range) for options outside of their ranges.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{CellularNoiseOptions, cellular_noise, glam::DVec2, hash::Seed, raster::Field};
+///
+/// let texture = cellular_noise(&CellularNoiseOptions::default(), Seed(7))?.normalized();
+/// assert!((0.0..=1.0).contains(&texture.sample(DVec2::new(0.25, -0.5))));
+/// # Ok::<(), dapple_pups::PupsError>(())
+/// ```
+pub fn cellular_noise(
+    options: &CellularNoiseOptions,
+    seed: Seed,
+) -> Result<Layers<LabelTexture>, PupsError> {
+    check_series(
+        "number of layers",
+        options.layers,
+        options.lacunarity,
+        options.gain,
+    )?;
+    let mut layers = Vec::with_capacity(options.layers as usize);
+    let mut spacing = options.spacing.clone();
+    for layer in 0..u64::from(options.layers) {
+        let finer = spacing.finer(options.lacunarity);
+        let options = CellsOptions {
+            domain: options.domain,
+            spacing,
+            points_per_cell: options.points_per_cell,
+            net: options.net.clone(),
+        };
+        layers.push(cells(&options, seed.child("layer", layer))?);
+        spacing = finer;
+    }
+    Ok(Layers::geometric(layers, options.gain))
+}

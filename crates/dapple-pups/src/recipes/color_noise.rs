@@ -1,0 +1,70 @@
+//! Colors of a palette at the control points, interpolated. Beyond the paper, which calls color "a more challenging
+//! problem" and leaves it there; its values may be "a vector color value" all the same.
+//!
+//! Colors are interpolated as they are given: give linear RGB, or any three numbers that may be mixed.
+
+use crate::{NetOptions, PupsError, Spacing, VectorTexture, palette_values, random_labels};
+use dapple_hash::Seed;
+use dapple_points::Domain;
+
+/// What [`color_noise`] is to be like.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct ColorNoiseOptions {
+    /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    pub domain: Domain,
+    /// How far apart the control points are; at least 0.1 by default, in units of the domain.
+    pub spacing: Spacing,
+    /// The colors, each with the same chance, in linear RGB from 0 to 1; an orange, a cream, a teal and a dark blue by
+    /// default.
+    pub palette: Vec<[f32; 3]>,
+    /// How the control points are weighted.
+    pub net: NetOptions,
+}
+
+impl Default for ColorNoiseOptions {
+    fn default() -> Self {
+        Self {
+            domain: Domain::paper_torus(),
+            spacing: Spacing::from(0.1),
+            palette: vec![
+                [0.75, 0.2, 0.03],
+                [0.9, 0.8, 0.55],
+                [0.05, 0.3, 0.3],
+                [0.01, 0.03, 0.15],
+            ],
+            net: NetOptions::default(),
+        }
+    }
+}
+
+/// A texture of random colors of a palette, each between the smallest and the largest of them in every channel.
+///
+/// # Errors
+///
+/// [`Points`](crate::PupsErrorKind::Points) for points that cannot be placed, [`Range`](crate::PupsErrorKind::Range)
+/// for an empty palette or a color that is not finite, and what
+/// [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{ColorNoiseOptions, color_noise, glam::DVec2, hash::Seed};
+///
+/// let [red, _, blue] = color_noise(&ColorNoiseOptions::default(), Seed(7))?.sample(DVec2::ZERO);
+/// assert!((0.0..=1.0).contains(&red) && (0.0..=1.0).contains(&blue));
+/// # Ok::<(), dapple_pups::PupsError>(())
+/// ```
+pub fn color_noise(options: &ColorNoiseOptions, seed: Seed) -> Result<VectorTexture<3>, PupsError> {
+    let points = options
+        .spacing
+        .points(options.domain, seed.child("points", 0))?;
+    let n_colors = u32::try_from(options.palette.len()).unwrap_or(u32::MAX);
+    let labels = random_labels(points.len(), n_colors, seed.child("label", 0))?;
+    let colors = palette_values(&labels, &options.palette)?;
+    options.net.pups(&points, seed)?.vector_texture(colors)
+}

@@ -1,0 +1,137 @@
+//! Iterated reference image (section 3.2, figure 14): boundaries that become fractal.
+//!
+//! In each iteration there are twice as many control points, each of which is white with a probability that is the
+//! intensity of the picture before at its place: the reference image at first, then the last iteration's interpolated
+//! texture. Away from boundaries that is 0 or 1 and nothing changes; near them the choice is random again and again, in
+//! ever smaller steps.
+//!
+//! The paper does not say whether an iteration's points contain the last's; both are here. If they do, they keep their
+//! label (with an axis scale of at most 1, a texture has at a control point exactly that point's value).
+
+use crate::{
+    NetOptions, PupsError, PupsErrorKind, ReferenceImage, Spacing, Texture, field_values,
+    random_values,
+};
+use core::f64::consts::SQRT_2;
+use dapple_hash::Seed;
+use dapple_points::{Domain, PointSet, nested_poisson_disk};
+
+/// What [`iterated_reference`] is to be like.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct IteratedOptions {
+    /// Where the control points lie, which the image covers; the paper's torus `[-1, 1]²` by default.
+    pub domain: Domain,
+    /// How far apart the control points of the first iteration are; at least 0.1 by default, in units of the domain.
+    pub spacing: Spacing,
+    /// How many iterations there are, 1 to 16; 4 by default.
+    pub iterations: u32,
+    /// Whether an iteration's points contain the last's; they do not by default.
+    pub points: IterationPoints,
+    /// How the control points are weighted.
+    pub net: NetOptions,
+}
+
+/// Whether the points of an iteration contain those of the last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum IterationPoints {
+    /// Each iteration has points of its own.
+    #[default]
+    Fresh,
+    /// Each iteration has the last's points, and as many again between them. Needs the same spacing everywhere.
+    Nested,
+}
+
+impl Default for IteratedOptions {
+    fn default() -> Self {
+        Self {
+            domain: Domain::paper_torus(),
+            spacing: Spacing::from(0.1),
+            iterations: 4,
+            points: IterationPoints::Fresh,
+            net: NetOptions::default(),
+        }
+    }
+}
+
+/// The textures of all iterations, each with values in `[0, 1]` but for rounding, and mostly 0 or 1.
+///
+/// # Errors
+///
+/// [`Points`](PupsErrorKind::Points) for points that cannot be placed, [`Range`](PupsErrorKind::Range) for a number of
+/// iterations outside of its range, [`SpacingVaries`](PupsErrorKind::SpacingVaries) for nested points of varying
+/// spacing, and what [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{IteratedOptions, ReferenceImage, hash::Seed, iterated_reference, raster::Raster};
+///
+/// let image = ReferenceImage::new(Raster::from_vec([2, 1], vec![0.0, 1.0])?)?;
+/// let iterations = iterated_reference(&image, &IteratedOptions::default(), Seed(7))?;
+/// let n_points = |iteration: usize| iterations[iteration].pups().n_points();
+/// assert!(n_points(3) > 7 * n_points(0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn iterated_reference(
+    image: &ReferenceImage,
+    options: &IteratedOptions,
+    seed: Seed,
+) -> Result<Vec<Texture>, PupsError> {
+    let iterations = f64::from(options.iterations);
+    let holds = (1.0..=16.0).contains(&iterations);
+    PupsError::check(holds, "number of iterations", iterations, "1 to 16")?;
+    let mut textures: Vec<Texture> = Vec::new();
+    for (iteration, points) in (0..).zip(options.point_sets(seed)?) {
+        let seed = seed.child("iteration", iteration);
+        let intensities = match textures.last() {
+            Some(texture) => field_values(&points, texture)?,
+            None => first_intensities(image, &points),
+        };
+        let random = random_values(points.len(), seed.child("label", 0));
+        let white = |(random, intensity)| if random < intensity { 1.0 } else { 0.0 };
+        let values = random.into_iter().zip(intensities).map(white).collect();
+        textures.push(options.net.pups(&points, seed)?.texture(values)?);
+    }
+    Ok(textures)
+}
+
+fn first_intensities(image: &ReferenceImage, points: &PointSet) -> Vec<f32> {
+    let intensity = |&position| image.intensity(points.domain(), position);
+    points.positions().iter().map(intensity).collect()
+}
+
+impl IteratedOptions {
+    /// The points of each iteration: twice as many as before, so closer by the square root of two.
+    fn point_sets(&self, seed: Seed) -> Result<Vec<PointSet>, PupsError> {
+        let factors = core::iter::successors(Some(1.0), |factor| Some(factor * SQRT_2));
+        let factors = factors.take(self.iterations as usize);
+        if self.points == IterationPoints::Fresh {
+            let points = |(iteration, factor)| {
+                let seed = seed.child("iteration", iteration).child("points", 0);
+                self.spacing.finer(factor).points(self.domain, seed)
+            };
+            return (0..).zip(factors).map(points).collect();
+        }
+        let Some(distance) = self.spacing.uniform_distance(self.domain)? else {
+            return Err(PupsError::new(PupsErrorKind::SpacingVaries));
+        };
+        let radii: Vec<f64> = factors.map(|factor| distance / factor).collect();
+        let nested = nested_poisson_disk(self.domain, &radii, seed.child("points", 0))?;
+        let positions = nested.points().positions();
+        let level = |&length: &usize| {
+            let positions = positions[..length].to_vec();
+            Ok(PointSet::new(self.domain, positions)?)
+        };
+        nested.lengths().iter().map(level).collect()
+    }
+}

@@ -1,0 +1,157 @@
+//! Progressions from left to right (section 3.3): denser cows and giraffes (figures 15 and 16), and a label ramp
+//! (figure 17).
+//!
+//! They are [`cow`] and [`space_giraffe`] with a spacing or a probability that depends on x, on a domain that repeats
+//! from top to bottom only: around a torus, what grows from left to right ends in a step. The paper gives no numbers;
+//! distances change by equal ratios over equal lengths, so that the relative change is the same everywhere.
+
+use crate::{
+    CowOptions, LabelTexture, NetOptions, PupsError, SpaceGiraffeOptions, Spacing, cow,
+    space_giraffe,
+};
+use dapple_hash::Seed;
+use dapple_points::Domain;
+use dapple_raster::{Ramp, Varying};
+use glam::DVec2;
+
+/// What [`cow_progression`] and [`giraffe_progression`] are to be like.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct ProgressionOptions {
+    /// Where the control points lie; the square `[-1, 1]²`, which wraps along y only, by default.
+    pub domain: Domain,
+    /// How far apart points are at the left and at the right, in units of the domain, with equal ratios over equal
+    /// lengths in between; `[0.2, 0.025]` by default.
+    pub distances: [f64; 2],
+    /// How the control points are weighted.
+    pub net: NetOptions,
+}
+
+/// What a [`label_ramp`] is to be like.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct LabelRampOptions {
+    /// Where the control points lie; the square `[-1, 1]²`, which wraps along y only, by default.
+    pub domain: Domain,
+    /// How far apart the control points are; at least 0.05 by default, in units of the domain.
+    pub spacing: Spacing,
+    /// How probable white is at the left and at the right, linear in between; `[0, 1]` by default.
+    pub probabilities: [f64; 2],
+    /// How the control points are weighted.
+    pub net: NetOptions,
+}
+
+impl Default for ProgressionOptions {
+    fn default() -> Self {
+        Self {
+            domain: cylinder(),
+            distances: [0.2, 0.025],
+            net: NetOptions::default(),
+        }
+    }
+}
+
+impl Default for LabelRampOptions {
+    fn default() -> Self {
+        Self {
+            domain: cylinder(),
+            spacing: Spacing::from(0.05),
+            probabilities: [0.0, 1.0],
+            net: NetOptions::default(),
+        }
+    }
+}
+
+/// A cow whose patches become smaller to the right (figure 15).
+///
+/// # Errors
+///
+/// As [`cow`].
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{ProgressionOptions, cow_progression, hash::Seed};
+///
+/// let texture = cow_progression(&ProgressionOptions::default(), Seed(7))?;
+/// assert_eq!(texture.pups().domain().wrap, [false, true]);
+/// # Ok::<(), dapple_pups::PupsError>(())
+/// ```
+pub fn cow_progression(
+    options: &ProgressionOptions,
+    seed: Seed,
+) -> Result<LabelTexture, PupsError> {
+    let cow_options = CowOptions {
+        domain: options.domain,
+        spacing: options.spacing(),
+        net: options.net.clone(),
+        ..CowOptions::default()
+    };
+    cow(&cow_options, seed)
+}
+
+/// A space giraffe whose spots become smaller to the right (figure 16).
+///
+/// # Errors
+///
+/// As [`space_giraffe`].
+pub fn giraffe_progression(
+    options: &ProgressionOptions,
+    seed: Seed,
+) -> Result<LabelTexture, PupsError> {
+    let giraffe_options = SpaceGiraffeOptions {
+        domain: options.domain,
+        spacing: options.spacing(),
+        net: options.net.clone(),
+        ..SpaceGiraffeOptions::default()
+    };
+    space_giraffe(&giraffe_options, seed)
+}
+
+/// Black and white cells, with ever more white to the right (figure 17).
+///
+/// # Errors
+///
+/// As [`cow`].
+pub fn label_ramp(options: &LabelRampOptions, seed: Seed) -> Result<LabelTexture, PupsError> {
+    let cow_options = CowOptions {
+        domain: options.domain,
+        spacing: options.spacing.clone(),
+        probability: Varying::Ramp(left_to_right(&options.domain, options.probabilities)),
+        net: options.net.clone(),
+        ..CowOptions::default()
+    };
+    cow(&cow_options, seed)
+}
+
+impl ProgressionOptions {
+    fn spacing(&self) -> Spacing {
+        let ramp = left_to_right(&self.domain, self.distances);
+        Spacing::Distance(Varying::GeometricRamp(ramp))
+    }
+}
+
+/// The paper's square, wrapped from top to bottom only.
+fn cylinder() -> Domain {
+    Domain {
+        wrap: [false, true],
+        ..Domain::paper_torus()
+    }
+}
+
+fn left_to_right(domain: &Domain, [start, end]: [f64; 2]) -> Ramp {
+    Ramp {
+        from: domain.origin,
+        to: domain.origin + DVec2::new(domain.size.x, 0.0),
+        start,
+        end,
+    }
+}

@@ -1,0 +1,64 @@
+//! Reference image (section 3.2, figure 13): an image decides which group a control point belongs to.
+
+use crate::{LabelTexture, NetOptions, PupsError, ReferenceImage, Spacing, reference_labels};
+use dapple_hash::Seed;
+use dapple_points::Domain;
+
+/// What [`reference_texture`] is to be like.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct ReferenceOptions {
+    /// Where the control points lie, which the image covers; the paper's torus `[-1, 1]²` by default.
+    pub domain: Domain,
+    /// How far apart the control points are; at least 0.05 by default, in units of the domain.
+    pub spacing: Spacing,
+    /// The values of the black and the white group; 0 and 1 by default.
+    pub values: [f32; 2],
+    /// How the control points are weighted.
+    pub net: NetOptions,
+}
+
+impl Default for ReferenceOptions {
+    fn default() -> Self {
+        Self {
+            domain: Domain::paper_torus(),
+            spacing: Spacing::from(0.05),
+            values: [0.0, 1.0],
+            net: NetOptions::default(),
+        }
+    }
+}
+
+/// Black and white cells after an image: a control point is white with the probability of the intensity under it.
+///
+/// # Errors
+///
+/// [`Points`](crate::PupsErrorKind::Points) for points that cannot be placed, and what
+/// [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{ReferenceImage, ReferenceOptions, hash::Seed, raster::Raster, reference_texture};
+///
+/// let disc = |x, y| if (x - 8) * (x - 8) + (y - 8) * (y - 8) < 25 { 1.0 } else { 0.0 };
+/// let image = Raster::from_fn([17, 17], |x, y| disc(x as i32, y as i32))?;
+/// let texture = reference_texture(&ReferenceImage::new(image)?, &ReferenceOptions::default(), Seed(7))?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn reference_texture(
+    image: &ReferenceImage,
+    options: &ReferenceOptions,
+    seed: Seed,
+) -> Result<LabelTexture, PupsError> {
+    let points = options
+        .spacing
+        .points(options.domain, seed.child("points", 0))?;
+    let labels = reference_labels(&points, image, seed.child("label", 0));
+    let pups = options.net.pups(&points, seed)?;
+    LabelTexture::new(pups, labels, options.values.to_vec())
+}

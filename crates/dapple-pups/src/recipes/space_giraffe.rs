@@ -1,0 +1,176 @@
+//! Space giraffe (section 3.2, figure 12): irregular spots that stay apart.
+//!
+//! The literal recipe: spot centers are a Poisson-disk set; the radius r of a spot is half the distance to the nearest
+//! other center; around the center, at angular intervals of 2π/n with a random n from 10 to 20, stand pairs of points at
+//! random radii from 0 to r, the inner one in the spot, the outer one in the background. "A secondary objective was to
+//! prevent two cells from merging", but where several outer points in a row are close to the center, the cell of an
+//! inner point beside them reaches far out: about one pair of neighboring spots in 20 000 merges (three in 300
+//! pictures of 70 spots each).
+//!
+//! By default we keep them apart, by this argument. A control point has a weight only within its support, which is its
+//! Voronoi cell scaled by twice the axis scale about the point. Leaving points out makes Voronoi cells larger, never
+//! smaller. So the support that an inner point (or the center) has *among the points of its own spot alone* holds its
+//! true support, whatever stands around. If all these polygons of a spot lie in the Voronoi cell of its center among
+//! the centers, then the spot does; Voronoi cells are disjoint, so no two spots meet. Scaling the points of a spot about
+//! its center scales the polygons with them: a spot that does not fit is scaled down until it does: three of five
+//! are, half of them by less than 15 %. Orientations change
+//! weights within supports only and do not matter, nor does the axial weight.
+//!
+//! Where the paper is silent: the first angle is random; n is uniform; radii keep 1/256 of r from 0, from r and, within
+//! a pair, from each other, so that no two points coincide. Along axes that do not wrap, the domain of the texture is
+//! that of the centers grown by the largest r, so that every spot is whole.
+
+mod spot;
+
+use crate::{LabelTexture, NetOptions, PupsError, PupsErrorKind, Spacing};
+use dapple_graph::{Graph, delaunay};
+use dapple_hash::Seed;
+use dapple_points::{Domain, PointIdx, PointSet};
+use glam::DVec2;
+use spot::Spot;
+
+/// What a [`space_giraffe`] is to be like.
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct SpaceGiraffeOptions {
+    /// Where the spot centers lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    pub domain: Domain,
+    /// How far apart the centers are; at least 0.2 by default, in units of the domain.
+    pub spacing: Spacing,
+    /// How many pairs of points stand around a center, from the least to the most, 3 to 256; `[10, 20]` by default.
+    pub pairs: [u32; 2],
+    /// Whether spots may merge; they are kept apart by default.
+    pub spots: Spots,
+    /// The values of the background (label 0) and the spots (label 1); white (1) and black (0) by default.
+    pub values: [f32; 2],
+    /// How the control points are weighted.
+    pub net: NetOptions,
+}
+
+/// Whether the spots of a giraffe may merge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Spots {
+    /// Spots that reach out of the Voronoi cell of their center are scaled down; no two of them ever merge.
+    #[default]
+    Separated,
+    /// The paper's recipe as it is; a few spots merge.
+    Literal,
+}
+
+impl Default for SpaceGiraffeOptions {
+    fn default() -> Self {
+        Self {
+            domain: Domain::paper_torus(),
+            spacing: Spacing::from(0.2),
+            pairs: [10, 20],
+            spots: Spots::Separated,
+            values: [1.0, 0.0],
+            net: NetOptions::default(),
+        }
+    }
+}
+
+/// Irregular spots, one around each point of a Poisson-disk set.
+///
+/// The first control points are the centers; then come, spot by spot, the pairs: inner point, outer point.
+///
+/// # Errors
+///
+/// [`Points`](PupsErrorKind::Points) for points that cannot be placed, [`Count`](PupsErrorKind::Count) for a single
+/// center without any neighbor, [`Range`](PupsErrorKind::Range) for a number of pairs outside of its range, and what
+/// [`PupsOptions::check`](crate::PupsOptions::check) refuses.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::{SpaceGiraffeOptions, glam::DVec2, hash::Seed, space_giraffe};
+///
+/// let texture = space_giraffe(&SpaceGiraffeOptions::default(), Seed(7))?;
+/// assert!(texture.label(DVec2::new(0.25, -0.5)).is_some());
+/// # Ok::<(), dapple_pups::PupsError>(())
+/// ```
+pub fn space_giraffe(options: &SpaceGiraffeOptions, seed: Seed) -> Result<LabelTexture, PupsError> {
+    let (points, labels) = options.control_points(seed)?;
+    let pups = options.net.pups(&points, seed)?;
+    LabelTexture::new(pups, labels, options.values.to_vec())
+}
+
+impl SpaceGiraffeOptions {
+    /// The centers and the pairs, and their labels.
+    pub(super) fn control_points(&self, seed: Seed) -> Result<(PointSet, Vec<u32>), PupsError> {
+        self.check()?;
+        let centers = self.spacing.points(self.domain, seed.child("points", 0))?;
+        let spots = self.place_spots(&centers, seed.child("spot", 0))?;
+
+        let mut positions = centers.positions().to_vec();
+        let mut labels = vec![1; positions.len()];
+        for (spot, &center) in spots.iter().zip(centers.positions()) {
+            for &[inner, outer] in &spot.pairs {
+                positions.extend([center + inner, center + outer]);
+                labels.extend([1, 0]);
+            }
+        }
+        let reach = spots.iter().map(|spot| spot.radius).fold(0.0, f64::max);
+        let domain = grown(self.domain, reach);
+        Ok((PointSet::new(domain, positions)?, labels))
+    }
+
+    fn check(&self) -> Result<(), PupsError> {
+        for n_pairs in self.pairs {
+            let holds = n_pairs >= self.pairs[0] && (3..=256).contains(&n_pairs);
+            PupsError::check(
+                holds,
+                "number of pairs around a spot",
+                f64::from(n_pairs),
+                "3 to 256, the least first",
+            )?;
+        }
+        Ok(())
+    }
+
+    /// The spot around each center.
+    fn place_spots(&self, centers: &PointSet, seed: Seed) -> Result<Vec<Spot>, PupsError> {
+        let graph = delaunay(centers)?;
+        let place = |(center, _): (PointIdx, DVec2)| {
+            let radius = radius(&graph, center)?;
+            let spot = Spot::random(radius, self.pairs, seed, center);
+            Ok(match self.spots {
+                Spots::Literal => spot,
+                Spots::Separated => spot.fitted(graph.axes(center), self.net.axis_scale),
+            })
+        };
+        centers.iter().map(place).collect()
+    }
+}
+
+/// Half the distance to the nearest other center (or image of a center): the shortest of the Delaunay edges.
+fn radius(graph: &Graph, center: PointIdx) -> Result<f64, PupsError> {
+    let lengths = graph.axes(center).iter().map(|axis| axis.vector.length());
+    lengths.reduce(f64::min).map(|length| 0.5 * length).ok_or(
+        // Without wrapping, a single point has no neighbor.
+        PupsError::new(PupsErrorKind::Count {
+            what: "spot centers",
+            count: 1,
+            needed: 2,
+        }),
+    )
+}
+
+/// The domain with a margin along the axes that do not wrap.
+fn grown(domain: Domain, margin: f64) -> Domain {
+    let margin = DVec2::from(domain.wrap.map(|wrap| if wrap { 0.0 } else { margin }));
+    Domain {
+        origin: domain.origin - margin,
+        size: domain.size + margin * 2.0,
+        ..domain
+    }
+}

@@ -1,0 +1,113 @@
+//! One spot of a giraffe: pairs of points around a center, and the polygons that its cells cannot leave.
+//!
+//! Positions are relative to the center, in units of the domain.
+
+use core::f64::consts::TAU;
+use dapple_graph::Axis;
+use dapple_hash::{CellHash, Seed, unit_f64};
+use dapple_points::PointIdx;
+use glam::DVec2;
+
+/// How close a point may come to the center, the rim or the other of its pair, as a part of the radius.
+const GAP: f64 = 1.0 / 256.0;
+
+/// What a scaled spot leaves of its room, so that rounding does not matter.
+const SLACK: f64 = 1.0 - 1e-6;
+
+/// The pairs around a center.
+#[derive(Clone, Debug)]
+pub(super) struct Spot {
+    /// Half the distance to the nearest other center.
+    pub(super) radius: f64,
+    /// The inner and the outer point of each pair.
+    pub(super) pairs: Vec<[DVec2; 2]>,
+}
+
+impl Spot {
+    /// The literal spot of a center.
+    pub(super) fn random(radius: f64, n_pairs: [u32; 2], seed: Seed, center: PointIdx) -> Self {
+        let random = CellHash::new(seed, [i64::from(center.0)]);
+        let more = (random.at(0) >> 32) * u64::from(n_pairs[1] - n_pairs[0] + 1);
+        let n_pairs = n_pairs[0] + (more >> 32) as u32;
+        let first = unit_f64(random.at(1));
+        let pair = |index: u32| {
+            let angle = TAU * (f64::from(index) + first) / f64::from(n_pairs);
+            let direction = DVec2::new(libm::cos(angle), libm::sin(angle)) * radius;
+            let [a, b] = [2, 3].map(|lane| {
+                let part = unit_f64(random.at(2 * index + lane));
+                GAP + (1.0 - 2.0 * GAP) * part
+            });
+            let outer = a.max(b).max(2.0 * GAP);
+            let inner = a.min(b).min(outer - GAP);
+            [direction * inner, direction * outer]
+        };
+        Self {
+            radius,
+            pairs: (0..n_pairs).map(pair).collect(),
+        }
+    }
+
+    /// The spot, scaled down if need be, so that no cell of it leaves the Voronoi cell of the center, whose Delaunay
+    /// axes are given.
+    pub(super) fn fitted(mut self, axes: &[Axis], axis_scale: f64) -> Self {
+        let room = self.room(axes, axis_scale);
+        if room < 1.0 {
+            let scale = room * SLACK;
+            for pair in &mut self.pairs {
+                *pair = pair.map(|point| point * scale);
+            }
+        }
+        self
+    }
+
+    /// By how much the spot can be scaled.
+    pub(super) fn room(&self, axes: &[Axis], axis_scale: f64) -> f64 {
+        let room_for = |corner: DVec2| {
+            let along = |axis: &Axis| {
+                let reach = corner.dot(axis.vector);
+                let half = 0.5 * axis.vector.length_squared();
+                if reach > half { half / reach } else { 1.0 }
+            };
+            axes.iter().map(along).fold(1.0, f64::min)
+        };
+        let inner = self.pairs.iter().map(|&[inner, _]| inner);
+        core::iter::once(DVec2::ZERO)
+            .chain(inner)
+            .flat_map(|point| self.support(point, axis_scale))
+            .map(room_for)
+            .fold(1.0, f64::min)
+    }
+
+    /// The corners of the support that a point has among the points of this spot.
+    fn support(&self, point: DVec2, axis_scale: f64) -> Vec<DVec2> {
+        // Outer points stand all around, so that the support ends long before this square does.
+        let far = self.radius * 1e12;
+        let mut corners = [(-far, -far), (far, -far), (far, far), (-far, far)]
+            .map(DVec2::from)
+            .to_vec();
+        let others = core::iter::once(&DVec2::ZERO).chain(self.pairs.as_flattened());
+        for axis in others.map(|&other| other - point) {
+            if axis != DVec2::ZERO {
+                let limit = (point.dot(axis)) + axis_scale * axis.length_squared();
+                corners = clipped(&corners, axis, limit);
+            }
+        }
+        corners
+    }
+}
+
+/// The part of a convex polygon in which `normal · position ≤ limit`.
+fn clipped(corners: &[DVec2], normal: DVec2, limit: f64) -> Vec<DVec2> {
+    let mut kept = Vec::with_capacity(corners.len() + 1);
+    for (index, &from) in corners.iter().enumerate() {
+        let to = corners[(index + 1) % corners.len()];
+        let [over_from, over_to] = [from, to].map(|corner| normal.dot(corner) - limit);
+        if over_from <= 0.0 {
+            kept.push(from);
+        }
+        if (over_from <= 0.0) != (over_to <= 0.0) {
+            kept.push(from + (to - from) * (over_from / (over_from - over_to)));
+        }
+    }
+    kept
+}
