@@ -36,7 +36,8 @@ impl Texture {
         let net = &self.pups.net;
         let value = f64::from(self.sample(position));
         let (mut total, mut sum) = (0.0, DVec2::ZERO);
-        net.for_each_weight(local, |instance, _| {
+        net.for_each_weight(local, |record, _| {
+            let instance = &net.instances[record.instance as usize];
             let (weight, gradient) = weight_and_gradient(net, instance, local);
             total += weight;
             sum += gradient * (f64::from(self.values[instance.point as usize]) - value);

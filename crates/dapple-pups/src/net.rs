@@ -10,7 +10,7 @@
 //! On a wrapped axis a control point acts through its periodic images as well. Each image whose support reaches into
 //! the domain is an [`Instance`]; positions are brought into the domain first, so that a texture repeats exactly.
 
-use crate::sample::Bins;
+use crate::bins::Bins;
 use crate::{PupsError, PupsErrorKind, PupsOptions};
 use dapple_graph::{Axis, Graph, delaunay};
 use dapple_points::{Domain, PointIdx, PointSet};
@@ -54,6 +54,15 @@ pub(crate) struct Instance {
     n_blocks: u32,
 }
 
+/// What is known of a graph.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum GraphKind {
+    /// It is the Delaunay graph of the points, so there are no axes that could close a support.
+    Delaunay,
+    /// It may be any graph.
+    Any,
+}
+
 /// Everything that the weights depend on.
 #[derive(Debug)]
 pub(crate) struct Net {
@@ -63,7 +72,6 @@ pub(crate) struct Net {
     pub(crate) instances: Vec<Instance>,
     /// The axes of all points, point by point.
     blocks: Vec<AxisBlock>,
-    n_points: usize,
     /// ε times the orientation in the plane, for each point; empty without orientations.
     pub(crate) shifts: Vec<[f32; 2]>,
     /// For single positions; made when the first is asked for.
@@ -74,6 +82,7 @@ impl Net {
     pub(crate) fn new(
         points: &PointSet,
         graph: &Graph,
+        kind: GraphKind,
         options: PupsOptions,
     ) -> Result<Self, PupsError> {
         if points.is_empty() {
@@ -93,7 +102,6 @@ impl Net {
             domain: *points.domain(),
             instances: Vec::with_capacity(points.len() + points.len() / 4 + 16),
             blocks: Vec::with_capacity(points.len() + points.len() / 16),
-            n_points: points.len(),
             shifts: options
                 .orientation
                 .iter()
@@ -107,7 +115,7 @@ impl Net {
         for (point, center) in points.iter() {
             axes.clear();
             axes.extend_from_slice(graph.axes(point));
-            if has_gap(&axes) {
+            if kind == GraphKind::Any && has_gap(&axes) {
                 close_gap(point, &mut axes, points, &mut closing)?;
             }
             let first_block = net.blocks.len();
@@ -121,11 +129,6 @@ impl Net {
     #[inline]
     pub(crate) fn bins(&self) -> &Bins {
         self.bins.get_or_init(|| Bins::new(self))
-    }
-
-    /// The number of control points.
-    pub(crate) fn n_points(&self) -> usize {
-        self.n_points
     }
 
     /// The axes of a control point.

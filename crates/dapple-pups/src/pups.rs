@@ -1,6 +1,6 @@
 //! The partition of unity over a control net: weights and labels.
 
-use crate::net::Net;
+use crate::net::{GraphKind, Net};
 use crate::render::render;
 use crate::sink::{Planes, Sink};
 use crate::{PupsError, PupsOptions, Texture, VectorTexture};
@@ -37,9 +37,22 @@ impl Pups {
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new), and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
+    /// As [`delaunay_with`](Self::delaunay_with).
     pub fn delaunay(points: &PointSet) -> Result<Self, PupsError> {
-        Self::new(points, &delaunay(points)?, PupsOptions::default())
+        Self::delaunay_with(points, PupsOptions::default())
+    }
+
+    /// The net of the Delaunay triangulation of `points`.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new), and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
+    pub fn delaunay_with(points: &PointSet, options: PupsOptions) -> Result<Self, PupsError> {
+        let net = Net::new(points, &delaunay(points)?, GraphKind::Delaunay, options)?;
+        Ok(Self {
+            net: Arc::new(net),
+            n_points: points.len(),
+        })
     }
 
     /// The net of any graph over `points`.
@@ -57,7 +70,7 @@ impl Pups {
     /// of the domain's larger side, [`Range`](crate::PupsErrorKind::Range) if the domain is smaller than 1e-18 or larger
     /// than 1e18, and what [`PupsOptions::check`] refuses.
     pub fn new(points: &PointSet, graph: &Graph, options: PupsOptions) -> Result<Self, PupsError> {
-        let net = Arc::new(Net::new(points, graph, options)?);
+        let net = Arc::new(Net::new(points, graph, GraphKind::Any, options)?);
         Ok(Self {
             net,
             n_points: points.len(),

@@ -1,7 +1,7 @@
 //! Many positions at once: windows of the plane.
 //!
 //! The window is cut where it crosses a period, so that coordinates go one way within a piece, and then into bands of
-//! [`ROWS`] rows. For every band, the control points that reach into it are taken in their order, and each adds its
+//! rows. For every band, the control points that reach into it are taken in their order, and each adds its
 //! weights to the pixels that its support can touch. Bands share nothing but what they read, so they can run on any
 //! number of threads.
 
@@ -18,22 +18,17 @@ use dapple_raster::Window;
 use fearless_simd::{Level, dispatch, prelude::*};
 use glam::DVec2;
 
-/// Pixels to a control point below which registers of 8 lanes are faster than those of 16 (measured).
-const FEW_PIXELS: f64 = 0.0;
+/// How many numbers a band is summed in, at most, so that they stay in a core's own cache: 128 KiB.
+const BAND_NUMBERS: usize = 1 << 15;
+
+/// The most rows of a band; bands are what threads share out.
+const BAND_ROWS: usize = 64;
 
 /// Fills the rows of a window, on all cores where the feature `rayon` is on.
 ///
 /// `rows` are those of the window, each with as many values as the sink makes of a pixel, times the width.
 pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: Vec<&mut [K::Value]>) {
-    let level = simd::level();
-    // Supports of a few pixels would leave most of 16 lanes without work.
-    let area = net.domain.area() / net.n_points() as f64 / (window.pixel.x * window.pixel.y).abs();
-    let level = if area < FEW_PIXELS {
-        simd::narrower(level)
-    } else {
-        level
-    };
-    render_at(level, net, window, sink, rows);
+    render_at(simd::level(), net, window, sink, rows);
 }
 
 /// As [`render`], at a given SIMD level.
@@ -50,18 +45,20 @@ pub(crate) fn render_at<K: Sink>(
     let ys: Vec<f64> = (0..window.size[1])
         .map(|row| net.local(1, window.row_y(row)))
         .collect();
-    let columns: Vec<Columns> = runs(&xs)
+    let columns: Vec<Lane> = runs(&xs)
         .into_iter()
-        .map(|run| Columns::new(&xs, run))
+        .map(|run| Lane::new(&xs, run, TILE))
         .collect();
+    let height = BAND_NUMBERS / (xs.len().next_multiple_of(TILE) * sink.n_planes());
+    let height = height.clamp(ROWS, BAND_ROWS);
     let mut bands = Vec::new();
     let mut rest = rows.as_mut_slice();
     for run in runs(&ys) {
-        let members = band_members(net, &ys[run.clone()]);
-        for (first, members) in run.clone().step_by(ROWS).zip(members) {
-            let (rows, others) = rest.split_at_mut((run.end - first).min(ROWS));
+        let members = band_members(net, &ys[run.clone()], height);
+        for (first, members) in run.clone().step_by(height).zip(members) {
+            let (rows, others) = rest.split_at_mut((run.end - first).min(height));
             rest = others;
-            let ys = &ys[first..first + rows.len()];
+            let ys = Lane::new(&ys, first..first + rows.len(), ROWS);
             bands.push(Band {
                 net,
                 sink,
@@ -88,24 +85,28 @@ pub(crate) fn render_at<K: Sink>(
     }
 }
 
-/// A stretch of columns whose coordinates go one way.
-struct Columns {
+/// A stretch of columns or rows whose coordinates go one way.
+struct Lane {
     /// Where it lies in the window.
     range: Range<usize>,
-    /// The coordinates, filled up with the last one to whole tiles.
-    xs: Vec<f64>,
+    /// The coordinates, and then the last one again, for what is computed beyond it.
+    padded: Vec<f64>,
     line: Line,
 }
 
-impl Columns {
-    fn new(xs: &[f64], range: Range<usize>) -> Self {
-        let mut padded = xs[range.clone()].to_vec();
-        padded.resize(range.len().next_multiple_of(TILE), xs[range.end - 1]);
+impl Lane {
+    fn new(coordinates: &[f64], range: Range<usize>, padding: usize) -> Self {
+        let mut padded = coordinates[range.clone()].to_vec();
+        padded.resize(range.len() + padding, coordinates[range.end - 1]);
         Self {
-            line: Line::new(&xs[range.clone()]),
+            line: Line::new(&padded[..range.len()]),
             range,
-            xs: padded,
+            padded,
         }
+    }
+
+    fn is_finite(&self) -> bool {
+        self.padded[0].is_finite()
     }
 }
 
@@ -113,10 +114,10 @@ impl Columns {
 struct Band<'a, 'rows, K: Sink> {
     net: &'a Net,
     sink: &'a K,
-    columns: &'a [Columns],
+    columns: &'a [Lane],
     /// Indices of instances, in their order.
     members: Vec<u32>,
-    ys: &'a [f64],
+    ys: Lane,
     rows: &'a mut [&'rows mut [K::Value]],
 }
 
@@ -124,11 +125,15 @@ impl<K: Sink> Band<'_, '_, K> {
     /// Fills the rows; `planes` is memory to work in.
     fn render(mut self, level: Level, planes: &mut Planes) {
         for columns in self.columns {
-            if !columns.xs[0].is_finite() || !self.ys[0].is_finite() {
+            if !columns.is_finite() || !self.ys.is_finite() {
                 self.leave_undefined(&columns.range);
                 continue;
             }
-            planes.clear(self.sink.n_planes(), columns.range.len());
+            planes.clear(
+                self.sink.n_planes(),
+                columns.range.len(),
+                self.ys.padded.len(),
+            );
             match self.net.options.weight {
                 AxialWeight::Cubic => {
                     dispatch!(level, simd => self.splat(simd, Cubic, columns, planes));
@@ -143,22 +148,14 @@ impl<K: Sink> Band<'_, '_, K> {
 
     /// Adds up the weights of all members.
     #[inline(always)]
-    fn splat<S: Simd, P: Profile>(
-        &self,
-        simd: S,
-        profile: P,
-        columns: &Columns,
-        planes: &mut Planes,
-    ) {
-        let last = self.ys.len() - 1;
-        let ys = core::array::from_fn(|row| self.ys[row.min(last)]);
-        let Columns { xs, line, .. } = columns;
+    fn splat<S: Simd, P: Profile>(&self, simd: S, profile: P, columns: &Lane, planes: &mut Planes) {
         let splatter = Splatter {
             profile,
             sink: self.sink,
-            xs,
-            line,
-            ys,
+            xs: &columns.padded,
+            columns: &columns.line,
+            ys: &self.ys.padded,
+            rows: &self.ys.line,
         };
         let mut tile = Tile::default();
         for &member in &self.members {
@@ -180,14 +177,14 @@ impl<K: Sink> Band<'_, '_, K> {
 
     /// Turns sums into values.
     #[inline(always)]
-    fn resolve<S: Simd>(&mut self, simd: S, columns: &Columns, planes: &Planes) {
+    fn resolve<S: Simd>(&mut self, simd: S, columns: &Lane, planes: &Planes) {
         let per_pixel = self.sink.per_pixel();
         let Range { start, end } = columns.range;
         for (row, values) in self.rows.iter_mut().enumerate() {
             let values = &mut values[start * per_pixel..end * per_pixel];
             let plane = |plane| planes.row(plane, row, end - start);
             let nearest = |pixel: usize| {
-                let position = DVec2::new(columns.xs[pixel], self.ys[row]);
+                let position = DVec2::new(columns.padded[pixel], self.ys.padded[row]);
                 self.net.nearest(position).point
             };
             self.sink.resolve(simd, plane, values, nearest);
@@ -203,14 +200,14 @@ impl<K: Sink> Band<'_, '_, K> {
     }
 }
 
-/// The instances that reach into each band of rows, in their order.
-fn band_members(net: &Net, ys: &[f64]) -> Vec<Vec<u32>> {
-    let mut members = vec![Vec::new(); ys.len().div_ceil(ROWS)];
+/// The instances that reach into each band of `height` rows, in their order.
+fn band_members(net: &Net, ys: &[f64], height: usize) -> Vec<Vec<u32>> {
+    let mut members = vec![Vec::new(); ys.len().div_ceil(height)];
     let line = Line::new(ys);
     for (index, instance) in (0..).zip(&net.instances) {
         let rows = line.touched(instance.min.y, instance.max.y);
         if !rows.is_empty() {
-            let bands = &mut members[rows.start / ROWS..rows.end.div_ceil(ROWS)];
+            let bands = &mut members[rows.start / height..rows.end.div_ceil(height)];
             bands.iter_mut().for_each(|members| members.push(index));
         }
     }

@@ -9,17 +9,6 @@ pub(crate) fn level() -> Level {
     *LEVEL.get_or_init(Level::new)
 }
 
-/// The level for work on a few numbers at a time: where `level` has 16 lanes, the one with 8.
-pub(crate) fn narrower(level: Level) -> Level {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    if let Level::Avx512(_) = level
-        && let Some(token) = level.as_avx2()
-    {
-        return Level::Avx2(token);
-    }
-    level
-}
-
 /// Calls `check` for every level that this machine has.
 #[cfg(test)]
 pub(crate) fn for_every_level(mut check: impl FnMut(Level)) {

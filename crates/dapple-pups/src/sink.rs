@@ -1,6 +1,6 @@
 //! What becomes of the weights of a band, and the memory that they are summed in.
 
-use crate::splat::{ROWS, TILE};
+use crate::splat::TILE;
 use fearless_simd::prelude::*;
 
 /// What becomes of the weights of a band.
@@ -34,7 +34,7 @@ pub(crate) trait Sink: Sync {
     fn undefined(&self) -> Self::Value;
 }
 
-/// The numbers that a band is summed in: planes of [`ROWS`] rows, whose tiles each begin on a cache line, so that no
+/// The numbers that a band is summed in: planes of rows, whose tiles each begin on a cache line, so that no
 /// register of numbers lies across two.
 #[derive(Default)]
 pub(crate) struct Planes {
@@ -43,15 +43,17 @@ pub(crate) struct Planes {
     origin: usize,
     /// From a row to the next.
     pub(crate) stride: usize,
+    /// From a plane to the next.
+    plane: usize,
 }
 
 impl Planes {
-    /// Zeroed planes with rows of at least `width` numbers.
-    pub(crate) fn clear(&mut self, n_planes: usize, width: usize) {
+    /// Zeroed planes of `height` rows with at least `width` numbers.
+    pub(crate) fn clear(&mut self, n_planes: usize, width: usize, height: usize) {
         self.stride = width.next_multiple_of(TILE);
+        self.plane = height * self.stride;
         self.numbers.clear();
-        self.numbers
-            .resize(n_planes * ROWS * self.stride + TILE, 0.0);
+        self.numbers.resize(n_planes * self.plane + TILE, 0.0);
         // Where this is not possible, it is only slower.
         self.origin = self
             .numbers
@@ -63,14 +65,14 @@ impl Planes {
     /// A register of numbers of a plane.
     #[inline(always)]
     pub(crate) fn register<S: Simd>(&mut self, plane: usize, at: usize) -> &mut [f32] {
-        let start = self.origin + plane * ROWS * self.stride + at;
+        let start = self.origin + plane * self.plane + at;
         &mut self.numbers[start..start + S::f32s::LEN]
     }
 
     /// The first `width` numbers of a row of a plane.
     #[inline(always)]
     pub(crate) fn row(&self, plane: usize, row: usize, width: usize) -> &[f32] {
-        let start = self.origin + (plane * ROWS + row) * self.stride;
+        let start = self.origin + plane * self.plane + row * self.stride;
         &self.numbers[start..start + width]
     }
 }

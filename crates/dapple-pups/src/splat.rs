@@ -1,7 +1,9 @@
 //! The weights of control points, added to a band of pixels.
 //!
-//! A band is [`ROWS`] rows high. The columns that a support can touch in it are taken [`TILE`] at a time; the axes that
-//! matter in a tile are picked, and their weights multiplied up for a register of pixels in several rows at once.
+//! The pixels that a support can touch are taken in tiles of [`TILE`] columns and [`ROWS`] rows, from its first row on; the
+//! axes that matter in a tile are picked, and their weights multiplied up for a register of pixels in several rows at
+//! once. Columns begin where a cache line does: sums that lie across two of them, or across the sums that were stored
+//! before, take longer than all that is saved.
 
 use crate::line::Line;
 use crate::net::{AxisBlock, Instance};
@@ -9,27 +11,28 @@ use crate::profile::Profile;
 use crate::shift::shift_weight;
 use crate::sink::{Planes, Sink};
 use crate::tile::{ActiveBlock, Tile, reach};
+use core::ops::Range;
 use fearless_simd::prelude::*;
 
 /// Columns of a tile: a register at the widest level.
 pub(crate) const TILE: usize = 16;
 
-/// Rows of a band.
+/// Rows of a tile.
 pub(crate) const ROWS: usize = 8;
 
-/// Half of the rows of a band; with two numbers a pixel they fill half of 16 registers.
+/// Half of the rows of a tile; with two numbers a pixel they fill half of 16 registers.
 const HALF: usize = ROWS / 2;
 
 /// The pixels of a band, and what becomes of weights there.
 pub(crate) struct Splatter<'a, P, K> {
     pub(crate) profile: P,
     pub(crate) sink: &'a K,
-    /// Columns, filled up to whole tiles with the last real one.
+    /// The coordinates of columns, with the last one again for as long as a tile can reach out.
     pub(crate) xs: &'a [f64],
-    /// The real ones.
-    pub(crate) line: &'a Line,
-    /// Rows; the last real one may come again.
-    pub(crate) ys: [f64; ROWS],
+    pub(crate) columns: &'a Line,
+    /// The coordinates of rows, likewise.
+    pub(crate) ys: &'a [f64],
+    pub(crate) rows: &'a Line,
 }
 
 /// A control point, or image of one, with all that its weights depend on.
@@ -54,40 +57,67 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         let Instance {
             center, min, max, ..
         } = *member.instance;
-        let mut columns = self.line.touched(min.x, max.x);
+        let columns = self.columns.touched(min.x, max.x);
+        let rows = self.rows.touched(min.y, max.y);
         if columns.is_empty() {
             return;
         }
-        tile.y = self.ys.map(|y| (y - center.y) as f32);
-        if columns.len() > 2 * TILE {
-            // The box is wide, so it is worth knowing how much of it lies in these rows.
-            let Some(stretch) = reach(simd, member.blocks, &tile.y) else {
-                return;
-            };
-            let [left, right] = stretch.map(|x| center.x + f64::from(x));
-            columns = self.line.touched(left.max(min.x), right.min(max.x));
-            if columns.is_empty() {
-                return;
+        for first_row in rows.clone().step_by(ROWS) {
+            tile.first_row = first_row;
+            for (row, y) in tile.y.iter_mut().enumerate() {
+                *y = (self.ys[first_row + row] - center.y) as f32;
             }
+            tile.columns = columns.clone();
+            if columns.len() > 2 * TILE {
+                // The box is wide, so it is worth knowing how much of it lies in these rows.
+                let Some([left, right]) = reach(simd, member.blocks, &tile.y) else {
+                    continue;
+                };
+                let [left, right] = [center.x + f64::from(left), center.x + f64::from(right)];
+                tile.columns = self.columns.touched(left.max(min.x), right.min(max.x));
+            }
+            let n_rows = rows.end - first_row;
+            self.add_row_of_tiles(simd, member, n_rows, tile, planes);
         }
-        tile.halves = [0, HALF].map(|row| {
-            let [a, b] = [self.ys[row], self.ys[row + HALF - 1]];
-            a.min(b) <= max.y && a.max(b) >= min.y
-        });
+    }
+
+    /// Adds the weights in the columns of the tile, and in `n_rows` rows, if there are as many.
+    #[inline(always)]
+    fn add_row_of_tiles<S: Simd>(
+        &self,
+        simd: S,
+        member: Member,
+        n_rows: usize,
+        tile: &mut Tile,
+        planes: &mut Planes,
+    ) {
+        let center = member.instance.center.x;
+        let Range { start, end } = tile.columns;
+        if start >= end {
+            return;
+        }
+        let aligned = start / TILE * TILE..end.next_multiple_of(TILE);
         // A support that is narrower than a tile gets its axes picked once, for the one or two tiles that it lies in.
-        let aligned = columns.start / TILE * TILE..columns.end.next_multiple_of(TILE);
-        let group = if columns.len() <= TILE {
+        let group = if end - start <= TILE {
             aligned.len()
         } else {
             TILE
         };
-        tile.columns = columns;
         for first in aligned.step_by(group) {
-            let ends = [first, first + group - 1].map(|column| (self.xs[column] - center.x) as f32);
+            let last = (first + group).min(self.xs.len()) - 1;
+            let ends = [
+                (self.xs[first] - center) as f32,
+                (self.xs[last] - center) as f32,
+            ];
             if tile.select_axes(simd, member.blocks, ends) {
-                for start in (first..first + group).step_by(TILE) {
-                    tile.move_to(simd, start, &self.xs[start..start + TILE], center.x);
-                    self.add_tile(simd, member, tile, planes);
+                for first_column in (first..first + group).step_by(TILE) {
+                    tile.move_to(
+                        simd,
+                        first_column,
+                        &self.xs[first_column..first_column + TILE],
+                        center,
+                    );
+                    self.add_tile(simd, member, n_rows, tile, planes);
                 }
             }
         }
@@ -95,22 +125,26 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
 
     /// Adds the weights of one tile.
     #[inline(always)]
-    fn add_tile<S: Simd>(&self, simd: S, member: Member, tile: &Tile, planes: &mut Planes) {
+    fn add_tile<S: Simd>(
+        &self,
+        simd: S,
+        member: Member,
+        n_rows: usize,
+        tile: &Tile,
+        planes: &mut Planes,
+    ) {
         for column in (0..TILE).step_by(S::f32s::LEN) {
-            let first = tile.start + column;
+            let first = tile.first_column + column;
             if first >= tile.columns.end || first + S::f32s::LEN <= tile.columns.start {
                 continue;
             }
             // A row takes two registers, and an axis a few: 32 registers of 16 lanes hold all rows, 16 registers half.
-            let [upper, lower] = tile.halves;
-            if S::f32s::LEN >= 16 && upper && lower {
+            if S::f32s::LEN >= 16 && n_rows > HALF {
                 self.add_rows::<S, ROWS>(simd, member, tile, planes, [column, 0]);
                 continue;
             }
-            if upper {
-                self.add_rows::<S, HALF>(simd, member, tile, planes, [column, 0]);
-            }
-            if lower {
+            self.add_rows::<S, HALF>(simd, member, tile, planes, [column, 0]);
+            if n_rows > HALF {
                 self.add_rows::<S, HALF>(simd, member, tile, planes, [column, HALF]);
             }
         }
@@ -142,7 +176,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
             if let Some(shift) = member.shift {
                 weight = shift_weight(simd, weight, shift, x, S::f32s::splat(simd, tile.y[row]));
             }
-            let at = row * planes.stride + tile.start + column;
+            let at = (tile.first_row + row) * planes.stride + tile.first_column + column;
             self.sink
                 .add(simd, member.instance.point, weight, planes, at);
         }

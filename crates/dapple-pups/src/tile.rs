@@ -19,12 +19,11 @@ pub(crate) struct Tile {
     /// The offsets of columns and rows.
     pub(crate) x: [f32; TILE],
     pub(crate) y: [f32; ROWS],
-    /// Where it begins in a plane.
-    pub(crate) start: usize,
-    /// Which columns of the plane the support can touch.
+    /// Its first column and row in the band.
+    pub(crate) first_column: usize,
+    pub(crate) first_row: usize,
+    /// Which columns of the band the support can touch.
     pub(crate) columns: Range<usize>,
-    /// Which rows it can touch: the upper half, the lower half.
-    pub(crate) halves: [bool; 2],
     /// The axes that matter.
     pub(crate) blocks: Vec<ActiveBlock>,
 }
@@ -62,10 +61,16 @@ impl Tile {
         true
     }
 
-    /// Goes to the columns `xs`, which begin at `start` in a plane.
+    /// Goes to the columns `xs`, of which the first is `first_column` of the band.
     #[inline(always)]
-    pub(crate) fn move_to<S: Simd>(&mut self, simd: S, start: usize, xs: &[f64], center: f64) {
-        self.start = start;
+    pub(crate) fn move_to<S: Simd>(
+        &mut self,
+        simd: S,
+        first_column: usize,
+        xs: &[f64],
+        center: f64,
+    ) {
+        self.first_column = first_column;
         let half = S::f64s::LEN;
         for column in (0..TILE).step_by(2 * half) {
             let low = S::f64s::from_slice(simd, &xs[column..column + half]) - center;
