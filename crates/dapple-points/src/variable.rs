@@ -30,8 +30,8 @@ use rayon::prelude::*;
 pub use rule::DiskRule;
 
 /// The share of the open cells that gets a dart in each round. The first rounds, in which nearly every dart stays,
-/// are thin, so that it does not matter which of two blocks has its turn first; more rounds than these change no
-/// statistics that could be measured, and cost time.
+/// are thin, so that it matters little which of two blocks has its turn first. Seven rounds from 1/8 to 1 gave N r² of
+/// 0.6967 instead of 0.6988 (30 sets of 2000 points on a torus), the same anisotropy of 1.05, and took a tenth longer.
 const ROUNDS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 
 /// The slope with which a radius may rise, unseen, between the places where it is read, before everything is done over
@@ -70,7 +70,7 @@ impl Default for VariablePoissonOptions {
 ///
 /// Where the radius is r, there are 0.697 / r² points per area, within 3 % on slopes up to 0.06 and within 5 % up to
 /// 0.35 with the default rule; [`radius_from_density`] and [`radius_for_count`] give the radius to a wanted density. The
-/// radius is read about four times per point.
+/// radius is read about three times per point.
 ///
 /// Around a wrapped axis the radius has to repeat itself too, or else there is a step at the seam, which is honored
 /// but looks like one: beside a step from r to R the larger discs reach over by (r + R) / 2. A ramp from left to right
