@@ -65,15 +65,6 @@ pub enum PointsErrorKind {
         /// The radius, the largest one if it varies.
         radius: f64,
     },
-    /// A side that wraps around is shorter than two radii.
-    NarrowWrap {
-        /// The axis: 0 for x, 1 for y.
-        axis: usize,
-        /// The length of the side.
-        side: f64,
-        /// The radius.
-        radius: f64,
-    },
     /// Two given points are closer than they may be.
     TooClose {
         /// Which points they are.
@@ -133,103 +124,84 @@ impl PointsError {
 
 impl fmt::Display for PointsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.kind {
-            PointsErrorKind::Domain {
+        use PointsErrorKind as Kind;
+        match &self.kind {
+            Kind::Domain {
                 domain: Domain { origin, size, .. },
-            } => {
-                write!(
-                    f,
-                    "the domain from {origin} has size {size}, but both sides must be above 0 and finite"
-                )
-            }
-            PointsErrorKind::Outside { point, position } => {
+            } => write!(
+                f,
+                "the domain from {origin} has size {size}, but both sides must be above 0 and finite"
+            ),
+            Kind::Outside { point, position } => {
                 write!(f, "point {} at {position} is not in the domain", point.0)
             }
-            PointsErrorKind::TooMany { needed, limit } => {
-                write!(
-                    f,
-                    "about {needed:.0} points would be needed, but the limit is {limit}"
-                )
-            }
-            PointsErrorKind::NotPositive { what, value } => {
-                write!(f, "{what} is {value}, but it must be above 0 and finite")
-            }
-            PointsErrorKind::Radius { position, radius } => {
-                write!(
-                    f,
-                    "the radius at {position} is {radius}, but it must be above 0 and finite"
-                )
-            }
-            PointsErrorKind::TooSteep { position, slope } => {
-                write!(
-                    f,
-                    "the radius changes by {slope} per distance near {position}, but it must change by less than 1"
-                )
-            }
-            PointsErrorKind::PeriodTooShort {
-                axis,
-                period,
-                radius,
-            } => {
-                write!(
-                    f,
-                    "axis {axis} wraps around after {period}, but it must reach over two radii of {radius}"
-                )
-            }
-            PointsErrorKind::NarrowWrap { axis, side, radius } => {
-                let name = ["x", "y"][axis.min(1)];
-                write!(
-                    f,
-                    "the domain is {side} wide along {name}, where it wraps, but must be at least two radii of {radius}"
-                )
-            }
-            PointsErrorKind::TooClose {
+            Kind::Radius { position, radius } => write!(
+                f,
+                "the radius at {position} is {radius}, but it must be above 0 and finite"
+            ),
+            Kind::TooSteep { position, slope } => write!(
+                f,
+                "the radius changes by {slope} per distance near {position}, but it must change by less than 1"
+            ),
+            Kind::TooClose {
                 points: [first, second],
                 distance,
                 radius,
-            } => {
-                write!(
-                    f,
-                    "points {} and {} are {distance} apart, but the radius is {radius}",
-                    first.0, second.0
-                )
-            }
-            PointsErrorKind::NotDescending {
-                level,
-                radius,
-                before,
-            } => {
-                write!(
-                    f,
-                    "radius {level} is {radius}, but it must not be larger than the one before, {before}"
-                )
-            }
-            PointsErrorKind::OutOfRange {
-                what,
-                value,
-                range: [least, most],
-            } => {
-                write!(
-                    f,
-                    "{what} is {value}, but it must be between {least} and {most}"
-                )
-            }
-            PointsErrorKind::NoPoints => {
-                f.write_str("there is no point, but at least one is needed")
-            }
-            PointsErrorKind::DifferentDomains { first, other } => {
-                write!(
-                    f,
-                    "one set is in {other:?}, but the first one is in {first:?}"
-                )
-            }
-            PointsErrorKind::TooManyFrequencies { needed, limit } => {
-                write!(
-                    f,
-                    "the spectrum would have about {needed:.0} frequencies or rings, but the limit is {limit}"
-                )
-            }
+            } => write!(
+                f,
+                "points {} and {} are {distance} apart, but the radius is {radius}",
+                first.0, second.0
+            ),
+            Kind::DifferentDomains { first, other } => write!(
+                f,
+                "one set is in {other:?}, but the first one is in {first:?}"
+            ),
+            Kind::NoPoints => f.write_str("there is no point, but at least one is needed"),
+            numbers => fmt_numbers(numbers, f),
         }
+    }
+}
+
+/// The text for the kinds that are about numbers alone.
+fn fmt_numbers(kind: &PointsErrorKind, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    use PointsErrorKind as Kind;
+    match kind {
+        Kind::TooMany { needed, limit } => write!(
+            f,
+            "about {needed:.0} points would be needed, but the limit is {limit}"
+        ),
+        Kind::NotPositive { what, value } => {
+            write!(f, "{what} is {value}, but it must be above 0 and finite")
+        }
+        Kind::PeriodTooShort {
+            axis,
+            period,
+            radius,
+        } => write!(
+            f,
+            "axis {axis} wraps around after {period}, but it must reach over two radii of {radius}"
+        ),
+        Kind::NotDescending {
+            level,
+            radius,
+            before,
+        } => write!(
+            f,
+            "radius {level} is {radius}, but it must not be larger than the one before, {before}"
+        ),
+        Kind::OutOfRange {
+            what,
+            value,
+            range: [least, most],
+        } => write!(
+            f,
+            "{what} is {value}, but it must be between {least} and {most}"
+        ),
+        Kind::TooManyFrequencies { needed, limit } => write!(
+            f,
+            "the spectrum would have about {needed:.0} frequencies or rings, but the limit is {limit}"
+        ),
+        other => write!(f, "{other:?}"),
     }
 }
 

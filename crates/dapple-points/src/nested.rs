@@ -84,3 +84,71 @@ pub fn nested_poisson_disk(
     }
     Ok(NestedPointSet { points, lengths })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::nested_poisson_disk;
+    use crate::{Domain, PointsErrorKind};
+    use dapple_hash::Seed;
+
+    #[test]
+    fn every_level_is_a_maximal_set_and_a_prefix_of_the_next() {
+        for wrap in [[true, true], [true, false], [false, false]] {
+            let domain = Domain {
+                wrap,
+                ..Domain::paper_torus()
+            };
+            // The paper doubles the number of points four times; equal radii add nothing.
+            let radii = [0.2, 0.142, 0.1, 0.071, 0.05, 0.05];
+            let nested = nested_poisson_disk(domain, &radii, Seed(1)).unwrap();
+            assert_eq!(nested.lengths().len(), radii.len());
+            assert_eq!(nested.lengths()[4], nested.lengths()[5], "no point fits");
+            for (level, radius) in radii.into_iter().enumerate() {
+                let set = nested.level(level).unwrap();
+                let all = nested.points().positions();
+                assert_eq!(set.positions(), &all[..set.len()], "level {level}");
+                let distance = set.minimum_distance().unwrap();
+                assert!(distance >= radius, "level {level}: {distance} apart");
+                let gap = set.largest_empty_circle().unwrap().radius;
+                // The tolerance that the sets promise.
+                assert!(
+                    gap <= radius * (1.0 + 1e-6),
+                    "level {level}: a gap of {gap}"
+                );
+            }
+            assert!(
+                nested.level(radii.len()).is_none(),
+                "there is no such level"
+            );
+        }
+    }
+
+    #[test]
+    fn radii_that_grow_are_refused() {
+        let error = nested_poisson_disk(Domain::paper_torus(), &[0.1, 0.2], Seed(1)).unwrap_err();
+        assert!(
+            matches!(
+                error.kind(),
+                PointsErrorKind::NotDescending { level: 1, .. }
+            ),
+            "{error}"
+        );
+        let error = nested_poisson_disk(Domain::paper_torus(), &[0.1, f64::NAN], Seed(1));
+        assert!(
+            matches!(
+                error.unwrap_err().kind(),
+                PointsErrorKind::NotPositive { .. }
+            ),
+            "NaN has another error"
+        );
+    }
+
+    #[test]
+    fn no_radii_make_an_empty_set() {
+        let nested = nested_poisson_disk(Domain::paper_torus(), &[], Seed(1)).unwrap();
+        assert!(
+            nested.points().is_empty() && nested.lengths().is_empty(),
+            "{nested:?}"
+        );
+    }
+}

@@ -111,3 +111,81 @@ fn place(domain: &Domain, unit: DVec2) -> DVec2 {
     // Rounding must not carry the position over a border that does not wrap.
     (domain.origin + unit * domain.size).min(domain.end())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{jittered_grid, white_noise};
+    use crate::{Domain, PointsErrorKind};
+    use dapple_hash::Seed;
+    use glam::DVec2;
+
+    const DOMAIN: Domain = Domain::rectangle(DVec2::new(-3.0, 5.0), DVec2::new(2.0, 1.0));
+
+    #[test]
+    fn white_noise_fills_the_domain_evenly() {
+        let points = white_noise(DOMAIN, 64_000, Seed(1)).unwrap();
+        let mut counts = [0_u32; 64];
+        for (_, position) in points.iter() {
+            let unit = (position - DOMAIN.origin) / DOMAIN.size * 8.0;
+            counts[unit.y as usize * 8 + unit.x as usize] += 1;
+        }
+        // Each count is 1000 ± 32; five standard deviations for 64 of them.
+        assert!(counts.iter().all(|&n| n.abs_diff(1000) < 160), "{counts:?}");
+    }
+
+    #[test]
+    fn jitter_stays_within_its_part_of_the_cell() {
+        for jitter in [0.0, 0.5, 1.0] {
+            let points = jittered_grid(DOMAIN, [20, 10], jitter, Seed(1)).unwrap();
+            let mut farthest = 0.0_f64;
+            for (point, position) in points.iter() {
+                let cell = DVec2::new(f64::from(point.0 % 20), f64::from(point.0 / 20));
+                let center = DOMAIN.origin + (cell + 0.5) * 0.1;
+                farthest = farthest.max((position - center).abs().max_element());
+            }
+            // Half of a cell of 0.1; 200 points come close to it. 1e-12 is for rounding.
+            let most = 0.05 * jitter;
+            assert!(farthest <= most + 1e-12, "{jitter}: {farthest}");
+            assert!(farthest >= most * 0.95, "{jitter}: only {farthest}");
+        }
+    }
+
+    #[test]
+    fn bad_numbers_are_refused() {
+        for jitter in [-0.1, 1.1, f64::NAN] {
+            let error = jittered_grid(DOMAIN, [2, 2], jitter, Seed(1)).unwrap_err();
+            assert!(
+                matches!(error.kind(), PointsErrorKind::OutOfRange { .. }),
+                "{error}"
+            );
+        }
+        let error = jittered_grid(DOMAIN, [u32::MAX; 2], 1.0, Seed(1)).unwrap_err();
+        assert!(
+            matches!(error.kind(), PointsErrorKind::TooMany { .. }),
+            "{error}"
+        );
+        let error = white_noise(DOMAIN, u32::MAX, Seed(1)).unwrap_err();
+        assert!(
+            matches!(error.kind(), PointsErrorKind::TooMany { .. }),
+            "{error}"
+        );
+        let flat = Domain::rectangle(DVec2::ZERO, DVec2::X);
+        assert!(white_noise(flat, 1, Seed(1)).is_err(), "no area");
+        assert!(
+            jittered_grid(DOMAIN, [0, 5], 1.0, Seed(1))
+                .unwrap()
+                .is_empty(),
+            "no cells"
+        );
+    }
+
+    #[test]
+    fn value_stability_uniform() {
+        let noise = white_noise(DOMAIN, 3, Seed(7)).unwrap().positions()[2];
+        assert_eq!(noise.x.to_bits(), 13831470301199039771);
+        let grid = jittered_grid(DOMAIN, [2, 2], 1.0, Seed(7))
+            .unwrap()
+            .positions()[3];
+        assert_eq!(grid.y.to_bits(), 4618182575496362104);
+    }
+}

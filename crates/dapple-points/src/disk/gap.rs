@@ -43,38 +43,9 @@ impl Default for GapSearch {
 }
 
 impl GapSearch {
-    /// A random free place of a cell whose mask is `mask`, or none if all of its places are covered.
-    ///
-    /// The sheet must hold points only. The bits of subcells that turn out to be covered by one disc are cleared.
+    /// Collects the discs that reach into a cell. The sheet must hold points only.
     #[inline(always)]
-    pub(crate) fn find<S: Simd>(
-        &mut self,
-        simd: S,
-        grid: &Grid,
-        sheet: &Sheet,
-        cell: Cell,
-        mask: &mut u64,
-        hash: CellHash,
-    ) -> Option<[f32; 2]> {
-        self.gather(simd, grid, sheet, cell);
-        let mut size = LATTICE / SIDE as u32;
-        self.start(simd, grid, mask, size);
-        let mut draws = 1;
-        while !self.squares.is_empty() {
-            let place = self.random_place(size, hash.at(draws));
-            if !self.is_covered(simd, grid, [[place[0]; 2], [place[1]; 2]]) {
-                return Some(place);
-            }
-            draws += 1;
-            size /= 2;
-            self.cut(simd, grid, size);
-        }
-        None
-    }
-
-    /// Collects the discs that reach into the cell.
-    #[inline(always)]
-    fn gather<S: Simd>(&mut self, simd: S, grid: &Grid, sheet: &Sheet, cell: Cell) {
+    pub(crate) fn gather<S: Simd>(&mut self, simd: S, grid: &Grid, sheet: &Sheet, cell: Cell) {
         let [first, last] = span(0, LATTICE);
         self.n_discs = 0;
         for row in 0..REACH {
@@ -99,6 +70,33 @@ impl GapSearch {
         let end = self.n_discs.next_multiple_of(LANES);
         self.x[self.n_discs..end].fill(FAR);
         self.y[self.n_discs..end].fill(FAR);
+    }
+
+    /// A random free place of the cell whose discs were [gathered](Self::gather) and whose mask is `mask`, or none if
+    /// all of its places are covered.
+    ///
+    /// The bits of subcells that turn out to be covered by one disc are cleared.
+    #[inline(always)]
+    pub(crate) fn find<S: Simd>(
+        &mut self,
+        simd: S,
+        grid: &Grid,
+        mask: &mut u64,
+        hash: CellHash,
+    ) -> Option<[f32; 2]> {
+        let mut size = LATTICE / SIDE as u32;
+        self.start(simd, grid, mask, size);
+        let mut draws = 1;
+        while !self.squares.is_empty() {
+            let place = self.random_place(size, hash.at(draws));
+            if !self.is_covered(simd, grid, [[place[0]; 2], [place[1]; 2]]) {
+                return Some(place);
+            }
+            draws += 1;
+            size /= 2;
+            self.cut(simd, grid, size);
+        }
+        None
     }
 
     /// Takes the set subcells that no disc covers alone as the first squares.

@@ -12,7 +12,7 @@
 //! conflict test needs no second, exact one: points that do not conflict are at least a radius apart as `f64`, and
 //! where everything conflicts no empty circle is larger than the radius times 1 + 1e-6.
 
-use crate::{Domain, PointsError, PointsErrorKind};
+use crate::{Domain, PointsError, PointsErrorKind, RSA_DENSITY};
 use dapple_hash::{CellHash, Seed};
 use glam::DVec2;
 
@@ -159,16 +159,16 @@ fn check_radius(domain: &Domain, radius: f64, max_points: u64) -> Result<(), Poi
     }
     for axis in [0, 1] {
         if domain.wrap[axis] && domain.size[axis] < 2.0 * radius {
-            return refuse(PointsErrorKind::NarrowWrap {
-                axis,
-                side: domain.size[axis],
+            return refuse(PointsErrorKind::PeriodTooShort {
+                axis: axis as u32,
+                period: domain.size[axis],
                 radius,
             });
         }
     }
     // A set has at least 0.65 points per squared radius of area, and a strip of no width at least one per two radii.
     let sides = domain.size / radius;
-    let needed = (crate::disk::DENSITY * sides.x * sides.y).max(0.5 * sides.max_element());
+    let needed = (RSA_DENSITY * sides.x * sides.y).max(0.5 * sides.max_element());
     if needed > max_points as f64 || needed.is_nan() {
         return refuse(PointsErrorKind::TooMany {
             needed,

@@ -7,6 +7,7 @@
 //! boxes of such offsets, and for a box only those subcells that are covered from everywhere in the box.
 
 use super::grid::{Grid, HALO};
+use fearless_simd::{Level, dispatch, f32x8, prelude::*};
 
 /// Subcells along a side of a cell.
 pub(crate) const SIDE: usize = 8;
@@ -25,14 +26,12 @@ pub(crate) struct Coverage {
 
 impl Coverage {
     /// Computes the table.
-    pub(crate) fn new(grid: &Grid) -> Self {
+    pub(crate) fn new(grid: &Grid, level: Level) -> Self {
         let x = farthest(grid.scale[0]);
         let y = farthest(grid.scale[1]);
         let mut kept = Vec::with_capacity(BOXES * BOXES);
         for far_y in &y {
-            for far_x in &x {
-                kept.push(kept_bits(far_x, far_y));
-            }
+            dispatch!(level, simd => kept_in_row(simd, &x, far_y, &mut kept));
         }
         Self { kept }
     }
@@ -59,18 +58,24 @@ fn farthest(scale: f32) -> [[f32; REACH * SIDE]; BOXES] {
     })
 }
 
-/// The bits of the subcells that are not wholly covered.
-fn kept_bits(far_x: &[f32; REACH * SIDE], far_y: &[f32; REACH * SIDE]) -> [[u64; REACH]; REACH] {
-    let mut kept = [[0; REACH]; REACH];
-    for (row, y) in far_y.iter().enumerate() {
-        let open = far_x.iter().enumerate().fold(0_u64, |bits, (column, x)| {
-            bits | u64::from(x + y >= 1.0) << column
-        });
-        for (column, cell) in kept[row / SIDE].iter_mut().enumerate() {
-            *cell |= (open >> (SIDE * column) & 0xFF) << (SIDE * (row % SIDE));
+/// For a row of boxes, the bits of the subcells that are not wholly covered.
+#[inline(always)]
+fn kept_in_row<S: Simd>(
+    simd: S,
+    x: &[[f32; REACH * SIDE]; BOXES],
+    far_y: &[f32; REACH * SIDE],
+    into: &mut Vec<[[u64; REACH]; REACH]>,
+) {
+    for far_x in x {
+        let mut kept = [[0; REACH]; REACH];
+        for (row, &far_y) in far_y.iter().enumerate() {
+            for (cell, far_x) in kept[row / SIDE].iter_mut().zip(far_x.chunks_exact(SIDE)) {
+                let far_sq = f32x8::from_slice(simd, far_x) + far_y;
+                *cell |= far_sq.simd_ge(1.0).to_bitmask() << (SIDE * (row % SIDE));
+            }
         }
+        into.push(kept);
     }
-    kept
 }
 
 /// The number of the set bit of `mask` that has `rank` set bits below it; there must be one.
@@ -81,12 +86,12 @@ fn kept_bits(far_x: &[f32; REACH * SIDE], far_y: &[f32; REACH * SIDE]) -> [[u64;
 pub(crate) fn select(mask: u64, rank: u32) -> u32 {
     let pairs = mask - (mask >> 1 & 0x5555_5555_5555_5555);
     let fours = (pairs & 0x3333_3333_3333_3333) + (pairs >> 2 & 0x3333_3333_3333_3333);
-    let ends = (fours + (fours >> 4) & 0x0F0F_0F0F_0F0F_0F0F).wrapping_mul(ONES);
+    let ends = ((fours + (fours >> 4)) & 0x0F0F_0F0F_0F0F_0F0F).wrapping_mul(ONES);
     let byte = 8 * bytes_up_to(ends, rank);
     let rank = rank - ((ends << 8) >> byte & 0xFF) as u32;
     // The bits of that byte, one to a byte.
     let spread = (mask >> byte & 0xFF).wrapping_mul(ONES) & 0x8040_2010_0804_0201;
-    let bits = (spread + 0x7F7F_7F7F_7F7F_7F7F | spread) >> 7 & ONES;
+    let bits = ((spread + 0x7F7F_7F7F_7F7F_7F7F) | spread) >> 7 & ONES;
     byte + bytes_up_to(bits.wrapping_mul(ONES), rank)
 }
 
@@ -97,7 +102,7 @@ const ONES: u64 = 0x0101_0101_0101_0101;
 #[inline(always)]
 fn bytes_up_to(ends: u64, rank: u32) -> u32 {
     let high = ONES << 7;
-    let up_to = ((u64::from(rank) * ONES | high) - ends) & high;
+    let up_to = (((u64::from(rank) * ONES) | high) - ends) & high;
     ((up_to >> 7).wrapping_mul(ONES) >> 56) as u32
 }
 

@@ -46,7 +46,7 @@ impl Sheet {
         let length = grid.stride() * grid.rows() + LANES;
         Self {
             x: vec![FAR; length],
-            y: vec![FAR; length],
+            y: vec![0.0; length],
             rank: vec![0; length],
         }
     }

@@ -142,9 +142,8 @@ impl Band {
                 continue;
             }
             let hash = grid.hash(seed, cell);
-            let place = self
-                .search
-                .find(simd, grid, sheet, cell, &mut masks[index], hash);
+            self.search.gather(simd, grid, sheet, cell);
+            let place = self.search.find(simd, grid, &mut masks[index], hash);
             if let Some(offset) = place {
                 self.propose(index, cell, offset);
                 self.open[kept] = cell;

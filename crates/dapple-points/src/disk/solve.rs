@@ -12,7 +12,7 @@ use fearless_simd::{Level, dispatch};
 use glam::DVec2;
 
 /// Rows of cells in a band: few enough to keep several cores busy, many enough that little is done twice.
-const BAND_ROWS: u32 = 128;
+const BAND_ROWS: u32 = 64;
 
 /// For how long each slice throws darts: the mean number of darts at a cell.
 const DARTS: [f64; 8] = [0.3, 0.4, 0.6, 1.0, 2.0, 4.0, 8.0, 16.0];
@@ -32,10 +32,11 @@ impl<'a> Solution<'a> {
     /// The domain without points.
     pub(crate) fn new(grid: &'a Grid, coverage: &'a Coverage, level: Level) -> Self {
         let end = HALO + grid.cells[1];
-        let bands = (HALO..end)
-            .step_by(BAND_ROWS as usize)
-            .map(|first| Band::new(grid, first..end.min(first + BAND_ROWS)))
-            .collect();
+        let first_rows = (HALO..end).step_by(BAND_ROWS as usize);
+        let mut bands = vec![Band::default(); first_rows.len()];
+        for_each(bands.iter_mut().zip(first_rows), |(band, first)| {
+            *band = Band::new(grid, first..end.min(first + BAND_ROWS));
+        });
         Self {
             grid,
             coverage,
@@ -82,14 +83,25 @@ impl<'a> Solution<'a> {
 
     /// The positions of the points that were not given, cell by cell.
     pub(crate) fn positions(&self) -> Vec<DVec2> {
-        let columns = HALO..HALO + self.grid.cells[0];
-        let rows = HALO..HALO + self.grid.cells[1];
-        let mut positions = Vec::with_capacity(rows.len() * columns.len() * 2 / 5);
-        for cell in rows.flat_map(|row| columns.clone().map(move |column| Cell { row, column })) {
-            let index = self.grid.index(cell);
-            if self.sheet.x[index] < FAR && self.sheet.rank[index] == POINT {
-                let offset = [self.sheet.x[index], self.sheet.y[index]];
-                positions.push(self.grid.position(cell, offset));
+        let mut parts = vec![Vec::new(); self.bands.len()];
+        for_each(self.bands.iter().zip(&mut parts), |(band, part)| {
+            *part = self.positions_in(band);
+        });
+        parts.concat()
+    }
+
+    fn positions_in(&self, band: &Band) -> Vec<DVec2> {
+        let (grid, sheet) = (self.grid, &self.sheet);
+        let columns = HALO..HALO + grid.cells[0];
+        let cells = band
+            .rows
+            .clone()
+            .flat_map(|row| columns.clone().map(move |column| Cell { row, column }));
+        let mut positions = Vec::with_capacity(band.rows.len() * columns.len() * 2 / 5);
+        for cell in cells {
+            let index = grid.index(cell);
+            if sheet.x[index] < FAR && sheet.rank[index] == POINT {
+                positions.push(grid.position(cell, [sheet.x[index], sheet.y[index]]));
             }
         }
         positions

@@ -1,11 +1,13 @@
 //! What makes a Poisson-disk set one, checked by means that share nothing with how it was made.
 
+use super::mask::Coverage;
+use super::solve::Solution;
 use super::{
-    DENSITY, PoissonDisk, extend_poisson_disk, poisson_disk, poisson_disk_about,
-    poisson_disk_radius,
+    PoissonDisk, extend_poisson_disk, poisson_disk, poisson_disk_about, poisson_disk_radius,
 };
-use crate::{Domain, PointIdx, PointSet, PointsErrorKind, SpectrumOptions, spectrum};
+use crate::{Domain, PointIdx, PointSet, PointsErrorKind, RSA_DENSITY, SpectrumOptions, spectrum};
 use dapple_hash::{CellHash, Seed, unit_f64};
+use fearless_simd::Level;
 use glam::DVec2;
 
 /// How much larger than the radius an empty circle may be, as the documentation says.
@@ -108,7 +110,7 @@ fn density_is_that_of_random_sequential_addition() {
     let set = poisson_disk(Domain::paper_torus(), radius, Seed(11)).unwrap();
     let density = set.normalized_density(radius);
     // The number of points of a set of N varies by about 0.25 · sqrt(N): here 0.001 of the density.
-    assert!((density - DENSITY).abs() < 0.004, "N r² is {density}");
+    assert!((density - RSA_DENSITY).abs() < 0.004, "N r² is {density}");
 }
 
 #[test]
@@ -233,6 +235,30 @@ fn number_of_threads_changes_nothing() {
 }
 
 #[test]
+fn every_simd_level_gives_the_same_bits() {
+    let torus = Domain::paper_torus();
+    let solver = PoissonDisk::new(torus, 0.02).unwrap();
+    let with = |level: Level| {
+        let coverage = Coverage::new(&solver.grid, level);
+        let mut solution = Solution::new(&solver.grid, &coverage, level);
+        solution.fill(Seed(3));
+        solution.positions()
+    };
+    let expected = solver.sample(Seed(3)).unwrap();
+    let best = Level::new();
+    assert_eq!(with(best), expected.positions(), "the best level");
+    assert_eq!(
+        with(Level::baseline()),
+        expected.positions(),
+        "the baseline"
+    );
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(token) = best.as_sse4_2() {
+        assert_eq!(with(Level::Sse4_2(token)), expected.positions(), "SSE 4.2");
+    }
+}
+
+#[test]
 fn given_points_stay_first_and_where_they_are() {
     for domain in domains() {
         let coarse = poisson_disk(domain, 0.1, Seed(1)).unwrap();
@@ -300,7 +326,7 @@ fn bad_radii_are_refused() {
     }
     let error = poisson_disk(torus, 1.01, Seed(0)).unwrap_err();
     assert!(
-        matches!(error.kind(), PointsErrorKind::NarrowWrap { .. }),
+        matches!(error.kind(), PointsErrorKind::PeriodTooShort { .. }),
         "{error}"
     );
     for radius in [1e-4, 1e-9, 1e-300, f64::MIN_POSITIVE] {
