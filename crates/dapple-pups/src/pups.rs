@@ -129,7 +129,9 @@ impl Pups {
         let mut weights = Vec::new();
         let mut total = 0.0;
         self.net.for_each_weight(position, |instance, weight| {
-            weights.push((PointIdx(instance.point), weight));
+            if weight > 0.0 {
+                weights.push((PointIdx(instance.point), weight));
+            }
             total += weight;
         });
         if total < LEAST_TOTAL {

@@ -10,8 +10,8 @@ use fearless_simd::{dispatch, f32x8, prelude::*};
 use glam::DVec2;
 
 impl Net {
-    /// Calls `take(record, weight)` for every candidate with a weight at a position that is in range, in the order in
-    /// which weights are summed.
+    /// Calls `take(record, weight)` for every candidate at a position that is in range, in the order in which weights are
+    /// summed. Some weights are zero: which ones cannot be foreseen, so that leaving them out costs more than it saves.
     #[inline]
     pub(crate) fn for_each_weight(&self, position: DVec2, take: impl FnMut(&Record, f32)) {
         match self.options.weight {
@@ -54,32 +54,27 @@ impl Net {
             let x = (position.x - record.center.x) as f32;
             let y = (position.y - record.center.y) as f32;
             let mut weight = product(simd, profile, &record.axes, x, y);
-            if weight > 0.0 && record.has_more {
+            if record.has_more {
                 for block in &self.blocks(&self.instances[record.instance as usize])[1..] {
                     weight *= product(simd, profile, block, x, y);
                 }
             }
-            if weight > 0.0 {
-                if let Some(&shift) = self.shifts.get(record.point as usize) {
-                    weight = shifted(simd, weight, shift, x, y);
-                }
-                take(record, weight);
+            if let Some(&shift) = self.shifts.get(record.point as usize) {
+                weight = shifted(simd, weight, shift, x, y);
             }
+            take(record, weight);
         }
     }
 }
 
-/// The product of the axial weights of a block: zero as soon as one of them is.
+/// The product of the axial weights of a block.
 #[inline(always)]
 fn product<S: Simd, P: Profile>(simd: S, profile: P, block: &AxisBlock, x: f32, y: f32) -> f32 {
     let zero = f32x8::splat(simd, 0.0);
     let one = f32x8::splat(simd, 1.0);
     let along = f32x8::from_slice(simd, &block.x) * x;
     let u = (one - f32x8::from_slice(simd, &block.y) * y) - along;
-    if u.simd_le(zero).any_true() {
-        return 0.0;
-    }
-    let u = u.min(one);
+    let u = u.max(zero).min(one);
     let (mut q, mut t) = (1.0, 1.0);
     for &u in u.as_slice() {
         (q, t) = profile.step(q, t, u);
