@@ -6,7 +6,7 @@
 mod label;
 mod stencil;
 
-pub use label::{label_color, label_gray};
+pub use label::{graph_grays, label_color, label_gray};
 
 use dapple_graph::Graph;
 use dapple_points::{Domain, PointSet};

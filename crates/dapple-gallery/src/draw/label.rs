@@ -1,6 +1,8 @@
 //! Colors and shades for labels.
 
 use dapple_color::LinearRgb;
+use dapple_graph::Graph;
+use dapple_points::PointIdx;
 
 /// A color for a label: neighboring labels get colors far apart, and a label has the same color everywhere.
 #[must_use]
@@ -24,13 +26,37 @@ pub fn label_gray(label: u32) -> f32 {
     0.25 + 0.75 * spread as f32
 }
 
+/// A shade of gray, from 0.25 to 1, for each point of a graph, so that neighbors are easy to tell apart.
+///
+/// Each point takes the one of eight shades that differs most from those of its neighbors that have one already.
+#[must_use]
+pub fn graph_grays(graph: &Graph) -> Vec<f32> {
+    let mut shades: Vec<f32> = Vec::new();
+    for point in (0..graph.n_points() as u32).map(PointIdx) {
+        let axes = graph.axes(point).iter();
+        let taken: Vec<f32> = axes
+            .filter_map(|axis| shades.get(axis.to.index()).copied())
+            .collect();
+        let contrast = |shade: f32| {
+            let gaps = taken.iter().map(|other| (other - shade).abs());
+            gaps.fold(f32::INFINITY, f32::min)
+        };
+        let candidates = (0..8).map(|turn| label_gray(point.0 * 8 + turn));
+        let best = candidates.max_by(|a, b| contrast(*a).total_cmp(&contrast(*b)));
+        shades.push(best.unwrap_or_default());
+    }
+    shades
+}
+
 fn fraction(value: f64) -> f64 {
     value - value.floor()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{label_color, label_gray};
+    use super::{graph_grays, label_color, label_gray};
+    use dapple_graph::delaunay;
+    use dapple_points::{Domain, PointIdx, hash::Seed, poisson_disk};
 
     #[test]
     fn neighboring_labels_differ_visibly() {
@@ -42,6 +68,19 @@ mod tests {
             );
             let gap = (label_gray(label) - label_gray(label + 1)).abs();
             assert!(gap > 0.2, "grays of {label}");
+        }
+    }
+
+    #[test]
+    fn neighbors_in_a_graph_differ_visibly() {
+        let points = poisson_disk(Domain::paper_torus(), 0.1, Seed(1)).unwrap();
+        let graph = delaunay(&points).unwrap();
+        let grays = graph_grays(&graph);
+        for point in (0..graph.n_points() as u32).map(PointIdx) {
+            for axis in graph.axes(point) {
+                let gap = (grays[point.index()] - grays[axis.to.index()]).abs();
+                assert!(gap > 0.01, "{point:?} and {:?} differ by {gap}", axis.to);
+            }
         }
     }
 }

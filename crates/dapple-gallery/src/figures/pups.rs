@@ -11,10 +11,17 @@ mod fig_07;
 mod fig_08;
 mod fig_09a;
 mod fig_09b;
+mod fig_10;
 mod fig_11;
+mod fig_12;
+mod fig_13;
+mod fig_14;
 mod fig_15;
+mod fig_16;
 mod fig_17;
+mod fig_extra_colors;
 mod fig_extra_weights;
+mod flower;
 mod weight;
 
 use crate::{Panel, Paper};
@@ -38,10 +45,16 @@ pub(super) const PAPER: Paper = Paper {
         fig_08::FIGURE,
         fig_09a::FIGURE,
         fig_09b::FIGURE,
+        fig_10::FIGURE,
         fig_11::FIGURE,
+        fig_12::FIGURE,
+        fig_13::FIGURE,
+        fig_14::FIGURE,
         fig_15::FIGURE,
+        fig_16::FIGURE,
         fig_17::FIGURE,
         fig_extra_weights::FIGURE,
+        fig_extra_colors::FIGURE,
     ],
 };
 
@@ -71,12 +84,4 @@ fn picture_of_labels(
 fn square(size: u32) -> Result<Window, RasterError> {
     let square = Domain::paper_torus();
     Window::new(square.origin, square.size, [size; 2])
-}
-
-/// The paper's square, joined from top to bottom but not from left to right, for what changes along x.
-fn cylinder() -> Domain {
-    Domain {
-        wrap: [false, true],
-        ..Domain::paper_torus()
-    }
 }

@@ -1,7 +1,7 @@
 //! Cells of (a) an original point set, (b) the same point set with all orientations pointing to the right and (c) with
 //! all orientations pointing away from the center.
 
-use crate::draw::{Canvas, label_gray};
+use crate::draw::{Canvas, graph_grays};
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_graph::delaunay;
@@ -21,7 +21,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let domain = Domain::paper_torus();
     let points = poisson_disk(domain, 0.3, Seed(5))?;
     let graph = delaunay(&points)?;
-    let shades: Vec<f32> = (0..points.len() as u32).map(label_gray).collect();
+    let shades = graph_grays(&graph);
     let outward = outward_orientations(&points, DVec2::ZERO)?;
 
     let window = Window::new(domain.origin, domain.size, [size; 2])?;

@@ -2,17 +2,15 @@
 //!
 //! The points lie on a cylinder: the texture repeats from top to bottom, but not from left to right.
 
-use super::{cylinder, picture_of_labels};
+use super::picture_of_labels;
 use crate::figure::source;
 use crate::{Figure, Panel};
-use dapple_pups::{CowOptions, Spacing, cow, hash::Seed};
-use dapple_raster::{Ramp, Varying};
-use glam::DVec2;
+use dapple_pups::{ProgressionOptions, cow_progression, hash::Seed};
 
 pub(super) const FIGURE: Figure = Figure {
     number: "15",
     parameters: &[
-        ("minimum distance", "0.2 to 0.02, in equal ratios"),
+        ("minimum distance", "0.2 to 0.025, in equal ratios"),
         ("labels", "random, black or white"),
     ],
     source: source!(),
@@ -20,19 +18,9 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let distance = Varying::GeometricRamp(Ramp {
-        from: DVec2::NEG_X,
-        to: DVec2::X,
-        start: 0.2,
-        end: 0.02,
-    });
-    let options = CowOptions {
-        domain: cylinder(),
-        spacing: Spacing::Distance(distance),
-        ..CowOptions::default()
-    };
+    let texture = |seed| cow_progression(&ProgressionOptions::default(), seed);
     Ok(vec![
-        picture_of_labels("first", &cow(&options, Seed(15))?, size)?,
-        picture_of_labels("second", &cow(&options, Seed(155))?, size)?,
+        picture_of_labels("first", &texture(Seed(15))?, size)?,
+        picture_of_labels("second", &texture(Seed(155))?, size)?,
     ])
 }

@@ -29,10 +29,13 @@ impl Star {
         })
     }
 
-    /// The square about the point that its support fits into.
+    /// The square about the point that its axes fit into.
     pub(super) fn window(&self, size: u32) -> Result<Window, RasterError> {
         let center = self.points.position(self.center);
-        Window::new(center - 0.55, DVec2::splat(1.1), [size; 2])
+        let axes = self.graph.axes(self.center).iter();
+        let longest = axes.map(|axis| axis.vector.length()).fold(0.0, f64::max);
+        let half = DVec2::splat(1.1 * longest);
+        Window::new(center - half, 2.0 * half, [size; 2])
     }
 
     /// Equation 2: the product of the axial weights, each that of the projection onto an axis.
