@@ -19,6 +19,7 @@ mod color_noise;
 mod cow;
 mod iterated;
 mod noise;
+mod octave;
 mod octaves;
 mod progression;
 mod reference;
@@ -33,7 +34,8 @@ pub use label_texture::{LabelTexture, VectorLabelTexture};
 pub use layers::Layers;
 pub use net_options::NetOptions;
 pub use noise::{NoiseOptions, noise};
-pub use octaves::{Folding, Octave, OctaveSource, OctavesOptions, octaves, turbulence};
+pub use octave::{Folding, Octave};
+pub use octaves::{OctaveSource, OctavesOptions, octaves, turbulence};
 pub use progression::{
     LabelRampOptions, ProgressionOptions, cow_progression, giraffe_progression, label_ramp,
 };

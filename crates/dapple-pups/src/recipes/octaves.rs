@@ -7,11 +7,12 @@
 //! The sum of equation 5 lies between 0 and 1 + ½ + ¼ + ⅛ = 1.875; the paper does not say how it is shown. We divide by
 //! the largest possible value: [`Layers::normalized`].
 
-use crate::{Layers, NetOptions, NoiseOptions, PupsError, PupsErrorKind, Spacing, Texture, noise};
+use crate::{
+    Folding, Layers, NetOptions, NoiseOptions, Octave, PupsError, PupsErrorKind, Spacing, Texture,
+    noise,
+};
 use dapple_hash::Seed;
 use dapple_points::Domain;
-use dapple_raster::{Field, RasterError, RasterViewMut, Window};
-use glam::DVec2;
 
 /// What [`octaves`] and [`turbulence`] are to be like.
 #[derive(Clone, Debug)]
@@ -54,16 +55,6 @@ pub enum OctaveSource {
     Rescaled,
 }
 
-/// Whether an octave is folded.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Folding {
-    /// It is as it was interpolated.
-    #[default]
-    Plain,
-    /// T' = 2 · |T − ½|.
-    Folded,
-}
-
 impl Default for OctavesOptions {
     fn default() -> Self {
         Self {
@@ -76,14 +67,6 @@ impl Default for OctavesOptions {
             net: NetOptions::default(),
         }
     }
-}
-
-/// One octave: a texture with values in `[0, 1]`, rescaled and perhaps folded.
-#[derive(Clone, Debug)]
-pub struct Octave {
-    texture: Texture,
-    scale: f64,
-    folding: Folding,
 }
 
 /// Octaves of noise and, as a field, their sum after equation 5.
@@ -189,63 +172,4 @@ pub(crate) fn check_series(
     PupsError::check(finer, "lacunarity", lacunarity, "above 1 and at most 16")?;
     let fainter = gain > 0.0 && gain <= 1.0;
     PupsError::check(fainter, "gain", gain, "above 0 and at most 1")
-}
-
-impl Octave {
-    fn new(texture: Texture, scale: f64) -> Self {
-        Self {
-            texture,
-            scale,
-            folding: Folding::Plain,
-        }
-    }
-
-    /// The same octave, folded or not.
-    #[must_use]
-    pub fn with_folding(self, folding: Folding) -> Self {
-        Self { folding, ..self }
-    }
-
-    /// The texture that it shows.
-    #[must_use]
-    pub fn texture(&self) -> &Texture {
-        &self.texture
-    }
-
-    /// What positions are multiplied with: 1, or a power of two if octaves are rescaled.
-    #[must_use]
-    pub fn scale(&self) -> f64 {
-        self.scale
-    }
-}
-
-/// T' = 2 · |T − ½|, between 0 and 1 for values between 0 and 1.
-fn fold(value: f32) -> f32 {
-    2.0 * (value - 0.5).abs()
-}
-
-impl Field for Octave {
-    fn sample(&self, position: DVec2) -> f32 {
-        let value = self.texture.sample(position * self.scale);
-        match self.folding {
-            Folding::Plain => value,
-            Folding::Folded => fold(value),
-        }
-    }
-
-    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        // With a power of two, the positions of this window are those of the other times the scale, to the last bit.
-        let window = Window {
-            origin: window.origin * self.scale,
-            pixel: window.pixel * self.scale,
-            ..*window
-        };
-        self.texture.render(&window, out.reborrow())?;
-        if self.folding == Folding::Folded {
-            out.rows_mut()
-                .flatten()
-                .for_each(|value| *value = fold(*value));
-        }
-        Ok(())
-    }
 }

@@ -94,6 +94,10 @@ fn recipe_options_out_of_range_are_refused() {
         };
         assert_range(space_giraffe(&options, Seed(1)));
     }
+}
+
+#[test]
+fn numbers_of_layers_and_iterations_out_of_range_are_refused() {
     for points_per_cell in [[0, 1], [4, 3], [1, 99]] {
         let options = CellsOptions {
             points_per_cell,
