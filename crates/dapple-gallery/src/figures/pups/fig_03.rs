@@ -14,7 +14,7 @@ use glam::DVec3;
 pub(super) const FIGURE: Figure = Figure {
     number: "3a–c",
     parameters: &[
-        ("ε", "0.1, and 0.5 below"),
+        ("ε", "0.1; in the second row 0.5"),
         ("orientation, x : z", "1 : 9 (a), 1 : 1 (b), 9 : 1 (c)"),
     ],
     source: source!(),
