@@ -14,26 +14,35 @@
 
 #![forbid(unsafe_code)]
 
-mod assign;
-mod bins;
 mod error;
-mod gradient;
-mod line;
-mod net;
 mod options;
-mod power;
-mod profile;
+mod weight;
+
+mod net;
 mod pups;
-mod recipes;
-mod render;
-mod sample;
+mod texture;
+
+mod profile;
+
+mod power;
 mod shift;
+
+mod bins;
+mod sample;
+
+mod gradient;
+
+mod render;
+
+mod line;
+mod splat;
+mod tile;
+
 mod simd;
 mod sink;
-mod splat;
-mod texture;
-mod tile;
-mod weight;
+
+mod assign;
+mod recipes;
 
 pub use assign::{
     Orientations, ReferenceImage, angle_orientations, biased_labels, field_orientations,

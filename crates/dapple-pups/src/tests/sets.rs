@@ -1,9 +1,9 @@
 //! Nets to test with.
 
 use crate::{AxialWeight, Orientation, Pups, PupsOptions, Texture};
-use dapple_graph::{Graph, delaunay};
+use dapple_graph::{Direction, Graph, GraphError, delaunay, k_nearest, yao};
 use dapple_hash::{Seed, hash1, unit_f32, unit_f64};
-use dapple_points::{Domain, PointIdx, PointSet, white_noise};
+use dapple_points::{Domain, PointIdx, PointSet, poisson_disk, white_noise};
 use glam::{DVec2, DVec3};
 
 /// A name, points, a graph over them, and options.
@@ -12,6 +12,8 @@ pub(super) struct Case {
     pub(super) points: PointSet,
     pub(super) graph: Graph,
     pub(super) options: PupsOptions,
+    /// Whether the graph contains the Delaunay graph.
+    pub(super) is_delaunay: bool,
 }
 
 impl Case {
@@ -79,12 +81,38 @@ pub(super) fn cases() -> Vec<Case> {
                     points: points.clone(),
                     graph: graph.clone(),
                     options,
+                    is_delaunay: true,
                 });
             }
         }
     }
     cases.push(hub());
+    cases.extend(other_graphs());
     cases
+}
+
+/// Graphs that close every support but are not the Delaunay graph.
+fn other_graphs() -> Vec<Case> {
+    let points = poisson_disk(Domain::paper_torus(), 0.3, Seed(2)).unwrap();
+    let graphs = [
+        ("a Yao graph", yao(&points, 12, Direction::Symmetric)),
+        ("a directed Yao graph", yao(&points, 8, Direction::Directed)),
+        (
+            "nearest neighbors",
+            k_nearest(&points, 12, Direction::Directed),
+        ),
+    ];
+    let case = |(name, graph): (&str, Result<Graph, GraphError>)| {
+        let options = PupsOptions::default();
+        Case {
+            name: name.into(),
+            points: points.clone(),
+            graph: graph.unwrap(),
+            options,
+            is_delaunay: false,
+        }
+    };
+    graphs.map(case).into()
 }
 
 /// A point with 41 axes, so that its axes fill six blocks.
@@ -106,6 +134,7 @@ fn hub() -> Case {
         points,
         graph,
         options: PupsOptions::default(),
+        is_delaunay: true,
     }
 }
 
