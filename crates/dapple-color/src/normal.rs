@@ -5,6 +5,8 @@
 //! are central differences over two pixels, `(h[i+1] - h[i-1]) / (2 pixel)`, with the neighbors past an edge given by the
 //! same wrap, per axis, as the height itself has: the normal map of a tile is a tile.
 //!
+//! Reference: James F. Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978, for the perturbed normal.
+//!
 //! Slopes are heights per unit of the *plane*, in which the raster has a stated extent, and not per pixel: twice the
 //! resolution gives the same normals, on finer pixels. Where a part of the slope is not finite the normal is flat.
 

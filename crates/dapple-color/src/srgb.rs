@@ -1,6 +1,6 @@
 //! The sRGB transfer function in both directions, exact for 8 and 16 bits.
 //!
-//! The curve is that of IEC 61966-2-1:1999: a code value `v` from 0 to 1 is the linear value `v / 12.92` up to 0.04045
+//! Reference: IEC 61966-2-1:1999. By its curve a code value `v` from 0 to 1 is the linear value `v / 12.92` up to 0.04045
 //! and `((v + 0.055) / 1.055)^2.4` above; the way back is `12.92 x` up to 0.0031308 and `1.055 x^(1/2.4) - 0.055`
 //! above. The standard's two limits do not meet exactly, but no border between two codes of 8 or 16 bits lies in the
 //! gap, so that both directions agree on every border.

@@ -2,6 +2,8 @@
 //!
 //! Each point is a hash of its number or its cell, so a set of more points begins with the same ones. Positions are in
 //! the units of the domain.
+//!
+//! Reference: our own; both are as old as sampling.
 
 use crate::{Domain, PointSet, PointsError, PointsErrorKind};
 use dapple_hash::{CellHash, Seed, unit_f64};

@@ -2,7 +2,7 @@
 //!
 //! Random sequential placing: darts fall at random places, and stay where they keep their distance from all points
 //! before them, until no dart could. For two points of different radius, [`DiskRule`] says what the distance is;
-//! the rules go back to Scott A. Mitchell, Alexander Rand, Mohamed S. Ebeida and Chandrajit Bajaj, "Variable Radii
+//! Reference: the rules go back to Scott A. Mitchell, Alexander Rand, Mohamed S. Ebeida and Chandrajit Bajaj, "Variable Radii
 //! Poisson-Disk Sampling", Canadian Conference on Computational Geometry 2012.
 //!
 //! The domain is cut into rectangles of some hundred points in which the radius hardly changes, and each of these

@@ -3,6 +3,8 @@
 //! The place farthest from all points is a corner of a Voronoi cell, cut off at the sides of the domain. Each cell is
 //! cut out by the bisectors to the points around it, nearest ring of the grid first, until no farther point can
 //! touch it. Corners are kept relative to the cell's point, so a far origin costs no digits.
+//!
+//! Reference: our own.
 
 use super::grid::{Grid, Images};
 use crate::PointSet;
@@ -70,7 +72,7 @@ impl VoronoiCell {
     fn cut_out(&mut self, set: &PointSet, grid: &Grid, position: DVec2) {
         self.start(set, position);
         let center = grid.cell(position);
-        for ring in 0.. {
+        for ring in 0..=grid.outermost_ring() {
             let distance = grid.distance_to_ring(ring);
             if distance > 0.0 && distance * distance > 4.0 * self.reach_sq {
                 return;

@@ -14,7 +14,8 @@ const ROUNDING: f64 = 1e-6;
 pub(super) enum Images {
     /// Each cell once, by the shortest way.
     Nearest,
-    /// Each cell as often as it repeats.
+    /// Each cell as often as it repeats within one period to either side: no image farther off is the nearest one to
+    /// anything that lies within half a period.
     All,
 }
 
@@ -91,6 +92,11 @@ impl Grid {
         reach.clamp(0, self.counts[0].max(self.counts[1]))
     }
 
+    /// The last ring that holds anything.
+    pub(super) fn outermost_ring(&self) -> i64 {
+        self.counts[0].max(self.counts[1]) + 1
+    }
+
     /// Calls `visit` with each point in the cells at a distance of `ring` cells, and with what must be added to its
     /// position to bring it there.
     pub(super) fn visit_ring(
@@ -100,13 +106,18 @@ impl Grid {
         images: Images,
         mut visit: impl FnMut(usize, DVec2),
     ) {
-        for dy in -ring..=ring {
+        let [reach_x, reach_y] = self.counts.map(|count| ring.min(count + 1));
+        for dy in -reach_y..=reach_y {
             let Some((row, shift_y)) = self.along(1, center[1], dy, images) else {
                 continue;
             };
-            let on_edge = dy.abs() == ring;
-            let step = if on_edge { 1 } else { (2 * ring).max(1) };
-            for dx in (-ring..=ring).step_by(step as usize) {
+            // A row on the edge of the ring is whole, any other has the two ends.
+            let is_whole = dy.abs() == ring;
+            let step = if is_whole { 1 } else { (2 * ring).max(1) };
+            if !is_whole && reach_x < ring {
+                continue;
+            }
+            for dx in (-reach_x..=reach_x).step_by(step as usize) {
                 let Some((column, shift_x)) = self.along(0, center[0], dx, images) else {
                     continue;
                 };

@@ -1,3 +1,5 @@
+//! Distances, gaps, density and determinism of sets with a varying radius, and bad input.
+
 use super::leaf::{RadiusField, Tree};
 use super::{DiskRule, VariablePoissonOptions, variable_poisson_disk};
 use crate::{Domain, PointSet, PointsError, PointsErrorKind, RSA_DENSITY};

@@ -1,3 +1,5 @@
+//! The largest empty circle against all places of a lattice, and of few points by hand.
+
 use crate::statistics::test_sets::{domains, random_set};
 use crate::{Domain, PointSet};
 use glam::DVec2;
@@ -82,4 +84,22 @@ fn value_stability_empty_circle_and_minimum_distance() {
         set.minimum_distance().unwrap().to_bits(),
         4579146080416364689
     );
+}
+
+#[test]
+fn thin_domains_do_not_take_forever() {
+    for wrap in [[true, true], [false, true], [true, false], [false, false]] {
+        let size = DVec2::new(1.0, 1e-12);
+        let domain = Domain {
+            origin: DVec2::ZERO,
+            size,
+            wrap,
+        };
+        let circle = random_set(domain, 50, 1).largest_empty_circle().unwrap();
+        // Half of the widest of the gaps between points, or all of one at an open end.
+        assert!(
+            circle.radius > 0.01 && circle.radius < 1.0,
+            "{circle:?} in {domain:?}"
+        );
+    }
 }

@@ -1,3 +1,5 @@
+//! Distances and neighbor counts against all pairs.
+
 use crate::statistics::test_sets::{domains, random_set};
 use crate::{Domain, PointSet};
 use glam::DVec2;

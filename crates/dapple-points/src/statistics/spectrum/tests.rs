@@ -1,3 +1,5 @@
+//! Spectra of noise, lattices and disk sets, and bad input.
+
 use super::{SpectrumOptions, spectrum};
 use crate::statistics::test_sets::{domains, random_set};
 use crate::{Domain, PointSet, PointsErrorKind};
