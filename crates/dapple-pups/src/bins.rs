@@ -99,7 +99,7 @@ impl Bins {
             let blocks = net.blocks(instance);
             places[index as usize] = place;
             self.records.push(Record {
-                axes: blocks.first().copied().unwrap_or_default(),
+                axes: blocks[0],
                 center: instance.center,
                 instance: index,
                 point: instance.point,

@@ -173,6 +173,10 @@ impl Net {
             }
             self.blocks.push(block);
         }
+        if axes.is_empty() {
+            // A point by itself rules everywhere; its block weighs 1.
+            self.blocks.push(AxisBlock::default());
+        }
         Ok(())
     }
 

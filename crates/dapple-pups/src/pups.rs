@@ -232,18 +232,25 @@ impl Sink for Strongest {
     }
 
     #[inline(always)]
-    fn add<S: Simd>(&self, simd: S, point: u32, weight: S::f32s, planes: &mut Planes, at: usize) {
-        let best = S::f32s::from_slice(simd, planes.register::<S>(0, at));
-        let best_point = S::f32s::from_slice(simd, planes.register::<S>(1, at));
-        let stronger = weight.simd_gt(best);
+    fn add<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        point: u32,
+        weights: &[S::f32s; N],
+        planes: &mut Planes,
+        at: usize,
+    ) {
         // Selecting moves bits and does not compute with them.
         let point = S::f32s::splat(simd, f32::from_bits(point));
-        stronger
-            .select(weight, best)
-            .store_slice(planes.register::<S>(0, at));
-        stronger
-            .select(point, best_point)
-            .store_slice(planes.register::<S>(1, at));
+        for row in 0..N {
+            let best = planes.register::<S>(0, at, row);
+            let best_weight = S::f32s::from_slice(simd, best);
+            let stronger = weights[row].simd_gt(best_weight);
+            stronger.select(weights[row], best_weight).store_slice(best);
+            let best = planes.register::<S>(1, at, row);
+            let best_point = S::f32s::from_slice(simd, best);
+            stronger.select(point, best_point).store_slice(best);
+        }
     }
 
     #[inline(always)]

@@ -17,8 +17,16 @@ pub(crate) trait Sink: Sync {
     /// How many values there are to a pixel.
     fn per_pixel(&self) -> usize;
 
-    /// Takes in the weights of control point `point` for a register of pixels from `at` on, in every plane.
-    fn add<S: Simd>(&self, simd: S, point: u32, weight: S::f32s, planes: &mut Planes, at: usize);
+    /// Takes in the weights of control point `point`: for each of `N` rows a register of pixels, the first from `at` on in
+    /// every plane.
+    fn add<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        point: u32,
+        weights: &[S::f32s; N],
+        planes: &mut Planes,
+        at: usize,
+    );
 
     /// Makes the values of a row of pixels, given its part of every plane. `nearest(i)` is the control point nearest to
     /// pixel `i`, for where no weight is left.
@@ -62,11 +70,26 @@ impl Planes {
             .min(TILE);
     }
 
-    /// A register of numbers of a plane.
+    /// A register of numbers of a plane, `row` rows below `at`.
     #[inline(always)]
-    pub(crate) fn register<S: Simd>(&mut self, plane: usize, at: usize) -> &mut [f32] {
-        let start = self.origin + plane * self.plane + at;
+    pub(crate) fn register<S: Simd>(&mut self, plane: usize, at: usize, row: usize) -> &mut [f32] {
+        let start = self.origin + plane * self.plane + at + row * self.stride;
         &mut self.numbers[start..start + S::f32s::LEN]
+    }
+
+    /// Adds to a plane: for each of `N` rows a register of numbers, the first from `at` on.
+    #[inline(always)]
+    pub(crate) fn add<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        plane: usize,
+        at: usize,
+        summands: &[S::f32s; N],
+    ) {
+        for row in 0..N {
+            let numbers = self.register::<S>(plane, at, row);
+            (S::f32s::from_slice(simd, numbers) + summands[row]).store_slice(numbers);
+        }
     }
 
     /// The first `width` numbers of a row of a plane.

@@ -6,11 +6,11 @@
 //! before, take longer than all that is saved.
 
 use crate::line::Line;
-use crate::net::{AxisBlock, Instance};
+use crate::net::{AxisBlock, BLOCK, Instance};
 use crate::profile::Profile;
 use crate::shift::shift_weight;
 use crate::sink::{Planes, Sink};
-use crate::tile::{ActiveBlock, Tile, reach};
+use crate::tile::{Tile, TileBlock};
 use core::ops::Range;
 use fearless_simd::prelude::*;
 
@@ -68,9 +68,10 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
                 *y = (self.ys[first_row + row] - center.y) as f32;
             }
             tile.columns = columns.clone();
+            tile.enter_rows(simd, member.blocks);
             if columns.len() > 2 * TILE {
                 // The box is wide, so it is worth knowing how much of it lies in these rows.
-                let Some([left, right]) = reach(simd, member.blocks, &tile.y) else {
+                let Some([left, right]) = tile.reach(simd) else {
                     continue;
                 };
                 let [left, right] = [center.x + f64::from(left), center.x + f64::from(right)];
@@ -109,7 +110,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
                 (self.xs[first] - center) as f32,
                 (self.xs[last] - center) as f32,
             ];
-            if tile.select_axes(simd, member.blocks, ends) {
+            if tile.select_axes(simd, ends) {
                 for first_column in (first..first + group).step_by(TILE) {
                     tile.move_to(
                         simd,
@@ -161,25 +162,22 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         [column, first_row]: [usize; 2],
     ) {
         let x = S::f32s::from_slice(simd, &tile.x[column..column + S::f32s::LEN]);
-        let mut weights = [S::f32s::splat(simd, 1.0); N];
-        for (index, block) in tile.blocks.iter().enumerate() {
+        let mut weights = self.products::<S, N>(simd, &tile.blocks[0], x, first_row);
+        for block in &tile.blocks[1..] {
             let products = self.products::<S, N>(simd, block, x, first_row);
-            for (weight, product) in weights.iter_mut().zip(products) {
-                *weight = if index == 0 {
-                    product
-                } else {
-                    *weight * product
-                };
+            for row in 0..N {
+                weights[row] *= products[row];
             }
         }
-        for (row, mut weight) in (first_row..).zip(weights) {
-            if let Some(shift) = member.shift {
-                weight = shift_weight(simd, weight, shift, x, S::f32s::splat(simd, tile.y[row]));
+        if let Some(shift) = member.shift {
+            for row in 0..N {
+                let y = S::f32s::splat(simd, tile.y[first_row + row]);
+                weights[row] = shift_weight(simd, weights[row], shift, x, y);
             }
-            let at = (tile.first_row + row) * planes.stride + tile.first_column + column;
-            self.sink
-                .add(simd, member.instance.point, weight, planes, at);
         }
+        let at = (tile.first_row + first_row) * planes.stride + tile.first_column + column;
+        self.sink
+            .add(simd, member.instance.point, &weights, planes, at);
     }
 
     /// The products of the axial weights of a block, in `N` rows.
@@ -187,7 +185,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
     fn products<S: Simd, const N: usize>(
         &self,
         simd: S,
-        block: &ActiveBlock,
+        block: &TileBlock,
         x: S::f32s,
         first_row: usize,
     ) -> [S::f32s; N] {
@@ -195,14 +193,22 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         let one = S::f32s::splat(simd, 1.0);
         let mut q = [one; N];
         let mut t = [one; N];
-        for axis in &block.axes[..block.n] {
-            let along = x * axis.x;
-            let rest = &axis.rest[first_row..first_row + N];
+        let mut active = block.active;
+        while active != 0 {
+            // The mask tells the compiler what is known of the lowest of eight bits.
+            let axis = active.trailing_zeros() as usize % BLOCK;
+            active &= active - 1;
+            let along = x * block.axes.x[axis];
+            let rest = &block.rest[axis][first_row..first_row + N];
             for row in 0..N {
                 let u = S::f32s::splat(simd, rest[row]) - along;
                 (q[row], t[row]) = self.profile.step(q[row], t[row], u.max(zero).min(one));
             }
         }
-        core::array::from_fn(|row| self.profile.finish(q[row], t[row], block.n))
+        let n = block.active.count_ones() as usize % (BLOCK + 1);
+        for row in 0..N {
+            q[row] = self.profile.finish(q[row], t[row], n);
+        }
+        q
     }
 }

@@ -188,19 +188,22 @@ impl Sink for Mean<'_> {
     }
 
     #[inline(always)]
-    fn add<S: Simd>(&self, simd: S, point: u32, weight: S::f32s, planes: &mut Planes, at: usize) {
-        add_to(simd, planes.register::<S>(0, at), weight);
-        if self.n == 1 {
-            add_to(
-                simd,
-                planes.register::<S>(1, at),
-                weight * self.values[point as usize],
-            );
-            return;
-        }
-        let values = &self.values[point as usize * self.n..][..self.n];
-        for (plane, &value) in (1..).zip(values) {
-            add_to(simd, planes.register::<S>(plane, at), weight * value);
+    fn add<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        point: u32,
+        weights: &[S::f32s; N],
+        planes: &mut Planes,
+        at: usize,
+    ) {
+        planes.add(simd, 0, at, weights);
+        let first = point as usize * self.n;
+        for (plane, &value) in (1..).zip(&self.values[first..first + self.n]) {
+            let mut products = *weights;
+            for row in 0..N {
+                products[row] *= value;
+            }
+            planes.add(simd, plane, at, &products);
         }
     }
 
@@ -240,12 +243,6 @@ impl Sink for Mean<'_> {
     fn undefined(&self) -> f32 {
         f32::NAN
     }
-}
-
-/// Adds a register to numbers in memory.
-#[inline(always)]
-fn add_to<S: Simd>(simd: S, numbers: &mut [f32], what: S::f32s) {
-    (S::f32s::from_slice(simd, numbers) + what).store_slice(numbers);
 }
 
 /// Divides number by number.
