@@ -20,8 +20,9 @@ const BINS_LIMIT: f64 = 16_384.0;
 /// A candidate: a control point, or an image of one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Record {
-    /// Its first axes.
-    pub(crate) axes: AxisBlock,
+    /// Its first axes; not an [`AxisBlock`], whose alignment would make a record fill two cache lines.
+    pub(crate) x: [f32; BLOCK],
+    pub(crate) y: [f32; BLOCK],
     pub(crate) center: DVec2,
     /// Its place among the instances.
     pub(crate) instance: u32,
@@ -99,7 +100,8 @@ impl Bins {
             let blocks = net.blocks(instance);
             places[index as usize] = place;
             self.records.push(Record {
-                axes: blocks[0],
+                x: blocks[0].x,
+                y: blocks[0].y,
                 center: instance.center,
                 instance: index,
                 point: instance.point,

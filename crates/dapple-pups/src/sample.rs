@@ -1,7 +1,7 @@
 //! The weights at one position.
 
 use crate::bins::Record;
-use crate::net::{AxisBlock, BLOCK, Net};
+use crate::net::{BLOCK, Net};
 use crate::profile::{Cubic, Profile};
 use crate::shift::shift_weight;
 use crate::simd;
@@ -53,10 +53,10 @@ impl Net {
             let record = bins.record(candidate);
             let x = (position.x - record.center.x) as f32;
             let y = (position.y - record.center.y) as f32;
-            let mut weight = product(simd, profile, &record.axes, x, y);
+            let mut weight = product(simd, profile, (&record.x, &record.y), (x, y));
             if record.has_more {
                 for block in &self.blocks(&self.instances[record.instance as usize])[1..] {
-                    weight *= product(simd, profile, block, x, y);
+                    weight *= product(simd, profile, (&block.x, &block.y), (x, y));
                 }
             }
             if let Some(&shift) = self.shifts.get(record.point as usize) {
@@ -69,11 +69,16 @@ impl Net {
 
 /// The product of the axial weights of a block.
 #[inline(always)]
-fn product<S: Simd, P: Profile>(simd: S, profile: P, block: &AxisBlock, x: f32, y: f32) -> f32 {
+fn product<S: Simd, P: Profile>(
+    simd: S,
+    profile: P,
+    (ax, ay): (&[f32; BLOCK], &[f32; BLOCK]),
+    (x, y): (f32, f32),
+) -> f32 {
     let zero = f32x8::splat(simd, 0.0);
     let one = f32x8::splat(simd, 1.0);
-    let along = f32x8::from_slice(simd, &block.x) * x;
-    let u = (one - f32x8::from_slice(simd, &block.y) * y) - along;
+    let along = f32x8::from_slice(simd, ax) * x;
+    let u = (one - f32x8::from_slice(simd, ay) * y) - along;
     let u = u.max(zero).min(one);
     let (mut q, mut t) = (1.0, 1.0);
     for &u in u.as_slice() {

@@ -3,6 +3,9 @@
 use crate::power::power;
 use fearless_simd::prelude::*;
 
+/// What is added to the square of a distance, so that it is not zero; it changes no distance above 1e-15.
+const LEAST_SQUARE: f32 = f32::MIN_POSITIVE;
+
 /// `w^(1 − K)` where the position lies on the side of the orientation, `w^(1 / (1 + K))` on the other; `shift` is ε times
 /// the orientation in the plane, `x` and `y` lead from the control point to the position.
 ///
@@ -17,11 +20,8 @@ pub(crate) fn shift_weight<S: Simd>(
     y: S::f32s,
 ) -> S::f32s {
     let zero = S::f32s::splat(simd, 0.0);
-    let distance = (x * x + y * y).sqrt();
+    let distance = (x * x + (y * y + LEAST_SQUARE)).sqrt();
     let along = x * shift[0] + y * shift[1];
     let exponent = (distance - along.max(zero)) / (distance + along.min(zero));
-    let exponent = distance
-        .simd_gt(zero)
-        .select(exponent, S::f32s::splat(simd, 1.0));
     power(simd, weight, exponent)
 }

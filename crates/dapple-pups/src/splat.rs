@@ -171,8 +171,10 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         }
         if let Some(shift) = member.shift {
             for row in 0..N {
-                let y = S::f32s::splat(simd, tile.y[first_row + row]);
-                weights[row] = shift_weight(simd, weights[row], shift, x, y);
+                if weights[row].simd_gt(S::f32s::splat(simd, 0.0)).any_true() {
+                    let y = S::f32s::splat(simd, tile.y[first_row + row]);
+                    weights[row] = shift_weight(simd, weights[row], shift, x, y);
+                }
             }
         }
         let at = (tile.first_row + first_row) * planes.stride + tile.first_column + column;

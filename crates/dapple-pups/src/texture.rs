@@ -216,21 +216,20 @@ impl Sink for Mean<'_> {
         nearest: impl Fn(usize) -> u32,
     ) {
         let totals = plane(0);
+        let mut least = f32::INFINITY;
         if self.n == 1 {
-            divide(simd, plane(1), totals, values);
+            least = divide(simd, plane(1), totals, values);
         } else {
             for channel in 0..self.n {
-                let quotients = plane(channel + 1)
-                    .iter()
-                    .zip(totals)
-                    .map(|(sum, total)| sum / total);
-                let channel = values[channel..].iter_mut().step_by(self.n);
-                channel
-                    .zip(quotients)
-                    .for_each(|(value, quotient)| *value = quotient);
+                let sums = plane(channel + 1).iter().zip(totals);
+                for (value, (sum, &total)) in values[channel..].iter_mut().step_by(self.n).zip(sums)
+                {
+                    *value = sum / total;
+                    least = least.min(total);
+                }
             }
         }
-        if any_below(simd, totals, LEAST_TOTAL) {
+        if least < LEAST_TOTAL {
             for (pixel, vector) in values.chunks_exact_mut(self.n).enumerate() {
                 if totals[pixel] < LEAST_TOTAL {
                     let start = nearest(pixel) as usize * self.n;
@@ -245,28 +244,23 @@ impl Sink for Mean<'_> {
     }
 }
 
-/// Divides number by number.
+/// Divides number by number, and returns the least divisor.
 #[inline(always)]
-fn divide<S: Simd>(simd: S, sums: &[f32], totals: &[f32], quotients: &mut [f32]) {
-    let whole = sums.len() / S::f32s::LEN * S::f32s::LEN;
-    for at in (0..whole).step_by(S::f32s::LEN) {
-        let range = at..at + S::f32s::LEN;
-        let [sum, total] =
-            [sums, totals].map(|plane| S::f32s::from_slice(simd, &plane[range.clone()]));
-        (sum / total).store_slice(&mut quotients[range]);
+fn divide<S: Simd>(simd: S, sums: &[f32], totals: &[f32], quotients: &mut [f32]) -> f32 {
+    let mut least = S::f32s::splat(simd, f32::INFINITY);
+    let mut sums = sums.chunks_exact(S::f32s::LEN);
+    let mut totals = totals.chunks_exact(S::f32s::LEN);
+    let mut quotients = quotients.chunks_exact_mut(S::f32s::LEN);
+    for ((sum, total), quotient) in sums.by_ref().zip(totals.by_ref()).zip(quotients.by_ref()) {
+        let total = S::f32s::from_slice(simd, total);
+        least = least.min(total);
+        (S::f32s::from_slice(simd, sum) / total).store_slice(quotient);
     }
-    for at in whole..sums.len() {
-        quotients[at] = sums[at] / totals[at];
+    let mut least = least.reduce_min();
+    let rest = sums.remainder().iter().zip(totals.remainder());
+    for ((sum, &total), quotient) in rest.zip(quotients.into_remainder()) {
+        least = least.min(total);
+        *quotient = sum / total;
     }
-}
-
-/// Whether any number is below a limit.
-#[inline(always)]
-fn any_below<S: Simd>(simd: S, numbers: &[f32], limit: f32) -> bool {
-    let limits = S::f32s::splat(simd, limit);
-    let mut chunks = numbers.chunks_exact(S::f32s::LEN);
-    let any = chunks
-        .by_ref()
-        .any(|chunk| S::f32s::from_slice(simd, chunk).simd_lt(limits).any_true());
-    any || chunks.remainder().iter().any(|&number| number < limit)
+    least
 }
