@@ -13,7 +13,9 @@ use dapple_image::{Limits, Transfer, decode_png, encode_png};
 use dapple_points::{
     Domain, PointSet, VariablePoissonOptions, poisson_disk, variable_poisson_disk,
 };
-use dapple_pups::Pups;
+use dapple_pups::{
+    CowOptions, OctavesOptions, Pups, SpaceGiraffeOptions, cow, space_giraffe, turbulence,
+};
 use dapple_raster::{Field, Ramp, Raster, Varying, Window, glam::DVec2};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -34,8 +36,11 @@ const GOLDEN: &[Golden] = &[
     ("graph-delaunay-torus", graph_delaunay_torus),
     ("points-poisson-disk", points_poisson_disk),
     ("points-variable-radius", points_variable_radius),
+    ("pups-cow", pups_cow),
+    ("pups-giraffe", pups_giraffe),
     ("pups-labels", pups_labels),
     ("pups-noise", pups_noise),
+    ("pups-turbulence", pups_turbulence),
 ];
 
 #[test]
@@ -141,6 +146,21 @@ fn points_variable_radius() -> anyhow::Result<Vec<u8>> {
     )?)
 }
 
+fn pups_cow() -> anyhow::Result<Vec<u8>> {
+    gray(&cow(&CowOptions::default(), Seed(5))?.to_raster(&paper_window()?)?)
+}
+
+fn pups_giraffe() -> anyhow::Result<Vec<u8>> {
+    let giraffe = space_giraffe(&SpaceGiraffeOptions::default(), Seed(6))?;
+    gray(&giraffe.to_raster(&paper_window()?)?)
+}
+
+fn pups_turbulence() -> anyhow::Result<Vec<u8>> {
+    let turbulence = turbulence(&OctavesOptions::default(), Seed(7))?.normalized();
+    // The right half would not fit into the size of a golden image.
+    gray(&turbulence.to_raster(&paper_window()?.crop([0, 0], [SIZE / 2, SIZE])?)?)
+}
+
 fn pups_labels() -> anyhow::Result<Vec<u8>> {
     let pups = Pups::delaunay(&jittered_points()?)?;
     let labels: Vec<LinearRgb> = (0..).map(label_color).take(pups.n_points()).collect();
@@ -187,6 +207,12 @@ fn color(colors: &Raster<LinearRgb>) -> anyhow::Result<Vec<u8>> {
 
 fn unit_torus() -> Domain {
     Domain::torus(DVec2::ZERO, DVec2::ONE)
+}
+
+/// All of the paper's torus.
+fn paper_window() -> anyhow::Result<Window> {
+    let Domain { origin, size, .. } = Domain::paper_torus();
+    Ok(Window::new(origin, size, [SIZE; 2])?)
 }
 
 fn window() -> anyhow::Result<Window> {

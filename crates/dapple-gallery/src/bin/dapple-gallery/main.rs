@@ -61,7 +61,8 @@ fn main() -> anyhow::Result<()> {
             .out
             .unwrap_or_else(|| root().join("target/gallery"));
         let page = export::export(&figures, arguments.size, &out)?;
-        say(&format!("{} figures in {}", figures.len(), page.display()));
+        let shown = page.canonicalize().unwrap_or_else(|_| page.clone());
+        say(&format!("{} figures in {}", figures.len(), shown.display()));
         if arguments.open {
             export::open(&page)
         } else {
