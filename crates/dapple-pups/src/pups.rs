@@ -231,6 +231,10 @@ impl Sink for Strongest {
         1
     }
 
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "registers pass through plain loops only"
+    )]
     #[inline(always)]
     fn add<S: Simd, const N: usize>(
         &self,

@@ -78,6 +78,10 @@ impl Planes {
     }
 
     /// Adds to a plane: for each of `N` rows a register of numbers, the first from `at` on.
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "registers pass through plain loops only"
+    )]
     #[inline(always)]
     pub(crate) fn add<S: Simd, const N: usize>(
         &mut self,

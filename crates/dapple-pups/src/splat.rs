@@ -152,6 +152,10 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
     }
 
     /// Adds the weights of a register's columns in `N` rows, from the column and row `at` of the tile.
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "registers pass through plain loops only"
+    )]
     #[inline(always)]
     fn add_rows<S: Simd, const N: usize>(
         &self,

@@ -187,6 +187,10 @@ impl Sink for Mean<'_> {
         self.n
     }
 
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "registers pass through plain loops only"
+    )]
     #[inline(always)]
     fn add<S: Simd, const N: usize>(
         &self,
