@@ -6,7 +6,7 @@ use crate::sink::{Planes, Sink};
 use crate::{PupsError, PupsOptions, Texture, VectorTexture};
 use dapple_graph::{Graph, delaunay};
 use dapple_points::{Domain, PointIdx, PointSet};
-use dapple_raster::{Raster, RasterViewMut, Window};
+use dapple_raster::{Raster, RasterError, RasterViewMut, Window};
 use fearless_simd::prelude::*;
 use glam::DVec2;
 use std::sync::Arc;
@@ -163,12 +163,12 @@ impl Pups {
     ///
     /// # Errors
     ///
-    /// [`Raster`](crate::PupsErrorKind::Raster) if `out` has another size than the window.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if `out` has another size than the window.
     pub fn render_strongest(
         &self,
         window: &Window,
         mut out: RasterViewMut<'_, PointIdx>,
-    ) -> Result<(), PupsError> {
+    ) -> Result<(), RasterError> {
         window.check_size(out.size())?;
         render(&self.net, window, &Strongest, out.rows_mut().collect());
         Ok(())
@@ -218,7 +218,7 @@ impl Pups {
 pub(crate) const LEAST_TOTAL: f32 = 1e-30;
 
 /// Keeps the largest weight and whose it is, as the bits of a number.
-pub(crate) struct Strongest;
+struct Strongest;
 
 impl Sink for Strongest {
     type Value = PointIdx;

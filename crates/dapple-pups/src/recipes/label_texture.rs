@@ -3,8 +3,6 @@
 //! The paper labels a pixel by "the control point with the highest weight"; of equal ones it is the first. Labels that
 //! several control points share are not summed up.
 
-use crate::pups::Strongest;
-use crate::render::render;
 use crate::{Pups, PupsError};
 use dapple_points::PointIdx;
 use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
@@ -66,10 +64,7 @@ fn render_labels<T: Copy>(
 ) -> Result<(), RasterError> {
     window.check_size(out.size())?;
     let mut strongest = Raster::filled(window.size, PointIdx(u32::MAX))?;
-    let rows = strongest
-        .pixels_mut()
-        .chunks_exact_mut(window.size[0] as usize);
-    render(&pups.net, window, &Strongest, rows.collect());
+    pups.render_strongest(window, strongest.view_mut())?;
     for (row, values) in (0..).zip(out.rows_mut()) {
         for (out, &point) in values.iter_mut().zip(strongest.row(row)) {
             *out = value(point);
