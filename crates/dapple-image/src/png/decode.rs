@@ -62,6 +62,7 @@ pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError>
     let size = [header.width, header.height];
     limits.check_pixels(size.map(u64::from))?;
     let mut reader = decoder.read_info().map_err(refuse)?;
+    check_palette(reader.info())?;
     let length = reader.output_buffer_size().unwrap_or(usize::MAX);
     limits.check_bytes(length as u64)?;
     let mut samples = vec![0; length];
@@ -92,6 +93,21 @@ fn check_not_empty(bytes: &[u8]) -> Result<(), ImageError> {
         return Err(ImageError::new(ImageErrorKind::Empty { size }));
     }
     Ok(())
+}
+
+/// Refuses a palette that ends within a color, of which version 0.18.1 of the codec takes the missing part from beyond
+/// its end (image-rs/image-png, issue 694).
+fn check_palette(info: &png::Info<'_>) -> Result<(), ImageError> {
+    match &info.palette {
+        Some(palette) if palette.len() % 3 != 0 => {
+            let message = format!(
+                "a palette has three bytes for each color, not {} in all",
+                palette.len()
+            );
+            Err(ImageError::damaged("PNG", message))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Checks everything that the format lets check, and skips what is never used.

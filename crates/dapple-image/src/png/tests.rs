@@ -2,6 +2,7 @@
 
 use super::{PngImage, PngPixel, PngPixels, SIGNATURE, Transfer, decode_png, encode_png};
 use crate::{ImageErrorKind, Limits};
+use core::slice;
 use dapple_raster::Raster;
 use proptest::prelude::*;
 
@@ -145,7 +146,7 @@ fn palettes_and_transparent_colors_are_resolved() {
     let plain = naive_png(
         [3, 1],
         [1, 3, 0],
-        core::slice::from_ref(&palette),
+        slice::from_ref(&palette),
         &[0, 0b0100_0000],
     );
     let rgb = vec![[1, 2, 3], [40, 50, 60], [1, 2, 3]];
@@ -237,6 +238,19 @@ fn limits_are_kept_to_the_pixel_and_the_byte() {
         matches!(refused, ImageErrorKind::TooManyBytes { limit: 1199, .. }),
         "{refused:?}"
     );
+}
+
+#[test]
+fn palettes_that_end_within_a_color_are_refused() {
+    for length in 1..=12 {
+        let palette = chunk(b"PLTE", &vec![7; length]);
+        for depth in [1, 2, 4, 8] {
+            let bytes = naive_png([1, 1], [depth, 3, 0], slice::from_ref(&palette), &[0, 0]);
+            let result = decode_png(&bytes, &Limits::default());
+            let whole = length % 3 == 0;
+            assert_eq!(result.is_ok(), whole, "{length} bytes, depth {depth}");
+        }
+    }
 }
 
 #[test]
