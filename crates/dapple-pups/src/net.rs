@@ -14,6 +14,7 @@ use crate::bins::Bins;
 use crate::{PupsError, PupsErrorKind, PupsOptions};
 use dapple_graph::{Axis, Graph, delaunay};
 use dapple_points::{Domain, PointIdx, PointSet};
+use fearless_simd::{f32x8, prelude::*};
 use glam::DVec2;
 use std::sync::OnceLock;
 
@@ -36,6 +37,20 @@ const SLACK: f64 = 1e-5;
 pub(crate) struct AxisBlock {
     pub(crate) x: [f32; BLOCK],
     pub(crate) y: [f32; BLOCK],
+}
+
+impl AxisBlock {
+    /// The slots that hold an axis, as bits.
+    #[inline(always)]
+    pub(crate) fn slots<S: Simd>(&self, simd: S) -> u32 {
+        let (x, y) = (
+            f32x8::from_slice(simd, &self.x),
+            f32x8::from_slice(simd, &self.y),
+        );
+        let is_used = (x.abs() + y.abs()).simd_gt(f32x8::splat(simd, 0.0));
+        // Eight lanes, eight bits.
+        is_used.to_bitmask() as u32
+    }
 }
 
 /// A control point, or one of its periodic images; one cache line.

@@ -19,57 +19,83 @@ const LOG2: [f32; 6] = [
 /// `2^f = 1 + f · P(f)` for `f` from −½ to ½, up to 2.7e-6.
 const EXP2: [f32; 4] = [0.693_121_55, 0.240_220_22, 0.055_919_46, 0.009_681_896];
 
-/// The bits of √½, where the mantissas of [`power`] begin.
-const SQRT_HALF: i32 = 0x3F35_04F3;
-
 /// Below this exponent the result is zero, for all that matters.
 const LEAST_EXPONENT: f32 = -126.0;
 
-/// `base` to the power of `exponent`: `base` in `[0, 1]`, `exponent` at least 0. Zero stays zero, one stays one.
+/// `bases` to the power of `exponents`: bases in `[0, 1]`, exponents at least 0. Zero stays zero, one stays one.
+///
+/// Every step is taken for all of them before the next step, which would have to wait for the one before it.
 #[inline(always)]
-pub(crate) fn power<S: Simd>(simd: S, base: S::f32s, exponent: S::f32s) -> S::f32s {
-    let bits: S::i32s = base.bitcast();
-    let whole = (bits - SQRT_HALF) >> 23;
-    let mantissa: S::f32s = (bits - (whole << 23)).bitcast();
-    let x = mantissa - 1.0;
-    let logarithm = whole.to_float::<S::f32s>() + x * polynomial(simd, LOG2, x);
+pub(crate) fn powers<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
+    simd: S,
+    bases: &[V; N],
+    exponents: &[V; N],
+) -> [V; N] {
+    /// The bits of √½, where the mantissas begin.
+    const SQRT_HALF: u32 = 0x3F35_04F3;
+    const ONE: u32 = 0x3F80_0000;
+    /// Added to a whole number below 2^23, it makes the bits of 2^23 and that number.
+    const WHOLE: u32 = 0x4B00_0000;
+    /// Added to a number, it leaves its nearest whole number in the lowest bits.
+    const ROUND: f32 = 12_582_912.0;
 
-    let scaled = (logarithm * exponent).max(LEAST_EXPONENT);
-    let whole = scaled.round_ties_even();
-    let f = scaled - whole;
-    let fraction = f * polynomial(simd, EXP2, f) + 1.0;
-    let fraction_bits: S::i32s = fraction.bitcast();
-    let result: S::f32s = (fraction_bits + (whole.to_int::<S::i32s>() << 23)).bitcast();
-
-    let zero = S::f32s::splat(simd, 0.0);
-    base.simd_gt(zero).select(result, zero)
+    let mut x = *bases;
+    let mut scaled = *bases;
+    for i in 0..N {
+        let bits = bases[i].to_bits() + (ONE - SQRT_HALF);
+        x[i] = V::from_bits((bits & 0x007F_FFFF) + SQRT_HALF) - 1.0;
+        scaled[i] = V::from_bits((bits >> 23) | WHOLE) - (8_388_608.0 + 127.0);
+    }
+    let logarithms = polynomials(simd, LOG2, &x);
+    let mut rounded = x;
+    for i in 0..N {
+        scaled[i] = (scaled[i] + x[i] * logarithms[i]) * exponents[i];
+        scaled[i] = scaled[i].max(V::splat(simd, LEAST_EXPONENT));
+        rounded[i] = scaled[i] + ROUND;
+        scaled[i] -= rounded[i] - ROUND;
+    }
+    let fractions = polynomials(simd, EXP2, &scaled);
+    let zero = V::splat(simd, 0.0);
+    for i in 0..N {
+        let fraction = scaled[i] * fractions[i] + 1.0;
+        let result = V::from_bits(fraction.to_bits() + (rounded[i].to_bits() << 23));
+        x[i] = bases[i].simd_gt(zero).select(result, zero);
+    }
+    x
 }
 
 /// Horner's scheme, the constant first in `coefficients`.
 #[inline(always)]
-fn polynomial<S: Simd, const N: usize>(simd: S, coefficients: [f32; N], x: S::f32s) -> S::f32s {
-    let mut sum = S::f32s::splat(simd, coefficients[N - 1]);
-    for &coefficient in coefficients[..N - 1].iter().rev() {
-        sum = sum * x + coefficient;
+fn polynomials<S: Simd, V: SimdFloat<S, Element = f32>, const DEGREE: usize, const N: usize>(
+    simd: S,
+    coefficients: [f32; DEGREE],
+    x: &[V; N],
+) -> [V; N] {
+    let mut sums = [V::splat(simd, coefficients[DEGREE - 1]); N];
+    for &coefficient in coefficients[..DEGREE - 1].iter().rev() {
+        for i in 0..N {
+            sums[i] = sums[i] * x[i] + coefficient;
+        }
     }
-    sum
+    sums
 }
 
 #[cfg(test)]
 mod tests {
-    use super::power;
+    use super::powers;
     use crate::simd::for_every_level;
     use fearless_simd::{dispatch, prelude::*};
 
-    fn powers(level: fearless_simd::Level, pairs: &[(f32, f32)]) -> Vec<f32> {
-        let one = |&(base, exponent): &(f32, f32)| dispatch!(level, simd => one_power(simd, base, exponent));
+    fn powers_of(level: fearless_simd::Level, pairs: &[(f32, f32)]) -> Vec<f32> {
+        let one =
+            |&(base, exponent): &(f32, f32)| dispatch!(level, simd => power(simd, base, exponent));
         pairs.iter().map(one).collect()
     }
 
     #[inline(always)]
-    fn one_power<S: Simd>(simd: S, base: f32, exponent: f32) -> f32 {
+    fn power<S: Simd>(simd: S, base: f32, exponent: f32) -> f32 {
         let [base, exponent] = [base, exponent].map(|number| S::f32s::splat(simd, number));
-        power::<S>(simd, base, exponent).as_slice()[0]
+        powers(simd, &[base], &[exponent])[0].as_slice()[0]
     }
 
     #[test]
@@ -84,7 +110,7 @@ mod tests {
         let pairs: Vec<_> = bases
             .flat_map(|base| exponents.map(|exponent| (base, exponent)))
             .collect();
-        let reference = powers(fearless_simd::Level::baseline(), &pairs);
+        let reference = powers_of(fearless_simd::Level::baseline(), &pairs);
         for (&(base, exponent), &result) in pairs.iter().zip(&reference) {
             let exact = if base == 0.0 {
                 0.0
@@ -105,7 +131,7 @@ mod tests {
         for_every_level(|level| {
             let bits = |values: Vec<f32>| values.into_iter().map(f32::to_bits).collect::<Vec<_>>();
             assert_eq!(
-                bits(powers(level, &pairs)),
+                bits(powers_of(level, &pairs)),
                 bits(reference.clone()),
                 "{level:?}"
             );

@@ -5,29 +5,38 @@ use crate::weight::{AxialWeight, Lane};
 
 /// The product of the axial weights of up to [`BLOCK`] axes, taken in one after another.
 ///
-/// An axis with `u = 1` changes no bit of the result, whether it is taken in or left out.
+/// An axis with `u = 1` changes no bit of the result, whether it is taken in or left out. Axes are given by `−u`, in
+/// `[−1, 0]`, since it takes one operation less.
 pub(crate) trait Profile: Copy + Send + Sync {
-    /// Takes in an axis, given its `u`, in `[0, 1]`. Both numbers begin at 1.
-    fn step<V: Lane>(self, q: V, t: V, u: V) -> (V, V);
+    /// Takes in the first axis.
+    fn first<V: Lane>(self, minus_u: V) -> (V, V);
 
-    /// The product, after `n` axes.
+    /// Takes in another axis.
+    fn step<V: Lane>(self, q: V, t: V, minus_u: V) -> (V, V);
+
+    /// The product, after `n` axes, at least one.
     fn finish<V: Lane>(self, q: V, t: V, n: usize) -> V;
 }
 
-/// The cubic of equation 1, `u² (3 − 2u)`, as two products: `q = Π u` and `t = Π (u − 3/2)`, so that an axis costs three
-/// operations. `W = q² · t · (−2)^n`, where the power of two is exact.
+/// The cubic of equation 1, `u² (3 − 2u)`, as two products: `q = Π −u` and `t = Π (3/2 − u)`, so that an axis costs three
+/// operations. `W = q² · t · 2^n`, where the power of two is exact.
 #[derive(Clone, Copy)]
 pub(crate) struct Cubic;
 
 impl Profile for Cubic {
     #[inline(always)]
-    fn step<V: Lane>(self, q: V, t: V, u: V) -> (V, V) {
-        (q * u, t * (u - 1.5))
+    fn first<V: Lane>(self, minus_u: V) -> (V, V) {
+        (minus_u, minus_u + 1.5)
+    }
+
+    #[inline(always)]
+    fn step<V: Lane>(self, q: V, t: V, minus_u: V) -> (V, V) {
+        (q * minus_u, t * (minus_u + 1.5))
     }
 
     #[inline(always)]
     fn finish<V: Lane>(self, q: V, t: V, n: usize) -> V {
-        const POWERS: [f32; BLOCK + 1] = [1.0, -2.0, 4.0, -8.0, 16.0, -32.0, 64.0, -128.0, 256.0];
+        const POWERS: [f32; BLOCK + 1] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0];
         q * q * (t * POWERS[n])
     }
 }
@@ -35,8 +44,13 @@ impl Profile for Cubic {
 /// Any axial weight, by its formula.
 impl Profile for AxialWeight {
     #[inline(always)]
-    fn step<V: Lane>(self, q: V, t: V, u: V) -> (V, V) {
-        (q * self.of_complement(u), t)
+    fn first<V: Lane>(self, minus_u: V) -> (V, V) {
+        (self.of_complement(minus_u * -1.0), minus_u)
+    }
+
+    #[inline(always)]
+    fn step<V: Lane>(self, q: V, t: V, minus_u: V) -> (V, V) {
+        (q * self.of_complement(minus_u * -1.0), t)
     }
 
     #[inline(always)]

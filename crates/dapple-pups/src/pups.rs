@@ -2,7 +2,8 @@
 
 use crate::net::{GraphKind, Net};
 use crate::render::render;
-use crate::sink::{Planes, Sink};
+use crate::sink::Sink;
+use crate::splat::LANES;
 use crate::{PupsError, PupsOptions, Texture, VectorTexture};
 use dapple_graph::{Graph, delaunay};
 use dapple_points::{Domain, PointIdx, PointSet};
@@ -223,51 +224,48 @@ struct Strongest;
 impl Sink for Strongest {
     type Value = PointIdx;
 
-    fn n_planes(&self) -> usize {
-        2
-    }
-
-    fn per_pixel(&self) -> usize {
-        1
-    }
+    const PLANES: usize = 2;
+    const PER_PIXEL: usize = 1;
 
     #[expect(
         clippy::needless_range_loop,
         reason = "registers pass through plain loops only"
     )]
     #[inline(always)]
-    fn add<S: Simd, const N: usize>(
+    fn add<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,
         simd: S,
         point: u32,
-        weights: &[S::f32s; N],
-        planes: &mut Planes,
-        at: usize,
+        weights: &[V; N],
+        sums: &mut [f32],
+        lane: usize,
     ) {
         // Selecting moves bits and does not compute with them.
-        let point = S::f32s::splat(simd, f32::from_bits(point));
+        let point = V::splat(simd, f32::from_bits(point));
         for row in 0..N {
-            let best = planes.register::<S>(0, at, row);
-            let best_weight = S::f32s::from_slice(simd, best);
+            let at = row * Self::PLANES * LANES + lane;
+            let best_weight = V::from_slice(simd, &sums[at..at + V::LEN]);
             let stronger = weights[row].simd_gt(best_weight);
-            stronger.select(weights[row], best_weight).store_slice(best);
-            let best = planes.register::<S>(1, at, row);
-            let best_point = S::f32s::from_slice(simd, best);
+            let weight = stronger.select(weights[row], best_weight);
+            weight.store_slice(&mut sums[at..at + V::LEN]);
+            let best = &mut sums[at + LANES..at + LANES + V::LEN];
+            let best_point = V::from_slice(simd, best);
             stronger.select(point, best_point).store_slice(best);
         }
     }
 
     #[inline(always)]
-    fn resolve<'a, S: Simd>(
+    fn resolve<S: Simd>(
         &self,
         _: S,
-        plane: impl Fn(usize) -> &'a [f32],
+        sums: &[f32],
         values: &mut [PointIdx],
         nearest: impl Fn(usize) -> u32,
     ) {
+        let (weights, points) = sums.split_at(LANES);
         for (pixel, (value, (&weight, &point))) in values
             .iter_mut()
-            .zip(plane(0).iter().zip(plane(1)))
+            .zip(weights.iter().zip(points))
             .enumerate()
         {
             *value = PointIdx(if weight > 0.0 {

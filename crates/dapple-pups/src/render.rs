@@ -6,12 +6,12 @@
 //! number of threads.
 
 use crate::line::{Line, runs};
-use crate::net::Net;
+use crate::net::{Instance, Net};
 use crate::profile::{Cubic, Profile};
 use crate::simd;
 use crate::sink::{Planes, Sink};
-use crate::splat::{Member, ROWS, Splatter, TILE};
-use crate::tile::Tile;
+use crate::splat::{Footprint, LANES, Member, ROWS, Splatter};
+use crate::tile::Tiles;
 use crate::weight::AxialWeight;
 use core::ops::Range;
 use dapple_raster::Window;
@@ -19,7 +19,7 @@ use fearless_simd::{Level, dispatch, prelude::*};
 use glam::DVec2;
 
 /// How many numbers a band is summed in, at most, so that they stay in a core's own cache: 128 KiB.
-const BAND_NUMBERS: usize = 1 << 15;
+const BAND_NUMBERS: usize = 1 << 17;
 
 /// The most rows of a band; bands are what threads share out.
 const BAND_ROWS: usize = 64;
@@ -47,9 +47,9 @@ pub(crate) fn render_at<K: Sink>(
         .collect();
     let columns: Vec<Lane> = runs(&xs)
         .into_iter()
-        .map(|run| Lane::new(&xs, run, TILE))
+        .map(|run| Lane::new(&xs, run, LANES))
         .collect();
-    let height = BAND_NUMBERS / (xs.len().next_multiple_of(TILE) * sink.n_planes());
+    let height = BAND_NUMBERS / Planes::<K>::per_row(xs.len());
     let height = height.clamp(ROWS, BAND_ROWS);
     let mut bands = Vec::new();
     let mut rest = rows.as_mut_slice();
@@ -123,17 +123,13 @@ struct Band<'a, 'rows, K: Sink> {
 
 impl<K: Sink> Band<'_, '_, K> {
     /// Fills the rows; `planes` is memory to work in.
-    fn render(mut self, level: Level, planes: &mut Planes) {
+    fn render(mut self, level: Level, planes: &mut Planes<K>) {
         for columns in self.columns {
             if !columns.is_finite() || !self.ys.is_finite() {
                 self.leave_undefined(&columns.range);
                 continue;
             }
-            planes.clear(
-                self.sink.n_planes(),
-                columns.range.len(),
-                self.ys.padded.len(),
-            );
+            planes.clear(columns.range.len(), self.ys.padded.len());
             match self.net.options.weight {
                 AxialWeight::Cubic => {
                     dispatch!(level, simd => self.splat(simd, Cubic, columns, planes));
@@ -148,54 +144,87 @@ impl<K: Sink> Band<'_, '_, K> {
 
     /// Adds up the weights of all members.
     #[inline(always)]
-    fn splat<S: Simd, P: Profile>(&self, simd: S, profile: P, columns: &Lane, planes: &mut Planes) {
+    fn splat<S: Simd, P: Profile>(
+        &self,
+        simd: S,
+        profile: P,
+        columns: &Lane,
+        planes: &mut Planes<K>,
+    ) {
         let splatter = Splatter {
             profile,
             sink: self.sink,
             xs: &columns.padded,
-            columns: &columns.line,
             ys: &self.ys.padded,
-            rows: &self.ys.line,
         };
-        let mut tile = Tile::default();
+        if self.net.shifts.is_empty() {
+            self.add_members::<S, P, false>(simd, &splatter, columns, planes);
+        } else {
+            self.add_members::<S, P, true>(simd, &splatter, columns, planes);
+        }
+    }
+
+    #[inline(always)]
+    fn add_members<S: Simd, P: Profile, const ORIENTED: bool>(
+        &self,
+        simd: S,
+        splatter: &Splatter<P, K>,
+        columns: &Lane,
+        planes: &mut Planes<K>,
+    ) {
+        let mut tiles = Tiles::default();
         for &member in &self.members {
             let instance = &self.net.instances[member as usize];
-            let blocks = self.net.blocks(instance);
-            let shift = self.net.shifts.get(instance.point as usize).copied();
-            splatter.add(
-                simd,
-                Member {
-                    instance,
-                    blocks,
-                    shift,
+            let Instance { min, max, .. } = *instance;
+            let rows = self.ys.line.touched(min.y, max.y);
+            let columns = columns.line.touched(min.x, max.x);
+            if rows.is_empty() || columns.is_empty() {
+                continue;
+            }
+            // A window has less than 2^32 columns and rows.
+            let footprint = Footprint {
+                column: columns.start as u32,
+                row: rows.start as u32,
+                n_columns: columns.len() as u32,
+                n_rows: rows.len() as u32,
+            };
+            let member = Member {
+                instance,
+                blocks: self.net.blocks(instance),
+                shift: if ORIENTED {
+                    self.net.shifts[instance.point as usize]
+                } else {
+                    [0.0; 2]
                 },
-                &mut tile,
-                planes,
-            );
+                footprint,
+            };
+            splatter.add::<S, ORIENTED>(simd, member, &mut tiles, planes);
         }
     }
 
     /// Turns sums into values.
     #[inline(always)]
-    fn resolve<S: Simd>(&mut self, simd: S, columns: &Lane, planes: &Planes) {
-        let per_pixel = self.sink.per_pixel();
+    fn resolve<S: Simd>(&mut self, simd: S, columns: &Lane, planes: &mut Planes<K>) {
         let Range { start, end } = columns.range;
         for (row, values) in self.rows.iter_mut().enumerate() {
-            let values = &mut values[start * per_pixel..end * per_pixel];
-            let plane = |plane| planes.row(plane, row, end - start);
-            let nearest = |pixel: usize| {
-                let position = DVec2::new(columns.padded[pixel], self.ys.padded[row]);
-                self.net.nearest(position).point
-            };
-            self.sink.resolve(simd, plane, values, nearest);
+            let values = &mut values[start * K::PER_PIXEL..end * K::PER_PIXEL];
+            for (index, values) in values.chunks_mut(LANES * K::PER_PIXEL).enumerate() {
+                let (sums, _) = planes.rows(index * LANES, row, 1);
+                let nearest = |pixel: usize| {
+                    let x = columns.padded[index * LANES + pixel];
+                    let position = DVec2::new(x, self.ys.padded[row]);
+                    self.net.nearest(position).point
+                };
+                self.sink.resolve(simd, sums, values, nearest);
+            }
         }
     }
 
     /// Marks pixels whose positions are not finite.
     fn leave_undefined(&mut self, columns: &Range<usize>) {
-        let per_pixel = self.sink.per_pixel();
         for row in self.rows.iter_mut() {
-            row[columns.start * per_pixel..columns.end * per_pixel].fill(self.sink.undefined());
+            row[columns.start * K::PER_PIXEL..columns.end * K::PER_PIXEL]
+                .fill(self.sink.undefined());
         }
     }
 }

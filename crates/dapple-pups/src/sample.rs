@@ -3,10 +3,10 @@
 use crate::bins::Record;
 use crate::net::{BLOCK, Net};
 use crate::profile::{Cubic, Profile};
-use crate::shift::shift_weight;
+use crate::shift::shift_weights;
 use crate::simd;
 use crate::weight::AxialWeight;
-use fearless_simd::{dispatch, f32x8, prelude::*};
+use fearless_simd::{dispatch, f32x4, f32x8, prelude::*};
 use glam::DVec2;
 
 impl Net {
@@ -76,13 +76,13 @@ fn product<S: Simd, P: Profile>(
     (x, y): (f32, f32),
 ) -> f32 {
     let zero = f32x8::splat(simd, 0.0);
-    let one = f32x8::splat(simd, 1.0);
-    let along = f32x8::from_slice(simd, ax) * x;
-    let u = (one - f32x8::from_slice(simd, ay) * y) - along;
-    let u = u.max(zero).min(one);
-    let (mut q, mut t) = (1.0, 1.0);
-    for &u in u.as_slice() {
-        (q, t) = profile.step(q, t, u);
+    let minus_one = f32x8::splat(simd, -1.0);
+    let rest = zero - minus_one - f32x8::from_slice(simd, ay) * y;
+    let minus_u = f32x8::from_slice(simd, ax) * x - rest;
+    let minus_u = minus_u.max(minus_one).min(zero);
+    let (mut q, mut t) = profile.first(minus_u.as_slice()[0]);
+    for &minus_u in &minus_u.as_slice()[1..] {
+        (q, t) = profile.step(q, t, minus_u);
     }
     profile.finish(q, t, BLOCK)
 }
@@ -90,7 +90,7 @@ fn product<S: Simd, P: Profile>(
 /// Equation 4 for one weight.
 #[inline(always)]
 fn shifted<S: Simd>(simd: S, weight: f32, shift: [f32; 2], x: f32, y: f32) -> f32 {
-    let weight = S::f32s::splat(simd, weight);
-    let (x, y) = (S::f32s::splat(simd, x), S::f32s::splat(simd, y));
-    shift_weight(simd, weight, shift, x, y).as_slice()[0]
+    let (weight, x) = (f32x4::splat(simd, weight), f32x4::splat(simd, x));
+    let [weight] = shift_weights(simd, &[weight], shift, x, &[y]);
+    weight.as_slice()[0]
 }

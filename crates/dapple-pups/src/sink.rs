@@ -1,6 +1,7 @@
 //! What becomes of the weights of a band, and the memory that they are summed in.
 
-use crate::splat::TILE;
+use crate::splat::LANES;
+use core::marker::PhantomData;
 use fearless_simd::prelude::*;
 
 /// What becomes of the weights of a band.
@@ -12,28 +13,28 @@ pub(crate) trait Sink: Sync {
     type Value: Copy + Send;
 
     /// How many planes there are.
-    fn n_planes(&self) -> usize;
+    const PLANES: usize;
 
     /// How many values there are to a pixel.
-    fn per_pixel(&self) -> usize;
+    const PER_PIXEL: usize;
 
-    /// Takes in the weights of control point `point`: for each of `N` rows a register of pixels, the first from `at` on in
-    /// every plane.
-    fn add<S: Simd, const N: usize>(
+    /// Takes in the weights of control point `point` in `N` rows of a tile. `sums` holds [`LANES`] numbers of every plane
+    /// for each row, of which those from `lane` on are the tile's.
+    fn add<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,
         simd: S,
         point: u32,
-        weights: &[S::f32s; N],
-        planes: &mut Planes,
-        at: usize,
+        weights: &[V; N],
+        sums: &mut [f32],
+        lane: usize,
     );
 
-    /// Makes the values of a row of pixels, given its part of every plane. `nearest(i)` is the control point nearest to
-    /// pixel `i`, for where no weight is left.
-    fn resolve<'a, S: Simd>(
+    /// Makes the values of up to [`LANES`] pixels in a row, given as many numbers of every plane. `nearest(i)` is the
+    /// control point nearest to pixel `i`, for where no weight is left.
+    fn resolve<S: Simd>(
         &self,
         simd: S,
-        plane: impl Fn(usize) -> &'a [f32],
+        sums: &[f32],
         values: &mut [Self::Value],
         nearest: impl Fn(usize) -> u32,
     );
@@ -42,64 +43,61 @@ pub(crate) trait Sink: Sync {
     fn undefined(&self) -> Self::Value;
 }
 
-/// The numbers that a band is summed in: planes of rows, whose tiles each begin on a cache line, so that no
-/// register of numbers lies across two.
-#[derive(Default)]
-pub(crate) struct Planes {
+/// The numbers that a band is summed in.
+///
+/// They lie in columns of [`LANES`] pixels: row by row, and plane by plane in every row, each on its own cache line. So
+/// what a tile needs is in one piece.
+pub(crate) struct Planes<K> {
     numbers: Vec<f32>,
     /// Where the first cache line begins.
     origin: usize,
-    /// From a row to the next.
-    pub(crate) stride: usize,
-    /// From a plane to the next.
-    plane: usize,
+    /// Rows of pixels.
+    height: usize,
+    sink: PhantomData<K>,
 }
 
-impl Planes {
-    /// Zeroed planes of `height` rows with at least `width` numbers.
-    pub(crate) fn clear(&mut self, n_planes: usize, width: usize, height: usize) {
-        self.stride = width.next_multiple_of(TILE);
-        self.plane = height * self.stride;
+impl<K> Default for Planes<K> {
+    fn default() -> Self {
+        Self {
+            numbers: Vec::new(),
+            origin: 0,
+            height: 0,
+            sink: PhantomData,
+        }
+    }
+}
+
+impl<K: Sink> Planes<K> {
+    /// How many numbers a row of pixels has.
+    pub(crate) fn per_row(width: usize) -> usize {
+        width.next_multiple_of(LANES) * K::PLANES
+    }
+
+    /// Zeroes the numbers of `height` rows of `width` pixels.
+    pub(crate) fn clear(&mut self, width: usize, height: usize) {
+        self.height = height;
         self.numbers.clear();
-        self.numbers.resize(n_planes * self.plane + TILE, 0.0);
+        self.numbers
+            .resize(Self::per_row(width) * height + LANES, 0.0);
         // Where this is not possible, it is only slower.
         self.origin = self
             .numbers
             .as_ptr()
-            .align_offset(TILE * size_of::<f32>())
-            .min(TILE);
+            .align_offset(LANES * size_of::<f32>())
+            .min(LANES);
     }
 
-    /// A register of numbers of a plane, `row` rows below `at`.
+    /// The numbers of `n_rows` rows that `column` lies in, and its place in each row.
     #[inline(always)]
-    pub(crate) fn register<S: Simd>(&mut self, plane: usize, at: usize, row: usize) -> &mut [f32] {
-        let start = self.origin + plane * self.plane + at + row * self.stride;
-        &mut self.numbers[start..start + S::f32s::LEN]
-    }
-
-    /// Adds to a plane: for each of `N` rows a register of numbers, the first from `at` on.
-    #[expect(
-        clippy::needless_range_loop,
-        reason = "registers pass through plain loops only"
-    )]
-    #[inline(always)]
-    pub(crate) fn add<S: Simd, const N: usize>(
+    pub(crate) fn rows(
         &mut self,
-        simd: S,
-        plane: usize,
-        at: usize,
-        summands: &[S::f32s; N],
-    ) {
-        for row in 0..N {
-            let numbers = self.register::<S>(plane, at, row);
-            (S::f32s::from_slice(simd, numbers) + summands[row]).store_slice(numbers);
-        }
-    }
-
-    /// The first `width` numbers of a row of a plane.
-    #[inline(always)]
-    pub(crate) fn row(&self, plane: usize, row: usize, width: usize) -> &[f32] {
-        let start = self.origin + plane * self.plane + row * self.stride;
-        &self.numbers[start..start + width]
+        column: usize,
+        first_row: usize,
+        n_rows: usize,
+    ) -> (&mut [f32], usize) {
+        let line = (column / LANES * self.height + first_row) * K::PLANES;
+        let start = self.origin + line * LANES;
+        let numbers = &mut self.numbers[start..start + n_rows * K::PLANES * LANES];
+        (numbers, column % LANES)
     }
 }

@@ -1,27 +1,28 @@
 //! The weights of control points, added to a band of pixels.
 //!
-//! The pixels that a support can touch are taken in tiles of [`TILE`] columns and [`ROWS`] rows, from its first row on; the
-//! axes that matter in a tile are picked, and their weights multiplied up for a register of pixels in several rows at
-//! once. Columns begin where a cache line does: sums that lie across two of them, or across the sums that were stored
-//! before, take longer than all that is saved.
+//! The pixels that a support can touch are taken in tiles: as wide as a register, from its first row on. The axes that
+//! matter in a tile are picked, and their weights multiplied up in all of its rows at once. Columns of tiles begin where
+//! registers of the whole band do: sums that lie across two cache lines, or across the sums that were stored before,
+//! take longer than all that is saved.
 
-use crate::line::Line;
 use crate::net::{AxisBlock, BLOCK, Instance};
 use crate::profile::Profile;
-use crate::shift::shift_weight;
+use crate::shift::shift_weights;
 use crate::sink::{Planes, Sink};
-use crate::tile::{Tile, TileBlock};
-use core::ops::Range;
-use fearless_simd::prelude::*;
+use crate::tile::{Strip, Tile, Tiles};
+use fearless_simd::{f32x8, prelude::*};
 
-/// Columns of a tile: a register at the widest level.
-pub(crate) const TILE: usize = 16;
+/// Columns of the widest tile: a register at the widest level.
+pub(crate) const LANES: usize = 16;
 
-/// Rows of a tile.
+/// Rows of the highest tile: with two numbers a pixel they fill half of 32 registers.
 pub(crate) const ROWS: usize = 8;
 
-/// Half of the rows of a tile; with two numbers a pixel they fill half of 16 registers.
-const HALF: usize = ROWS / 2;
+/// Rows of a tile where there are 16 registers, or where the support is small.
+const FEW_ROWS: usize = ROWS / 2;
+
+/// Supports up to so many columns wide are taken in smaller tiles: of larger ones, too much would lie outside of them.
+const NARROW: u32 = 64;
 
 /// The pixels of a band, and what becomes of weights there.
 pub(crate) struct Splatter<'a, P, K> {
@@ -29,10 +30,8 @@ pub(crate) struct Splatter<'a, P, K> {
     pub(crate) sink: &'a K,
     /// The coordinates of columns, with the last one again for as long as a tile can reach out.
     pub(crate) xs: &'a [f64],
-    pub(crate) columns: &'a Line,
     /// The coordinates of rows, likewise.
     pub(crate) ys: &'a [f64],
-    pub(crate) rows: &'a Line,
 }
 
 /// A control point, or image of one, with all that its weights depend on.
@@ -41,180 +40,177 @@ pub(crate) struct Member<'a> {
     pub(crate) instance: &'a Instance,
     pub(crate) blocks: &'a [AxisBlock],
     /// ε times the orientation in the plane.
-    pub(crate) shift: Option<[f32; 2]>,
+    pub(crate) shift: [f32; 2],
+    pub(crate) footprint: Footprint,
+}
+
+/// The pixels of a band that a support can touch: the first, and how many columns and rows.
+#[derive(Clone, Copy)]
+pub(crate) struct Footprint {
+    pub(crate) column: u32,
+    pub(crate) row: u32,
+    pub(crate) n_columns: u32,
+    pub(crate) n_rows: u32,
+}
+
+impl Footprint {
+    /// The first column of the first tile, which is `width` columns wide.
+    #[inline(always)]
+    fn first_column(&self, width: usize) -> usize {
+        self.column as usize / width * width
+    }
 }
 
 impl<P: Profile, K: Sink> Splatter<'_, P, K> {
-    /// Adds the weights of a control point to the planes; `tile` is memory to work in.
+    /// Adds the weights of a control point to the planes; `tiles` is memory to work in.
     #[inline(always)]
-    pub(crate) fn add<S: Simd>(
+    pub(crate) fn add<S: Simd, const ORIENTED: bool>(
         &self,
         simd: S,
         member: Member,
-        tile: &mut Tile,
-        planes: &mut Planes,
+        tiles: &mut Tiles,
+        planes: &mut Planes<K>,
     ) {
-        let Instance {
-            center, min, max, ..
-        } = *member.instance;
-        let columns = self.columns.touched(min.x, max.x);
-        let rows = self.rows.touched(min.y, max.y);
-        if columns.is_empty() {
-            return;
-        }
-        for first_row in rows.clone().step_by(ROWS) {
-            tile.first_row = first_row;
-            for (row, y) in tile.y.iter_mut().enumerate() {
-                *y = (self.ys[first_row + row] - center.y) as f32;
-            }
-            tile.columns = columns.clone();
-            tile.enter_rows(simd, member.blocks);
-            if columns.len() > 2 * TILE {
-                // The box is wide, so it is worth knowing how much of it lies in these rows.
-                let Some([left, right]) = tile.reach(simd) else {
-                    continue;
-                };
-                let [left, right] = [center.x + f64::from(left), center.x + f64::from(right)];
-                tile.columns = self.columns.touched(left.max(min.x), right.min(max.x));
-            }
-            let n_rows = rows.end - first_row;
-            self.add_row_of_tiles(simd, member, n_rows, tile, planes);
+        // Where registers have 16 lanes, there are 32 of them.
+        if S::f32s::LEN < LANES {
+            self.add_tiles::<S, S::f32s, FEW_ROWS, ORIENTED>(simd, member, tiles, planes);
+        } else if member.footprint.n_columns > NARROW {
+            self.add_tiles::<S, S::f32s, ROWS, ORIENTED>(simd, member, tiles, planes);
+        } else {
+            self.add_tiles::<S, f32x8<S>, FEW_ROWS, ORIENTED>(simd, member, tiles, planes);
         }
     }
 
-    /// Adds the weights in the columns of the tile, and in `n_rows` rows, if there are as many.
+    /// Adds the weights, in tiles as wide as a register `V` and `N` rows high.
     #[inline(always)]
-    fn add_row_of_tiles<S: Simd>(
+    fn add_tiles<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize, const ORIENTED: bool>(
         &self,
         simd: S,
         member: Member,
-        n_rows: usize,
-        tile: &mut Tile,
-        planes: &mut Planes,
+        tiles: &mut Tiles,
+        planes: &mut Planes<K>,
     ) {
-        let center = member.instance.center.x;
-        let Range { start, end } = tile.columns;
-        if start >= end {
-            return;
-        }
-        let aligned = start / TILE * TILE..end.next_multiple_of(TILE);
-        // A support that is narrower than a tile gets its axes picked once, for the one or two tiles that it lies in.
-        let group = if end - start <= TILE {
-            aligned.len()
+        let footprint = &member.footprint;
+        let (column, row) = (footprint.first_column(V::LEN), footprint.row as usize);
+        let n_columns = (footprint.column + footprint.n_columns) as usize - column;
+        let n_columns = n_columns.next_multiple_of(V::LEN);
+        let n_rows = (footprint.n_rows as usize).next_multiple_of(N);
+        tiles.enter::<S, N>(
+            simd,
+            (member.blocks, member.instance.center),
+            (&self.xs[column..column + n_columns], V::LEN),
+            &self.ys[row..row + n_rows],
+        );
+        if tiles.are_few() {
+            for strip in 0..n_rows / N {
+                for column in 0..n_columns / V::LEN {
+                    if let Some(tile) = tiles.tile(simd, strip, column) {
+                        self.add_tile::<S, V, N, ORIENTED>(simd, member, tiles, tile, planes);
+                    }
+                }
+            }
         } else {
-            TILE
-        };
-        for first in aligned.step_by(group) {
-            let last = (first + group).min(self.xs.len()) - 1;
-            let ends = [
-                (self.xs[first] - center) as f32,
-                (self.xs[last] - center) as f32,
-            ];
-            if tile.select_axes(simd, ends) {
-                for first_column in (first..first + group).step_by(TILE) {
-                    tile.move_to(
-                        simd,
-                        first_column,
-                        &self.xs[first_column..first_column + TILE],
-                        center,
-                    );
-                    self.add_tile(simd, member, n_rows, tile, planes);
+            tiles.sort(simd);
+            for n_axes in 0..=BLOCK {
+                for &tile in tiles.with_axes(n_axes) {
+                    self.add_tile::<S, V, N, ORIENTED>(simd, member, tiles, tile, planes);
                 }
             }
         }
     }
 
-    /// Adds the weights of one tile.
+    /// Adds the weights in one tile.
     #[inline(always)]
-    fn add_tile<S: Simd>(
+    fn add_tile<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize, const ORIENTED: bool>(
         &self,
         simd: S,
         member: Member,
-        n_rows: usize,
-        tile: &Tile,
-        planes: &mut Planes,
+        tiles: &Tiles,
+        tile: Tile,
+        planes: &mut Planes<K>,
     ) {
-        for column in (0..TILE).step_by(S::f32s::LEN) {
-            let first = tile.first_column + column;
-            if first >= tile.columns.end || first + S::f32s::LEN <= tile.columns.start {
-                continue;
-            }
-            // A row takes two registers, and an axis a few: 32 registers of 16 lanes hold all rows, 16 registers half.
-            if S::f32s::LEN >= 16 && n_rows > HALF {
-                self.add_rows::<S, ROWS>(simd, member, tile, planes, [column, 0]);
-                continue;
-            }
-            self.add_rows::<S, HALF>(simd, member, tile, planes, [column, 0]);
-            if n_rows > HALF {
-                self.add_rows::<S, HALF>(simd, member, tile, planes, [column, HALF]);
-            }
+        let x = V::from_slice(simd, &tiles.x(tile)[..V::LEN]);
+        let strips = tiles.strips(tile);
+        let mut weights = [V::splat(simd, 1.0); N];
+        if tile.active != 0 {
+            let ax = &member.blocks[0].x;
+            weights = self.products(simd, &strips[0], ax, tile.active, x);
         }
-    }
-
-    /// Adds the weights of a register's columns in `N` rows, from the column and row `at` of the tile.
-    #[expect(
-        clippy::needless_range_loop,
-        reason = "registers pass through plain loops only"
-    )]
-    #[inline(always)]
-    fn add_rows<S: Simd, const N: usize>(
-        &self,
-        simd: S,
-        member: Member,
-        tile: &Tile,
-        planes: &mut Planes,
-        [column, first_row]: [usize; 2],
-    ) {
-        let x = S::f32s::from_slice(simd, &tile.x[column..column + S::f32s::LEN]);
-        let mut weights = self.products::<S, N>(simd, &tile.blocks[0], x, first_row);
-        for block in &tile.blocks[1..] {
-            let products = self.products::<S, N>(simd, block, x, first_row);
+        for (strip, block) in strips[1..].iter().zip(&member.blocks[1..]) {
+            let products: [V; N] = self.products(simd, strip, &block.x, ALL_AXES, x);
             for row in 0..N {
                 weights[row] *= products[row];
             }
         }
-        if let Some(shift) = member.shift {
-            for row in 0..N {
-                if weights[row].simd_gt(S::f32s::splat(simd, 0.0)).any_true() {
-                    let y = S::f32s::splat(simd, tile.y[first_row + row]);
-                    weights[row] = shift_weight(simd, weights[row], shift, x, y);
-                }
-            }
+        if ORIENTED {
+            let mut y = [0.0; N];
+            y.copy_from_slice(&strips[0].y[..N]);
+            weights = shift_weights(simd, &weights, member.shift, x, &y);
         }
-        let at = (tile.first_row + first_row) * planes.stride + tile.first_column + column;
-        self.sink
-            .add(simd, member.instance.point, &weights, planes, at);
+        let footprint = &member.footprint;
+        let column = footprint.first_column(V::LEN) + tile.column as usize * V::LEN;
+        let row = footprint.row as usize + tile.strip as usize * N;
+        let (sums, lane) = planes.rows(column, row, N);
+        let point = member.instance.point;
+        self.sink.add(simd, point, &weights, sums, lane);
     }
 
-    /// The products of the axial weights of a block, in `N` rows.
+    /// The products of the axial weights of a block, in `N` rows. At least one axis is `active`.
     #[inline(always)]
-    fn products<S: Simd, const N: usize>(
+    fn products<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,
         simd: S,
-        block: &TileBlock,
-        x: S::f32s,
-        first_row: usize,
-    ) -> [S::f32s; N] {
-        let zero = S::f32s::splat(simd, 0.0);
-        let one = S::f32s::splat(simd, 1.0);
-        let mut q = [one; N];
-        let mut t = [one; N];
-        let mut active = block.active;
+        strip: &Strip,
+        ax: &[f32; BLOCK],
+        mut active: u32,
+        x: V,
+    ) -> [V; N] {
+        let n_axes = active.count_ones() as usize % (BLOCK + 1);
+        let mut q = [x; N];
+        let mut t = [x; N];
+        let axis = take_lowest(&mut active);
+        let (along, rest) = (x * ax[axis], &strip.rest[axis][..N]);
+        for row in 0..N {
+            (q[row], t[row]) = self.profile.first(minus_u(simd, along, rest[row]));
+        }
         while active != 0 {
-            // The mask tells the compiler what is known of the lowest of eight bits.
-            let axis = active.trailing_zeros() as usize % BLOCK;
-            active &= active - 1;
-            let along = x * block.axes.x[axis];
-            let rest = &block.rest[axis][first_row..first_row + N];
+            let axis = take_lowest(&mut active);
+            let (along, rest) = (x * ax[axis], &strip.rest[axis][..N]);
             for row in 0..N {
-                let u = S::f32s::splat(simd, rest[row]) - along;
-                (q[row], t[row]) = self.profile.step(q[row], t[row], u.max(zero).min(one));
+                let minus_u = minus_u(simd, along, rest[row]);
+                (q[row], t[row]) = self.profile.step(q[row], t[row], minus_u);
             }
         }
-        let n = block.active.count_ones() as usize % (BLOCK + 1);
         for row in 0..N {
-            q[row] = self.profile.finish(q[row], t[row], n);
+            q[row] = self.profile.finish(q[row], t[row], n_axes);
         }
         q
     }
+}
+
+/// A bit for each axis of a block.
+const ALL_AXES: u32 = (1 << BLOCK) - 1;
+
+/// The place of the lowest bit, which is taken away.
+#[inline(always)]
+fn take_lowest(bits: &mut u32) -> usize {
+    // The remainder tells the compiler what is known of eight bits.
+    let lowest = bits.trailing_zeros() as usize % BLOCK;
+    *bits &= bits.wrapping_sub(1);
+    lowest
+}
+
+/// `−u`, from `a_x d_x` and `1 − a_y d_y`: −1 at the control point and behind it, zero (of any sign) at the end of the
+/// axis and beyond.
+#[inline(always)]
+fn minus_u<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, along: V, rest: f32) -> V {
+    let unbounded = along - V::splat(simd, rest);
+    if V::LEN < BLOCK {
+        let [least, most] = [-1.0, 0.0].map(|bound| V::splat(simd, bound));
+        return unbounded.max(least).min(most);
+    }
+    // As whole numbers, which more units of a processor can compare, negative numbers come after positive ones and grow
+    // with their distance from zero.
+    let [zero, minus_one] = [-0.0_f32, -1.0].map(|bound| V::Bits::splat(simd, bound.to_bits()));
+    V::from_bits(unbounded.to_bits().max(zero).min(minus_one))
 }

@@ -2,7 +2,8 @@
 
 use crate::pups::LEAST_TOTAL;
 use crate::render::render;
-use crate::sink::{Planes, Sink};
+use crate::sink::Sink;
+use crate::splat::LANES;
 use crate::{Pups, PupsError};
 use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
 use fearless_simd::prelude::*;
@@ -70,8 +71,7 @@ impl Field for Texture {
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         window.check_size(out.size())?;
         let sink = Mean {
-            values: &self.values,
-            n: 1,
+            values: self.values.as_chunks::<1>().0,
         };
         render(&self.pups.net, window, &sink, out.rows_mut().collect());
         Ok(())
@@ -114,8 +114,7 @@ impl<const N: usize> VectorTexture<N> {
     ) -> Result<(), RasterError> {
         window.check_size(out.size())?;
         let sink = Mean {
-            values: self.values.as_flattened(),
-            n: N,
+            values: &self.values,
         };
         let rows = out.rows_mut().map(<[_]>::as_flattened_mut).collect();
         render(&self.pups.net, window, &sink, rows);
@@ -169,75 +168,62 @@ fn sample<const N: usize>(pups: &Pups, values: &[[f32; N]], position: DVec2) -> 
     sums.map(|sum| sum / total)
 }
 
-/// Sums up weights, and weights times values.
-pub(crate) struct Mean<'a> {
-    /// The values, `n` to a control point.
-    pub(crate) values: &'a [f32],
-    pub(crate) n: usize,
+/// Sums up weights, and weights times the `N` numbers of each value.
+pub(crate) struct Mean<'a, const N: usize> {
+    pub(crate) values: &'a [[f32; N]],
 }
 
-impl Sink for Mean<'_> {
+impl<const N: usize> Sink for Mean<'_, N> {
     type Value = f32;
 
-    fn n_planes(&self) -> usize {
-        1 + self.n
-    }
-
-    fn per_pixel(&self) -> usize {
-        self.n
-    }
+    const PLANES: usize = N + 1;
+    const PER_PIXEL: usize = N;
 
     #[expect(
         clippy::needless_range_loop,
         reason = "registers pass through plain loops only"
     )]
     #[inline(always)]
-    fn add<S: Simd, const N: usize>(
+    fn add<S: Simd, V: SimdFloat<S, Element = f32>, const ROWS: usize>(
         &self,
         simd: S,
         point: u32,
-        weights: &[S::f32s; N],
-        planes: &mut Planes,
-        at: usize,
+        weights: &[V; ROWS],
+        sums: &mut [f32],
+        lane: usize,
     ) {
-        planes.add(simd, 0, at, weights);
-        let first = point as usize * self.n;
-        for (plane, &value) in (1..).zip(&self.values[first..first + self.n]) {
-            let mut products = *weights;
-            for row in 0..N {
-                products[row] *= value;
+        let value = &self.values[point as usize];
+        for row in 0..ROWS {
+            add(simd, sums, row * Self::PLANES * LANES + lane, weights[row]);
+            for channel in 0..N {
+                let at = (row * Self::PLANES + channel + 1) * LANES + lane;
+                add(simd, sums, at, weights[row] * value[channel]);
             }
-            planes.add(simd, plane, at, &products);
         }
     }
 
     #[inline(always)]
-    fn resolve<'a, S: Simd>(
+    fn resolve<S: Simd>(
         &self,
         simd: S,
-        plane: impl Fn(usize) -> &'a [f32],
+        sums: &[f32],
         values: &mut [f32],
         nearest: impl Fn(usize) -> u32,
     ) {
-        let totals = plane(0);
-        let mut least = f32::INFINITY;
-        if self.n == 1 {
-            least = divide(simd, plane(1), totals, values);
+        let totals = &sums[..LANES];
+        if N == 1 && values.len() == LANES {
+            divide(simd, &sums[LANES..2 * LANES], totals, values);
         } else {
-            for channel in 0..self.n {
-                let sums = plane(channel + 1).iter().zip(totals);
-                for (value, (sum, &total)) in values[channel..].iter_mut().step_by(self.n).zip(sums)
-                {
-                    *value = sum / total;
-                    least = least.min(total);
+            for (pixel, vector) in values.chunks_exact_mut(N).enumerate() {
+                for (channel, value) in vector.iter_mut().enumerate() {
+                    *value = sums[(channel + 1) * LANES + pixel] / totals[pixel];
                 }
             }
         }
-        if least < LEAST_TOTAL {
-            for (pixel, vector) in values.chunks_exact_mut(self.n).enumerate() {
+        if is_any_below(simd, totals, LEAST_TOTAL) {
+            for (pixel, vector) in values.chunks_exact_mut(N).enumerate() {
                 if totals[pixel] < LEAST_TOTAL {
-                    let start = nearest(pixel) as usize * self.n;
-                    vector.copy_from_slice(&self.values[start..start + self.n]);
+                    vector.copy_from_slice(&self.values[nearest(pixel) as usize]);
                 }
             }
         }
@@ -248,23 +234,32 @@ impl Sink for Mean<'_> {
     }
 }
 
-/// Divides number by number, and returns the least divisor.
+/// Adds a register to numbers, from `at` on.
 #[inline(always)]
-fn divide<S: Simd>(simd: S, sums: &[f32], totals: &[f32], quotients: &mut [f32]) -> f32 {
-    let mut least = S::f32s::splat(simd, f32::INFINITY);
-    let mut sums = sums.chunks_exact(S::f32s::LEN);
-    let mut totals = totals.chunks_exact(S::f32s::LEN);
-    let mut quotients = quotients.chunks_exact_mut(S::f32s::LEN);
-    for ((sum, total), quotient) in sums.by_ref().zip(totals.by_ref()).zip(quotients.by_ref()) {
-        let total = S::f32s::from_slice(simd, total);
-        least = least.min(total);
-        (S::f32s::from_slice(simd, sum) / total).store_slice(quotient);
+fn add<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, sums: &mut [f32], at: usize, summand: V) {
+    let sums = &mut sums[at..at + V::LEN];
+    (V::from_slice(simd, sums) + summand).store_slice(sums);
+}
+
+/// Divides number by number.
+#[inline(always)]
+fn divide<S: Simd>(simd: S, sums: &[f32], totals: &[f32], quotients: &mut [f32]) {
+    let n = S::f32s::LEN;
+    for at in (0..LANES).step_by(n) {
+        let sum = S::f32s::from_slice(simd, &sums[at..at + n]);
+        let total = S::f32s::from_slice(simd, &totals[at..at + n]);
+        (sum / total).store_slice(&mut quotients[at..at + n]);
     }
-    let mut least = least.reduce_min();
-    let rest = sums.remainder().iter().zip(totals.remainder());
-    for ((sum, &total), quotient) in rest.zip(quotients.into_remainder()) {
-        least = least.min(total);
-        *quotient = sum / total;
+}
+
+/// Whether one of the numbers is below a limit.
+#[inline(always)]
+fn is_any_below<S: Simd>(simd: S, numbers: &[f32], limit: f32) -> bool {
+    let limit = S::f32s::splat(simd, limit);
+    let mut any = false;
+    for at in (0..LANES).step_by(S::f32s::LEN) {
+        let numbers = S::f32s::from_slice(simd, &numbers[at..at + S::f32s::LEN]);
+        any |= numbers.simd_lt(limit).any_true();
     }
-    least
+    any
 }

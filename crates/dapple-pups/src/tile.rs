@@ -1,136 +1,254 @@
-//! A few pixels as seen from a control point, and which of its axes matter there.
+//! The tiles of a band as seen from a control point, and which of its axes matter in each.
 //!
 //! An axis whose `u` is 1 over a whole tile is left out, which changes no bit; a control point with an axis whose `u` is
 //! 0 over a whole tile has no weight there. Both are decided with the very numbers that the pixels would get: `u` is
-//! computed by a subtraction and products, whose rounding is monotonic, so the corners of the tile have the least and the
+//! computed by subtractions and products, whose rounding is monotonic, so the corners of the tile have the least and the
 //! most.
+//!
+//! What depends on columns only, or on rows only, is computed once for all tiles. Where there are many, they come out in
+//! the order of how many axes matter in them: then the processor foresees where the loop over axes ends, which it cannot
+//! when the numbers follow each other at random. Where there are few, all axes are taken to matter, for the same reason.
 //!
 //! Here, as in the rest of the evaluation, registers pass through plain loops only: a closure in an iterator or an array's
 //! `map` is compiled for the baseline processor if it is not inlined, and then costs more than what it does.
 
 use crate::net::{AxisBlock, BLOCK};
-use crate::splat::{ROWS, TILE};
-use core::ops::Range;
-use fearless_simd::{f32x8, prelude::*};
+use crate::splat::{LANES, ROWS};
+use fearless_simd::{f32x8, f64x4, prelude::*};
+use glam::DVec2;
 
-/// A tile as seen from a control point, and the row of tiles that it lies in.
+/// Up to so many tiles are not worth sorting.
+const FEW: usize = 8;
+
+/// The tiles that the support of a control point can touch.
 #[derive(Default)]
-pub(crate) struct Tile {
-    /// The offsets of columns and rows.
-    pub(crate) x: [f32; TILE],
-    pub(crate) y: [f32; ROWS],
-    /// Its first column and row in the band.
-    pub(crate) first_column: usize,
-    pub(crate) first_row: usize,
-    /// Which columns of the band the support can touch in these rows.
-    pub(crate) columns: Range<usize>,
-    /// The axes of the control point.
-    pub(crate) blocks: Vec<TileBlock>,
+pub(crate) struct Tiles {
+    columns: Vec<Column>,
+    n_columns: usize,
+    /// The rows of tiles, for each block of axes.
+    strips: Vec<Strip>,
+    n_strips: usize,
+    n_blocks: usize,
+    /// The axes of the first block, as bits.
+    axes: u32,
+    /// The tiles by their number of axes, in a stretch for each number that is as long as there are tiles.
+    sorted: Vec<Tile>,
+    /// How much of each stretch is used.
+    lengths: [usize; STRETCHES],
 }
 
-/// The axes of one block in a tile.
+/// A column of tiles.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct TileBlock {
-    pub(crate) axes: AxisBlock,
+#[repr(align(64))]
+struct Column {
+    /// The offsets from the control point, as many as a tile has columns.
+    x: [f32; LANES],
+    /// The least and the most of `a_x d_x` over them, for every axis of the first block.
+    least: [f32; BLOCK],
+    most: [f32; BLOCK],
+}
+
+/// A row of tiles, as one block of axes has it.
+#[derive(Clone, Copy, Default)]
+#[repr(align(64))]
+pub(crate) struct Strip {
     /// `1 − a_y d_y`, for every axis and row.
     pub(crate) rest: [[f32; ROWS]; BLOCK],
     /// Its least and its most over the rows, for every axis.
-    rest_least: [f32; BLOCK],
-    rest_most: [f32; BLOCK],
-    /// Which axes matter in the tile, as bits.
+    least: [f32; BLOCK],
+    most: [f32; BLOCK],
+    /// The offsets from the control point.
+    pub(crate) y: [f32; ROWS],
+}
+
+/// A tile in which the control point may have a weight.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Tile {
+    /// Its place among the columns and rows of tiles.
+    pub(crate) column: u32,
+    pub(crate) strip: u32,
+    /// The axes of the first block to compute with, as bits: all that matter, or none.
     pub(crate) active: u32,
 }
 
-impl Tile {
-    /// Goes to the rows `y`, in which all tiles share what depends on rows only.
-    #[inline(always)]
-    pub(crate) fn enter_rows<S: Simd>(&mut self, simd: S, blocks: &[AxisBlock]) {
-        self.blocks.resize(blocks.len(), TileBlock::default());
-        for (block, axes) in self.blocks.iter_mut().zip(blocks) {
-            block.enter_rows(simd, axes, &self.y);
-        }
-    }
+/// A stretch for every number of axes, and one for tiles without a weight.
+const STRETCHES: usize = BLOCK + 2;
 
-    /// Picks the axes that are neither 1 nor 0 over all rows and the columns between the offsets `ends`. False if one of
-    /// them is 0 there: then the control point has no weight.
-    #[inline(always)]
-    pub(crate) fn select_axes<S: Simd>(&mut self, simd: S, ends: [f32; 2]) -> bool {
-        for block in &mut self.blocks {
-            if !block.select(simd, ends) {
-                return false;
-            }
-        }
-        true
-    }
+/// The last stretch.
+const NOTHING: usize = BLOCK + 1;
 
-    /// The stretch of x, as seen from the center, outside of which no pixel of the rows has a weight. Nothing if none has.
+impl Tiles {
+    /// Goes to the tiles of a control point, given its axes and center; `xs` are the coordinates of columns from the first
+    /// tile on, `width` to a tile, and `ys` those of rows, `H` to a tile.
     #[inline(always)]
-    pub(crate) fn reach<S: Simd>(&self, simd: S) -> Option<[f32; 2]> {
-        // What three roundings can add to a quotient.
-        const SLACK: f32 = 4.0 * f32::EPSILON;
-        let zero = f32x8::splat(simd, 0.0);
-        let far = f32x8::splat(simd, f32::INFINITY);
-        let (mut from, mut to) = (f32::NEG_INFINITY, f32::INFINITY);
-        for block in &self.blocks {
-            let ax = f32x8::from_slice(simd, &block.axes.x);
-            let bound = f32x8::from_slice(simd, &block.rest_most) / ax;
-            let slack = bound.abs() * SLACK;
-            to = to.min(ax.simd_gt(zero).select(bound + slack, far).reduce_min());
-            from = from.max(
-                ax.simd_lt(zero)
-                    .select(bound - slack, zero - far)
-                    .reduce_max(),
-            );
-        }
-        (from <= to).then_some([from, to])
-    }
-
-    /// Goes to the columns `xs`, of which the first is `first_column` of the band.
-    #[inline(always)]
-    pub(crate) fn move_to<S: Simd>(
+    pub(crate) fn enter<S: Simd, const H: usize>(
         &mut self,
         simd: S,
-        first_column: usize,
-        xs: &[f64],
-        center: f64,
+        (blocks, center): (&[AxisBlock], DVec2),
+        (xs, width): (&[f64], usize),
+        ys: &[f64],
     ) {
-        self.first_column = first_column;
-        let half = S::f64s::LEN;
-        for column in (0..TILE).step_by(2 * half) {
-            let low = S::f64s::from_slice(simd, &xs[column..column + half]) - center;
-            let high = S::f64s::from_slice(simd, &xs[column + half..column + 2 * half]) - center;
-            low.narrow(high)
-                .store_slice(&mut self.x[column..column + 2 * half]);
+        self.n_blocks = blocks.len();
+        self.axes = blocks[0].slots(simd);
+        self.n_columns = xs.len() / width;
+        self.n_strips = ys.len() / H;
+        if self.columns.len() < self.n_columns {
+            self.columns.resize(self.n_columns, Column::default());
         }
+        for (column, xs) in self.columns.iter_mut().zip(xs.chunks_exact(width)) {
+            column.enter(simd, &blocks[0], xs, center.x);
+        }
+        if self.strips.len() < self.n_strips * self.n_blocks {
+            self.strips
+                .resize(self.n_strips * self.n_blocks, Strip::default());
+        }
+        let mut strips = self.strips.iter_mut();
+        for ys in ys.chunks_exact(H) {
+            for (axes, strip) in blocks.iter().zip(strips.by_ref()) {
+                strip.enter::<S, H>(simd, axes, ys, center.y);
+            }
+        }
+    }
+
+    /// Whether there are so few tiles that they are not worth sorting.
+    #[inline(always)]
+    pub(crate) fn are_few(&self) -> bool {
+        self.n_columns * self.n_strips <= FEW
+    }
+
+    /// A tile, with all axes if any matters; nothing if the control point has no weight there.
+    #[inline(always)]
+    pub(crate) fn tile<S: Simd>(&self, simd: S, strip: usize, column: usize) -> Option<Tile> {
+        let rest = self.strips[strip * self.n_blocks].ends(simd);
+        let (active, has_weight) = self.columns[column].active_axes(simd, rest);
+        // There are less than 2^32 columns and rows of pixels.
+        has_weight.then_some(Tile {
+            column: column as u32,
+            strip: strip as u32,
+            active: if active == 0 { 0 } else { self.axes },
+        })
+    }
+
+    /// Sorts the tiles by how many axes matter.
+    #[inline(always)]
+    pub(crate) fn sort<S: Simd>(&mut self, simd: S) {
+        let n_tiles = self.n_columns * self.n_strips;
+        if self.sorted.len() < n_tiles * STRETCHES {
+            self.sorted.resize(n_tiles * STRETCHES, Tile::default());
+        }
+        self.lengths = [0; STRETCHES];
+        let columns = &self.columns[..self.n_columns];
+        for strip in 0..self.n_strips {
+            let rest = self.strips[strip * self.n_blocks].ends(simd);
+            for (column, ends) in columns.iter().enumerate() {
+                let (active, has_weight) = ends.active_axes(simd, rest);
+                let stretch = if has_weight {
+                    active.count_ones() as usize
+                } else {
+                    NOTHING
+                };
+                let length = &mut self.lengths[stretch];
+                self.sorted[stretch * n_tiles + *length] = Tile {
+                    column: column as u32,
+                    strip: strip as u32,
+                    active,
+                };
+                *length += 1;
+            }
+        }
+    }
+
+    /// The tiles in which so many axes matter, after sorting.
+    #[inline(always)]
+    pub(crate) fn with_axes(&self, n_axes: usize) -> &[Tile] {
+        let start = n_axes * self.n_columns * self.n_strips;
+        &self.sorted[start..start + self.lengths[n_axes]]
+    }
+
+    /// The offsets of the columns of a tile.
+    #[inline(always)]
+    pub(crate) fn x(&self, tile: Tile) -> &[f32; LANES] {
+        &self.columns[tile.column as usize].x
+    }
+
+    /// The rows of a tile, as each block of axes has them.
+    #[inline(always)]
+    pub(crate) fn strips(&self, tile: Tile) -> &[Strip] {
+        &self.strips[tile.strip as usize * self.n_blocks..][..self.n_blocks]
     }
 }
 
-impl TileBlock {
+impl Column {
     #[inline(always)]
-    fn enter_rows<S: Simd>(&mut self, simd: S, axes: &AxisBlock, y: &[f32; ROWS]) {
-        self.axes = *axes;
+    fn enter<S: Simd>(&mut self, simd: S, axes: &AxisBlock, xs: &[f64], center: f64) {
+        if xs.len().is_multiple_of(BLOCK) {
+            for (x, xs) in self.x.chunks_exact_mut(BLOCK).zip(xs.chunks_exact(BLOCK)) {
+                offsets(simd, xs, center).store_slice(x);
+            }
+        } else {
+            for (x, coordinate) in self.x.iter_mut().zip(xs) {
+                *x = (coordinate - center) as f32;
+            }
+        }
+        let ax = f32x8::from_slice(simd, &axes.x);
+        let (left, right) = (ax * self.x[0], ax * self.x[xs.len() - 1]);
+        left.min(right).store_slice(&mut self.least);
+        left.max(right).store_slice(&mut self.most);
+    }
+
+    /// Which axes of the first block matter in a tile of this column, as bits, and whether none of them leaves it without
+    /// a weight. `rest` are the [ends](Strip::ends) of its row.
+    #[inline(always)]
+    fn active_axes<S: Simd>(&self, simd: S, rest: [f32x8<S>; 2]) -> (u32, bool) {
+        let least = rest[0] - f32x8::from_slice(simd, &self.most);
+        let most = rest[1] - f32x8::from_slice(simd, &self.least);
+        let active = least.simd_lt(f32x8::splat(simd, 1.0)).to_bitmask();
+        let without = most.simd_le(f32x8::splat(simd, 0.0)).to_bitmask();
+        // Eight lanes, eight bits.
+        (active as u32, without == 0)
+    }
+}
+
+impl Strip {
+    #[inline(always)]
+    fn enter<S: Simd, const H: usize>(
+        &mut self,
+        simd: S,
+        axes: &AxisBlock,
+        ys: &[f64],
+        center: f64,
+    ) {
+        let y = if H == BLOCK {
+            offsets(simd, ys, center)
+        } else {
+            let low = f64x4::from_slice(simd, ys) - center;
+            low.narrow(low)
+        };
+        y.store_slice(&mut self.y);
         let one = f32x8::splat(simd, 1.0);
         let ay = f32x8::from_slice(simd, &axes.y);
-        let (top, bottom) = (one - ay * y[0], one - ay * y[ROWS - 1]);
-        top.min(bottom).store_slice(&mut self.rest_least);
-        top.max(bottom).store_slice(&mut self.rest_most);
-        let y = f32x8::from_slice(simd, y);
+        let (top, bottom) = (one - ay * y.as_slice()[0], one - ay * y.as_slice()[H - 1]);
+        top.min(bottom).store_slice(&mut self.least);
+        top.max(bottom).store_slice(&mut self.most);
         for axis in 0..BLOCK {
             (one - y * axes.y[axis]).store_slice(&mut self.rest[axis]);
         }
     }
 
+    /// The least and the most of `1 − a_y d_y`, for every axis.
     #[inline(always)]
-    fn select<S: Simd>(&mut self, simd: S, ends: [f32; 2]) -> bool {
-        let ax = f32x8::from_slice(simd, &self.axes.x);
-        let (left, right) = (ax * ends[0], ax * ends[1]);
-        let most = f32x8::from_slice(simd, &self.rest_most) - left.min(right);
-        if most.simd_le(f32x8::splat(simd, 0.0)).any_true() {
-            return false;
-        }
-        let least = f32x8::from_slice(simd, &self.rest_least) - left.max(right);
-        // Eight lanes, eight bits.
-        self.active = least.simd_lt(f32x8::splat(simd, 1.0)).to_bitmask() as u32;
-        true
+    fn ends<S: Simd>(&self, simd: S) -> [f32x8<S>; 2] {
+        [
+            f32x8::from_slice(simd, &self.least),
+            f32x8::from_slice(simd, &self.most),
+        ]
     }
+}
+
+/// The offsets of eight coordinates from a control point.
+#[inline(always)]
+fn offsets<S: Simd>(simd: S, coordinates: &[f64], center: f64) -> f32x8<S> {
+    let low = f64x4::from_slice(simd, &coordinates[..4]) - center;
+    let high = f64x4::from_slice(simd, &coordinates[4..]) - center;
+    low.narrow(high)
 }

@@ -107,8 +107,7 @@ fn every_simd_level_gives_the_same_bits() {
         for_every_level(|level| {
             let mut raster = Raster::filled(window.size, 0.0).unwrap();
             let sink = Mean {
-                values: &values,
-                n: 1,
+                values: values.as_chunks::<1>().0,
             };
             render_at(
                 level,
@@ -118,6 +117,34 @@ fn every_simd_level_gives_the_same_bits() {
                 raster.view_mut().rows_mut().collect(),
             );
             assert_eq!(bits(&raster), reference, "{} at {level:?}", case.name);
+        });
+    }
+}
+
+#[test]
+fn supports_of_any_size_in_pixels_give_the_bits_of_single_positions() {
+    let points = poisson_disk(Domain::paper_torus(), 0.25, Seed(11)).unwrap();
+    let texture = Pups::delaunay(&points)
+        .unwrap()
+        .texture(values(points.len()))
+        .unwrap();
+    // Supports are some 3, 19 and 150 pixels wide: few tiles, many small ones, and many large ones.
+    for side in [12, 75, 600] {
+        let window = Window::new(DVec2::NEG_ONE, DVec2::splat(2.0), [side, side / 2]).unwrap();
+        let sampled = Raster::from_window(&window, |position| texture.sample(position)).unwrap();
+        for_every_level(|level| {
+            let mut raster = Raster::filled(window.size, 0.0).unwrap();
+            let sink = Mean {
+                values: texture.values().as_chunks::<1>().0,
+            };
+            render_at(
+                level,
+                &texture.pups().net,
+                &window,
+                &sink,
+                raster.view_mut().rows_mut().collect(),
+            );
+            assert_eq!(bits(&raster), bits(&sampled), "side {side} at {level:?}");
         });
     }
 }
