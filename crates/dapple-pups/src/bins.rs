@@ -4,45 +4,107 @@
 //! are summed; so the time for a position does not depend on the number of points. The grid covers the domain. On an
 //! axis that does not wrap, the bins of the border reach out as far as there are positions.
 //!
-//! What a position needs of a candidate is one [`Record`]. Records lie in memory along a Z-shaped curve through the plane,
-//! so that the candidates of a position are near each other whatever the order of the points.
+//! With many points, that time is spent waiting for memory. So a bin is a small group of indices in one place, and what
+//! they stand for lies in memory along a Z-shaped curve through the plane: the candidates of a position are near each
+//! other whatever the order of the points.
 
 use crate::net::{AxisBlock, BLOCK, Instance, Net};
 use glam::DVec2;
 
-/// How many bins there are for each instance: more bins, fewer candidates in each. With 3, a position has some 7
-/// candidates, of which 4 have a weight.
-const BINS_PER_INSTANCE: f64 = 3.0;
+/// How many bins there are for each instance: more bins, fewer candidates in each. With 4, a position has some 6
+/// candidates, of which 4 have a weight, and seldom more than a group holds.
+const BINS_PER_INSTANCE: f64 = 4.0;
 
 /// The most bins along one axis.
 const BINS_LIMIT: f64 = 16_384.0;
 
-/// A candidate: a control point, or an image of one.
+/// How many candidates are evaluated together.
+pub(crate) const GROUP: usize = 8;
+
+/// Up to eight candidates, in their order. The last one may be the index of the group that goes on, with the bit
+/// [`Group::NEXT`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Record {
-    /// Its first axes; not an [`AxisBlock`], whose alignment would make a record fill two cache lines.
-    pub(crate) x: [f32; BLOCK],
-    pub(crate) y: [f32; BLOCK],
-    pub(crate) center: DVec2,
-    /// Its place among the instances.
-    pub(crate) instance: u32,
-    /// The control point.
-    pub(crate) point: u32,
-    /// Whether it has more axes than the first ones.
-    pub(crate) has_more: bool,
+#[repr(align(32))]
+pub(crate) struct Group([u32; GROUP]);
+
+impl Group {
+    /// Stands for no candidate.
+    const NONE: u32 = u32::MAX;
+    /// Marks the index of a group.
+    const NEXT: u32 = 1 << 31;
+    /// Marks a candidate with more axes than a block holds.
+    const LONG: u32 = 1 << 30;
+
+    /// A group without candidates.
+    const EMPTY: Self = Self([Self::NONE; GROUP]);
+
+    /// The records of the candidates; the first of all where there is no candidate.
+    #[inline(always)]
+    pub(crate) fn records(&self) -> [usize; GROUP] {
+        self.0
+            .map(|entry| (entry & !Self::LONG) as usize)
+            .map(|entry| {
+                if entry < Self::NEXT as usize {
+                    entry
+                } else {
+                    0
+                }
+            })
+    }
+
+    /// Whether there is a candidate.
+    #[inline(always)]
+    pub(crate) fn has(&self, lane: usize) -> bool {
+        self.0[lane] < Self::NEXT
+    }
+
+    /// One for a candidate, zero for none.
+    #[inline(always)]
+    pub(crate) fn ones(&self) -> [f32; GROUP] {
+        self.0
+            .map(|entry| if entry < Self::NEXT { 1.0 } else { 0.0 })
+    }
+
+    /// Whether a candidate has more axes than a block holds.
+    #[inline(always)]
+    pub(crate) fn is_long(&self, lane: usize) -> bool {
+        self.has(lane) && self.0[lane] & Self::LONG != 0
+    }
+
+    /// Whether one of the candidates has more axes than a block holds.
+    #[inline(always)]
+    pub(crate) fn has_long(&self) -> bool {
+        let mut long = false;
+        for &entry in &self.0 {
+            long |= entry & (Self::LONG | Self::NEXT) == Self::LONG;
+        }
+        long
+    }
+
+    /// The group that goes on.
+    #[inline(always)]
+    fn next(&self) -> Option<usize> {
+        let last = self.0[GROUP - 1];
+        (last >= Self::NEXT && last != Self::NONE).then_some((last & !Self::NEXT) as usize)
+    }
 }
 
-/// The grid.
+/// The grid, and what it knows of instances: their records.
 #[derive(Debug)]
 pub(crate) struct Bins {
     size: [usize; 2],
     origin: DVec2,
     /// Bins per unit of length.
     per_unit: DVec2,
-    /// The candidates of bin `b` are `candidates[offsets[b]..offsets[b + 1]]`, each the index of a record.
-    offsets: Vec<u32>,
-    candidates: Vec<u32>,
-    records: Vec<Record>,
+    /// The first group of each bin, and then those that go on.
+    groups: Vec<Group>,
+    /// The first axes of each record.
+    pub(crate) axes: Vec<AxisBlock>,
+    pub(crate) centers: Vec<DVec2>,
+    /// The places of the records among the instances.
+    pub(crate) instances: Vec<u32>,
+    /// The control points of the records.
+    pub(crate) points: Vec<u32>,
 }
 
 impl Bins {
@@ -55,26 +117,27 @@ impl Bins {
             size: [counts.x as usize, counts.y as usize],
             origin: net.domain.origin,
             per_unit: counts / size,
-            offsets: Vec::new(),
-            candidates: Vec::new(),
-            records: Vec::new(),
+            groups: Vec::new(),
+            axes: Vec::new(),
+            centers: Vec::new(),
+            instances: Vec::new(),
+            points: Vec::new(),
         };
         let places = bins.place_records(net);
         bins.list_candidates(net, &places);
         bins
     }
 
-    /// The candidates at a position (which [`Net::local`] has brought into range), as indices of records.
+    /// The candidates at a position (which [`Net::local`] has brought into range), group by group.
     #[inline(always)]
-    pub(crate) fn candidates(&self, position: DVec2) -> &[u32] {
-        let bin = self.bin(1, position.y) * self.size[0] + self.bin(0, position.x);
-        let (start, end) = (self.offsets[bin] as usize, self.offsets[bin + 1] as usize);
-        &self.candidates[start..end]
+    pub(crate) fn first_group(&self, position: DVec2) -> &Group {
+        &self.groups[self.bin(1, position.y) * self.size[0] + self.bin(0, position.x)]
     }
 
+    /// The candidates that come after those of a group.
     #[inline(always)]
-    pub(crate) fn record(&self, candidate: u32) -> &Record {
-        &self.records[candidate as usize]
+    pub(crate) fn next_group(&self, group: &Group) -> Option<&Group> {
+        group.next().map(|next| &self.groups[next])
     }
 
     /// The bin of a coordinate along an axis; what lies outside belongs to the border.
@@ -99,47 +162,48 @@ impl Bins {
             let instance = &net.instances[index as usize];
             let blocks = net.blocks(instance);
             places[index as usize] = place;
-            self.records.push(Record {
-                x: blocks[0].x,
-                y: blocks[0].y,
-                center: instance.center,
-                instance: index,
-                point: instance.point,
-                has_more: blocks.len() > 1,
-            });
+            self.axes.push(blocks[0]);
+            self.centers.push(instance.center);
+            self.instances.push(index);
+            self.points.push(instance.point);
         }
         places
     }
 
     /// Lists the candidates of every bin, in the order of the instances.
     fn list_candidates(&mut self, net: &Net, places: &[u32]) {
-        let mut entries = Vec::new();
-        self.offsets = vec![0; self.size[0] * self.size[1] + 1];
+        self.groups = vec![Group::EMPTY; self.size[0] * self.size[1]];
+        // Of each bin, its last group and how much of it is used.
+        let mut ends: Vec<(u32, u32)> = (0..self.groups.len() as u32).map(|bin| (bin, 0)).collect();
         for (instance, &place) in net.instances.iter().zip(places) {
+            let is_long = net.blocks(instance).len() > 1;
+            let entry = if is_long { place | Group::LONG } else { place };
             let [columns, rows] = [0, 1].map(|axis| {
                 self.bin(axis, instance.min[axis])..=self.bin(axis, instance.max[axis])
             });
             for row in rows {
                 for column in columns.clone() {
                     if self.touches(net, instance, [column, row]) {
-                        let bin = row * self.size[0] + column;
-                        // There are at most 2^28 bins.
-                        entries.push((bin as u32, place));
-                        self.offsets[bin + 1] += 1;
+                        self.push(&mut ends[row * self.size[0] + column], entry);
                     }
                 }
             }
         }
-        for bin in 1..self.offsets.len() {
-            self.offsets[bin] += self.offsets[bin - 1];
+    }
+
+    /// Adds a candidate to a bin that ends in a given group.
+    fn push(&mut self, (group, used): &mut (u32, u32), entry: u32) {
+        if *used as usize == GROUP {
+            // There are less than 2^28 bins, and less than 2^30 instances in the memory of any machine.
+            let next = self.groups.len() as u32;
+            let last = &mut self.groups[*group as usize].0[GROUP - 1];
+            let mut group_after = Group::EMPTY;
+            group_after.0[0] = core::mem::replace(last, next | Group::NEXT);
+            self.groups.push(group_after);
+            (*group, *used) = (next, 1);
         }
-        let mut next = self.offsets.clone();
-        self.candidates = vec![0; entries.len()];
-        for (bin, place) in entries {
-            let next = &mut next[bin as usize];
-            self.candidates[*next as usize] = place;
-            *next += 1;
-        }
+        self.groups[*group as usize].0[*used as usize] = entry;
+        *used += 1;
     }
 
     /// Whether the support of an instance reaches into a bin, or may do so.

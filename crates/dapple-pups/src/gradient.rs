@@ -35,13 +35,17 @@ impl Texture {
         };
         let net = &self.pups.net;
         let value = f64::from(self.sample(position));
-        let (mut total, mut sum) = (0.0, DVec2::ZERO);
-        net.for_each_weight(local, |record, _| {
-            let instance = &net.instances[record.instance as usize];
+        let instances = &net.bins().instances;
+        let add = |(total, sum): (f64, DVec2), record: usize, weight: f32| {
+            if weight == 0.0 {
+                return (total, sum);
+            }
+            let instance = &net.instances[instances[record] as usize];
             let (weight, gradient) = weight_and_gradient(net, instance, local);
-            total += weight;
-            sum += gradient * (f64::from(self.values[instance.point as usize]) - value);
-        });
+            let rise = f64::from(self.values[instance.point as usize]) - value;
+            (total + weight, sum + gradient * rise)
+        };
+        let (total, sum) = net.fold_weights(local, (0.0, DVec2::ZERO), add);
         if total < f64::from(LEAST_TOTAL) {
             DVec2::ZERO
         } else {

@@ -128,15 +128,17 @@ impl Pups {
             return Vec::new();
         };
         let mut weights = Vec::new();
-        let mut total = 0.0;
-        self.net.for_each_weight(position, |instance, weight| {
-            if weight > 0.0 {
-                weights.push((PointIdx(instance.point), weight));
-            }
-            total += weight;
-        });
+        let points = &self.net.bins().points;
+        let total = self
+            .net
+            .fold_weights(position, 0.0, |total, record, weight| {
+                if weight > 0.0 {
+                    weights.push((PointIdx(points[record]), weight));
+                }
+                total + weight
+            });
         if total < LEAST_TOTAL {
-            return vec![(PointIdx(self.net.nearest(position).point), 1.0)];
+            return vec![(PointIdx(self.net.nearest(position)), 1.0)];
         }
         weights.iter_mut().for_each(|(_, weight)| *weight /= total);
         weights
@@ -149,13 +151,16 @@ impl Pups {
     #[must_use]
     pub fn strongest(&self, position: DVec2) -> Option<PointIdx> {
         let position = self.local(position)?;
-        let mut best = (0.0, None);
-        self.net.for_each_weight(position, |instance, weight| {
+        let points = &self.net.bins().points;
+        let stronger = |best: (f32, Option<u32>), record: usize, weight: f32| {
             if weight > best.0 {
-                best = (weight, Some(instance.point));
+                (weight, Some(points[record]))
+            } else {
+                best
             }
-        });
-        let point = best.1.unwrap_or_else(|| self.net.nearest(position).point);
+        };
+        let best = self.net.fold_weights(position, (0.0, None), stronger);
+        let point = best.1.unwrap_or_else(|| self.net.nearest(position));
         Some(PointIdx(point))
     }
 

@@ -18,7 +18,7 @@ use dapple_raster::Window;
 use fearless_simd::{Level, dispatch, prelude::*};
 use glam::DVec2;
 
-/// How many numbers a band is summed in, at most, so that they stay in a core's own cache: 128 KiB.
+/// How many numbers a band is summed in, at most, so that they stay in the second cache of a core: 512 KiB.
 const BAND_NUMBERS: usize = 1 << 17;
 
 /// The most rows of a band; bands are what threads share out.
@@ -213,7 +213,7 @@ impl<K: Sink> Band<'_, '_, K> {
                 let nearest = |pixel: usize| {
                     let x = columns.padded[index * LANES + pixel];
                     let position = DVec2::new(x, self.ys.padded[row]);
-                    self.net.nearest(position).point
+                    self.net.nearest(position)
                 };
                 self.sink.resolve(simd, sums, values, nearest);
             }

@@ -1,7 +1,10 @@
 //! The weights at one position.
+//!
+//! Candidates are evaluated in groups of eight: their axes are projected eight at a time, and then turned, so that a
+//! register holds the same axis of all candidates and the products of all of them go on side by side.
 
-use crate::bins::Record;
-use crate::net::{BLOCK, Net};
+use crate::bins::{Bins, GROUP, Group};
+use crate::net::{AxisBlock, BLOCK, Net};
 use crate::profile::{Cubic, Profile};
 use crate::shift::shift_weights;
 use crate::simd;
@@ -10,81 +13,165 @@ use fearless_simd::{dispatch, f32x4, f32x8, prelude::*};
 use glam::DVec2;
 
 impl Net {
-    /// Calls `take(record, weight)` for every candidate at a position that is in range, in the order in which weights are
-    /// summed. Some weights are zero: which ones cannot be foreseen, so that leaving them out costs more than it saves.
+    /// Calls `take(state, record, weight)`, which gives the next state, for every candidate at a position that is in
+    /// range, in the order in which weights are summed; `record` is its place in the [`Bins`]. Some weights are zero:
+    /// which ones cannot be foreseen, so that leaving them out costs more than it saves.
     #[inline]
-    pub(crate) fn for_each_weight(&self, position: DVec2, take: impl FnMut(&Record, f32)) {
+    pub(crate) fn fold_weights<A>(
+        &self,
+        position: DVec2,
+        state: A,
+        take: impl FnMut(A, usize, f32) -> A,
+    ) -> A {
         match self.options.weight {
             AxialWeight::Cubic => {
-                dispatch!(simd::level(), simd => self.walk_candidates(simd, Cubic, position, take));
+                dispatch!(simd::level(), simd => self.walk(simd, Cubic, position, state, take))
             }
             other => {
-                dispatch!(simd::level(), simd => self.walk_candidates(simd, other, position, take));
+                dispatch!(simd::level(), simd => self.walk(simd, other, position, state, take))
             }
         }
     }
 
-    /// The candidate whose center is nearest to a position; of equals, the first.
-    pub(crate) fn nearest(&self, position: DVec2) -> &Record {
+    /// The control point nearest to a position; of equals, the first.
+    pub(crate) fn nearest(&self, position: DVec2) -> u32 {
         let bins = self.bins();
-        let distance_sq = |candidate: u32| bins.record(candidate).center.distance_squared(position);
-        let nearer = |best, candidate| {
-            if distance_sq(candidate) < distance_sq(best) {
-                candidate
-            } else {
-                best
-            }
-        };
-        let nearest = bins.candidates(position).iter().copied().reduce(nearer);
         // The support of the nearest control point covers the position, so there is one; the first is only for form.
-        bins.record(nearest.unwrap_or(0))
+        let mut nearest = (f64::INFINITY, 0);
+        let mut group = Some(bins.first_group(position));
+        while let Some(candidates) = group {
+            for (lane, record) in candidates.records().into_iter().enumerate() {
+                let distance_sq = bins.centers[record].distance_squared(position);
+                if candidates.has(lane) && distance_sq < nearest.0 {
+                    nearest = (distance_sq, bins.points[record]);
+                }
+            }
+            group = bins.next_group(candidates);
+        }
+        nearest.1
     }
 
     #[inline(always)]
-    fn walk_candidates<S: Simd, P: Profile>(
+    fn walk<S: Simd, P: Profile, A>(
         &self,
         simd: S,
         profile: P,
         position: DVec2,
-        mut take: impl FnMut(&Record, f32),
-    ) {
+        mut state: A,
+        mut take: impl FnMut(A, usize, f32) -> A,
+    ) -> A {
         let bins = self.bins();
-        for &candidate in bins.candidates(position) {
-            let record = bins.record(candidate);
-            let x = (position.x - record.center.x) as f32;
-            let y = (position.y - record.center.y) as f32;
-            let mut weight = product(simd, profile, (&record.x, &record.y), (x, y));
-            if record.has_more {
-                for block in &self.blocks(&self.instances[record.instance as usize])[1..] {
-                    weight *= product(simd, profile, (&block.x, &block.y), (x, y));
+        let mut group = bins.first_group(position);
+        loop {
+            let weights = self.weights_of(simd, profile, bins, group, position);
+            for (record, weight) in group.records().into_iter().zip(weights) {
+                state = take(state, record, weight);
+            }
+            match bins.next_group(group) {
+                Some(next) => group = next,
+                None => return state,
+            }
+        }
+    }
+
+    /// The weights of a group of candidates; zero where there is none.
+    #[inline(always)]
+    fn weights_of<S: Simd, P: Profile>(
+        &self,
+        simd: S,
+        profile: P,
+        bins: &Bins,
+        group: &Group,
+        position: DVec2,
+    ) -> [f32; GROUP] {
+        let records = group.records();
+        let mut offsets = [[0.0; GROUP]; 2];
+        let mut projections = [f32x8::splat(simd, 0.0); GROUP];
+        for lane in 0..GROUP {
+            let (axes, center) = (&bins.axes[records[lane]], bins.centers[records[lane]]);
+            let x = (position.x - center.x) as f32;
+            let y = (position.y - center.y) as f32;
+            projections[lane] = minus_u(simd, axes, x, y);
+            (offsets[0][lane], offsets[1][lane]) = (x, y);
+        }
+        let projections = transposed(projections);
+        let (mut q, mut t) = profile.first(projections[0]);
+        for axis in 1..BLOCK {
+            (q, t) = profile.step(q, t, projections[axis]);
+        }
+        let weights = profile.finish(q, t, BLOCK) * f32x8::from_slice(simd, &group.ones());
+        let mut weights: [f32; GROUP] = weights.into();
+        if group.has_long() {
+            for lane in 0..GROUP {
+                if group.is_long(lane) {
+                    let [x, y] = [offsets[0][lane], offsets[1][lane]];
+                    let instance = bins.instances[records[lane]];
+                    weights[lane] = self.go_on(simd, profile, weights[lane], instance, x, y);
                 }
             }
-            if let Some(&shift) = self.shifts.get(record.point as usize) {
-                weight = shifted(simd, weight, shift, x, y);
-            }
-            take(record, weight);
         }
+        if !self.shifts.is_empty() {
+            for lane in 0..GROUP {
+                let shift = self.shifts[bins.points[records[lane]] as usize];
+                weights[lane] = shifted(
+                    simd,
+                    weights[lane],
+                    shift,
+                    offsets[0][lane],
+                    offsets[1][lane],
+                );
+            }
+        }
+        weights
+    }
+
+    /// The weight of an instance, given that of its first block.
+    #[inline(always)]
+    fn go_on<S: Simd, P: Profile>(
+        &self,
+        simd: S,
+        profile: P,
+        mut weight: f32,
+        instance: u32,
+        x: f32,
+        y: f32,
+    ) -> f32 {
+        let blocks = self.blocks(&self.instances[instance as usize]);
+        for block in &blocks[1..] {
+            let minus_u = minus_u(simd, block, x, y);
+            let (mut q, mut t) = profile.first(minus_u.as_slice()[0]);
+            for &minus_u in &minus_u.as_slice()[1..] {
+                (q, t) = profile.step(q, t, minus_u);
+            }
+            weight *= profile.finish(q, t, BLOCK);
+        }
+        weight
     }
 }
 
-/// The product of the axial weights of a block.
+/// `−u` along each axis of a block.
 #[inline(always)]
-fn product<S: Simd, P: Profile>(
-    simd: S,
-    profile: P,
-    (ax, ay): (&[f32; BLOCK], &[f32; BLOCK]),
-    (x, y): (f32, f32),
-) -> f32 {
-    let zero = f32x8::splat(simd, 0.0);
-    let minus_one = f32x8::splat(simd, -1.0);
-    let rest = zero - minus_one - f32x8::from_slice(simd, ay) * y;
-    let minus_u = f32x8::from_slice(simd, ax) * x - rest;
-    let minus_u = minus_u.max(minus_one).min(zero);
-    let (mut q, mut t) = profile.first(minus_u.as_slice()[0]);
-    for &minus_u in &minus_u.as_slice()[1..] {
-        (q, t) = profile.step(q, t, minus_u);
+fn minus_u<S: Simd>(simd: S, axes: &AxisBlock, x: f32, y: f32) -> f32x8<S> {
+    let [minus_one, zero, one] = [-1.0, 0.0, 1.0].map(|number| f32x8::splat(simd, number));
+    let rest = one - f32x8::from_slice(simd, &axes.y) * y;
+    let unbounded = f32x8::from_slice(simd, &axes.x) * x - rest;
+    unbounded.max(minus_one).min(zero)
+}
+
+/// Register `i` of the result holds lane `i` of every register.
+#[inline(always)]
+fn transposed<S: Simd>(rows: [f32x8<S>; GROUP]) -> [f32x8<S>; GROUP] {
+    let mut from = rows;
+    // Merging the two halves of the registers like a deck of cards, three times, turns them.
+    for _ in 0..3 {
+        let mut to = from;
+        for i in 0..GROUP / 2 {
+            to[2 * i] = from[i].zip_low(from[i + GROUP / 2]);
+            to[2 * i + 1] = from[i].zip_high(from[i + GROUP / 2]);
+        }
+        from = to;
     }
-    profile.finish(q, t, BLOCK)
+    from
 }
 
 /// Equation 4 for one weight.

@@ -154,16 +154,16 @@ fn sample<const N: usize>(pups: &Pups, values: &[[f32; N]], position: DVec2) -> 
     let Some(position) = pups.local(position) else {
         return [f32::NAN; N];
     };
-    let mut total = 0.0;
-    let mut sums = [0.0; N];
-    pups.net.for_each_weight(position, |instance, weight| {
-        total += weight;
-        for (sum, value) in sums.iter_mut().zip(values[instance.point as usize]) {
+    let bins = pups.net.bins();
+    let add = |(total, mut sums): (f32, [f32; N]), record: usize, weight: f32| {
+        for (sum, value) in sums.iter_mut().zip(values[bins.points[record] as usize]) {
             *sum += weight * value;
         }
-    });
+        (total + weight, sums)
+    };
+    let (total, sums) = pups.net.fold_weights(position, (0.0, [0.0; N]), add);
     if total < LEAST_TOTAL {
-        return values[pups.net.nearest(position).point as usize];
+        return values[pups.net.nearest(position) as usize];
     }
     sums.map(|sum| sum / total)
 }
