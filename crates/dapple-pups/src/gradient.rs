@@ -36,13 +36,14 @@ impl Texture {
         let net = &self.pups.net;
         let value = f64::from(self.sample(position));
         let instances = &net.bins().instances;
+        let values = self.values();
         let add = |(total, sum): (f64, DVec2), record: usize, weight: f32| {
             if weight == 0.0 {
                 return (total, sum);
             }
             let instance = &net.instances[instances[record] as usize];
             let (weight, gradient) = weight_and_gradient(net, instance, local);
-            let rise = f64::from(self.values[instance.point as usize]) - value;
+            let rise = f64::from(values[instance.point as usize]) - value;
             (total + weight, sum + gradient * rise)
         };
         let (total, sum) = net.fold_weights(local, (0.0, DVec2::ZERO), add);

@@ -1,5 +1,6 @@
 //! Values at the control points, interpolated (equation 3).
 
+use crate::bins::Bins;
 use crate::pups::LEAST_TOTAL;
 use crate::render::render;
 use crate::sink::Sink;
@@ -8,6 +9,7 @@ use crate::{Pups, PupsError};
 use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
 use fearless_simd::prelude::*;
 use glam::DVec2;
+use std::sync::OnceLock;
 
 /// A scalar texture: at every position the mean of the control points' values, weighted after equation 3.
 ///
@@ -32,19 +34,20 @@ use glam::DVec2;
 #[derive(Clone, Debug)]
 pub struct Texture {
     pub(crate) pups: Pups,
-    pub(crate) values: Vec<f32>,
+    values: Values<1>,
 }
 
 /// A texture of vectors, such as colors: [`Texture`] for `N` numbers at once.
 #[derive(Clone, Debug)]
 pub struct VectorTexture<const N: usize> {
     pups: Pups,
-    values: Vec<[f32; N]>,
+    values: Values<N>,
 }
 
 impl Texture {
     pub(crate) fn new(pups: Pups, values: Vec<f32>) -> Result<Self, PupsError> {
-        check_values(&pups, values.len(), &values)?;
+        let values = values.into_iter().map(|value| [value]).collect();
+        let values = Values::new(&pups, values)?;
         Ok(Self { pups, values })
     }
 
@@ -57,21 +60,21 @@ impl Texture {
     /// The values of the control points.
     #[must_use]
     pub fn values(&self) -> &[f32] {
-        &self.values
+        self.values.by_point.as_flattened()
     }
 }
 
 impl Field for Texture {
     #[inline]
     fn sample(&self, position: DVec2) -> f32 {
-        let [value] = sample(&self.pups, self.values.as_chunks().0, position);
+        let [value] = self.values.sample(&self.pups, position);
         value
     }
 
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         window.check_size(out.size())?;
         let sink = Mean {
-            values: self.values.as_chunks::<1>().0,
+            values: &self.values.by_point,
         };
         render(&self.pups.net, window, &sink, out.rows_mut().collect());
         Ok(())
@@ -80,7 +83,7 @@ impl Field for Texture {
 
 impl<const N: usize> VectorTexture<N> {
     pub(crate) fn new(pups: Pups, values: Vec<[f32; N]>) -> Result<Self, PupsError> {
-        check_values(&pups, values.len(), values.as_flattened())?;
+        let values = Values::new(&pups, values)?;
         Ok(Self { pups, values })
     }
 
@@ -93,13 +96,13 @@ impl<const N: usize> VectorTexture<N> {
     /// The values of the control points.
     #[must_use]
     pub fn values(&self) -> &[[f32; N]] {
-        &self.values
+        &self.values.by_point
     }
 
     /// The vector at a position.
     #[must_use]
     pub fn sample(&self, position: DVec2) -> [f32; N] {
-        sample(&self.pups, &self.values, position)
+        self.values.sample(&self.pups, position)
     }
 
     /// The vectors at the pixel centers of a window, into memory of its size.
@@ -114,7 +117,7 @@ impl<const N: usize> VectorTexture<N> {
     ) -> Result<(), RasterError> {
         window.check_size(out.size())?;
         let sink = Mean {
-            values: &self.values,
+            values: &self.values.by_point,
         };
         let rows = out.rows_mut().map(<[_]>::as_flattened_mut).collect();
         render(&self.pups.net, window, &sink, rows);
@@ -134,38 +137,56 @@ impl<const N: usize> VectorTexture<N> {
     }
 }
 
-/// Refuses columns of another length, and numbers that are not finite.
-fn check_values(pups: &Pups, count: usize, numbers: &[f32]) -> Result<(), PupsError> {
-    PupsError::check_count("values", count, pups.n_points())?;
-    match numbers.iter().find(|number| !number.is_finite()) {
-        Some(&number) => PupsError::check(
-            false,
-            "value of a control point",
-            f64::from(number),
-            "finite",
-        ),
-        None => Ok(()),
-    }
+/// The values of the control points.
+#[derive(Clone, Debug)]
+struct Values<const N: usize> {
+    by_point: Vec<[f32; N]>,
+    /// The same in the order of the records of the [`Bins`]; made when the first position is asked for.
+    by_record: OnceLock<Vec<[f32; N]>>,
 }
 
-/// The weighted mean at one position, summed as [`Mean`] does.
-#[inline]
-fn sample<const N: usize>(pups: &Pups, values: &[[f32; N]], position: DVec2) -> [f32; N] {
-    let Some(position) = pups.local(position) else {
-        return [f32::NAN; N];
-    };
-    let bins = pups.net.bins();
-    let add = |(total, mut sums): (f32, [f32; N]), record: usize, weight: f32| {
-        for (sum, value) in sums.iter_mut().zip(values[bins.points[record] as usize]) {
-            *sum += weight * value;
+impl<const N: usize> Values<N> {
+    /// Refuses columns of another length, and numbers that are not finite.
+    fn new(pups: &Pups, by_point: Vec<[f32; N]>) -> Result<Self, PupsError> {
+        PupsError::check_count("values", by_point.len(), pups.n_points())?;
+        let mut numbers = by_point.as_flattened().iter();
+        if let Some(&number) = numbers.find(|number| !number.is_finite()) {
+            let name = "value of a control point";
+            PupsError::check(false, name, f64::from(number), "finite")?;
         }
-        (total + weight, sums)
-    };
-    let (total, sums) = pups.net.fold_weights(position, (0.0, [0.0; N]), add);
-    if total < LEAST_TOTAL {
-        return values[pups.net.nearest(position) as usize];
+        Ok(Self {
+            by_point,
+            by_record: OnceLock::new(),
+        })
     }
-    sums.map(|sum| sum / total)
+
+    #[inline]
+    fn by_record(&self, bins: &Bins) -> &[[f32; N]] {
+        self.by_record.get_or_init(|| {
+            let points = bins.points.iter();
+            points.map(|&point| self.by_point[point as usize]).collect()
+        })
+    }
+
+    /// The weighted mean at one position, summed as [`Mean`] does.
+    #[inline]
+    fn sample(&self, pups: &Pups, position: DVec2) -> [f32; N] {
+        let Some(position) = pups.local(position) else {
+            return [f32::NAN; N];
+        };
+        let values = self.by_record(pups.net.bins());
+        let add = |(total, mut sums): (f32, [f32; N]), record: usize, weight: f32| {
+            for (sum, value) in sums.iter_mut().zip(values[record]) {
+                *sum += weight * value;
+            }
+            (total + weight, sums)
+        };
+        let (total, sums) = pups.net.fold_weights(position, (0.0, [0.0; N]), add);
+        if total < LEAST_TOTAL {
+            return self.by_point[pups.net.nearest(position) as usize];
+        }
+        sums.map(|sum| sum / total)
+    }
 }
 
 /// Sums up weights, and weights times the `N` numbers of each value.
