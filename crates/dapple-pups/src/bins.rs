@@ -40,16 +40,14 @@ impl Group {
 
     /// The records of the candidates; the first of all where there is no candidate.
     #[inline(always)]
-    pub(crate) fn records(&self) -> [usize; GROUP] {
-        self.0
-            .map(|entry| (entry & !Self::LONG) as usize)
-            .map(|entry| {
-                if entry < Self::NEXT as usize {
-                    entry
-                } else {
-                    0
-                }
-            })
+    pub(crate) fn records(&self) -> [u32; GROUP] {
+        self.0.map(|entry| {
+            if entry < Self::NEXT {
+                entry & !Self::LONG
+            } else {
+                0
+            }
+        })
     }
 
     /// Whether there is a candidate.
@@ -145,7 +143,8 @@ impl Bins {
     fn bin(&self, axis: usize, coordinate: f64) -> usize {
         // A negative number becomes zero.
         let bin = (coordinate - self.origin[axis]) * self.per_unit[axis];
-        (bin as usize).min(self.size[axis] - 1)
+        // There are at most 2^14 bins along an axis.
+        (bin as u32 as usize).min(self.size[axis] - 1)
     }
 
     /// Makes the records, along the curve. Returns the record of each instance.

@@ -41,6 +41,7 @@ impl Net {
         let mut group = Some(bins.first_group(position));
         while let Some(candidates) = group {
             for (lane, record) in candidates.records().into_iter().enumerate() {
+                let record = record as usize;
                 let distance_sq = bins.centers[record].distance_squared(position);
                 if candidates.has(lane) && distance_sq < nearest.0 {
                     nearest = (distance_sq, bins.points[record]);
@@ -63,9 +64,10 @@ impl Net {
         let bins = self.bins();
         let mut group = bins.first_group(position);
         loop {
-            let weights = self.weights_of(simd, profile, bins, group, position);
-            for (record, weight) in group.records().into_iter().zip(weights) {
-                state = take(state, record, weight);
+            let records = group.records();
+            let weights = self.weights_of(simd, profile, (bins, group, &records), position);
+            for (&record, weight) in records.iter().zip(weights) {
+                state = take(state, record as usize, weight);
             }
             match bins.next_group(group) {
                 Some(next) => group = next,
@@ -80,15 +82,16 @@ impl Net {
         &self,
         simd: S,
         profile: P,
-        bins: &Bins,
-        group: &Group,
+        (bins, group, records): (&Bins, &Group, &[u32; GROUP]),
         position: DVec2,
     ) -> [f32; GROUP] {
-        let records = group.records();
         let mut offsets = [[0.0; GROUP]; 2];
         let mut projections = [f32x8::splat(simd, 0.0); GROUP];
         for lane in 0..GROUP {
-            let (axes, center) = (&bins.axes[records[lane]], bins.centers[records[lane]]);
+            let (axes, center) = (
+                &bins.axes[records[lane] as usize],
+                bins.centers[records[lane] as usize],
+            );
             let x = (position.x - center.x) as f32;
             let y = (position.y - center.y) as f32;
             projections[lane] = minus_u(simd, axes, x, y);
@@ -105,14 +108,14 @@ impl Net {
             for lane in 0..GROUP {
                 if group.is_long(lane) {
                     let [x, y] = [offsets[0][lane], offsets[1][lane]];
-                    let instance = bins.instances[records[lane]];
+                    let instance = bins.instances[records[lane] as usize];
                     weights[lane] = self.go_on(simd, profile, weights[lane], instance, x, y);
                 }
             }
         }
         if !self.shifts.is_empty() {
             for lane in 0..GROUP {
-                let shift = self.shifts[bins.points[records[lane]] as usize];
+                let shift = self.shifts[bins.points[records[lane] as usize] as usize];
                 weights[lane] = shifted(
                     simd,
                     weights[lane],

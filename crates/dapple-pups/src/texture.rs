@@ -148,6 +148,7 @@ struct Values<const N: usize> {
 impl<const N: usize> Values<N> {
     /// Refuses columns of another length, and numbers that are not finite.
     fn new(pups: &Pups, by_point: Vec<[f32; N]>) -> Result<Self, PupsError> {
+        const { assert!(N > 0, "a value has at least one number") };
         PupsError::check_count("values", by_point.len(), pups.n_points())?;
         let mut numbers = by_point.as_flattened().iter();
         if let Some(&number) = numbers.find(|number| !number.is_finite()) {
