@@ -85,80 +85,68 @@ impl Net {
         (bins, group, records): (&Bins, &Group, &[u32; GROUP]),
         position: DVec2,
     ) -> [f32; GROUP] {
-        let mut offsets = [[0.0; GROUP]; 2];
         let mut projections = [f32x8::splat(simd, 0.0); GROUP];
+        let mut offsets = [[0.0; GROUP]; 2];
         for lane in 0..GROUP {
-            let (axes, center) = (
-                &bins.axes[records[lane] as usize],
-                bins.centers[records[lane] as usize],
-            );
-            let x = (position.x - center.x) as f32;
-            let y = (position.y - center.y) as f32;
-            projections[lane] = minus_u(simd, axes, x, y);
-            (offsets[0][lane], offsets[1][lane]) = (x, y);
+            let record = records[lane] as usize;
+            let (axes, center) = (&bins.axes[record], bins.centers[record]);
+            let offset = [position.x - center.x, position.y - center.y].map(|axis| axis as f32);
+            projections[lane] = project(simd, axes, offset);
+            // Kept apart, so that the position comes in as two numbers: together, it would wait for being written.
+            (offsets[0][lane], offsets[1][lane]) = (offset[0], offset[1]);
         }
         let projections = transposed(projections);
         let (mut q, mut t) = profile.first(projections[0]);
-        for axis in 1..BLOCK {
-            (q, t) = profile.step(q, t, projections[axis]);
+        for &projection in &projections[1..] {
+            (q, t) = profile.step(q, t, projection);
         }
         let weights = profile.finish(q, t, BLOCK) * f32x8::from_slice(simd, &group.ones());
         let mut weights: [f32; GROUP] = weights.into();
-        if group.has_long() {
+        if group.has_long() || !self.shifts.is_empty() {
             for lane in 0..GROUP {
+                let record = records[lane] as usize;
+                let offset = [offsets[0][lane], offsets[1][lane]];
                 if group.is_long(lane) {
-                    let [x, y] = [offsets[0][lane], offsets[1][lane]];
-                    let instance = bins.instances[records[lane] as usize];
-                    weights[lane] = self.go_on(simd, profile, weights[lane], instance, x, y);
+                    let instance = &self.instances[bins.instances[record] as usize];
+                    let blocks = &self.blocks(instance)[1..];
+                    weights[lane] = go_on(simd, profile, weights[lane], blocks, offset);
+                }
+                if let Some(&shift) = self.shifts.get(bins.points[record] as usize) {
+                    weights[lane] = shifted(simd, weights[lane], shift, offset);
                 }
             }
         }
-        if !self.shifts.is_empty() {
-            for lane in 0..GROUP {
-                let shift = self.shifts[bins.points[records[lane] as usize] as usize];
-                weights[lane] = shifted(
-                    simd,
-                    weights[lane],
-                    shift,
-                    offsets[0][lane],
-                    offsets[1][lane],
-                );
-            }
-        }
         weights
-    }
-
-    /// The weight of an instance, given that of its first block.
-    #[inline(always)]
-    fn go_on<S: Simd, P: Profile>(
-        &self,
-        simd: S,
-        profile: P,
-        mut weight: f32,
-        instance: u32,
-        x: f32,
-        y: f32,
-    ) -> f32 {
-        let blocks = self.blocks(&self.instances[instance as usize]);
-        for block in &blocks[1..] {
-            let minus_u = minus_u(simd, block, x, y);
-            let (mut q, mut t) = profile.first(minus_u.as_slice()[0]);
-            for &minus_u in &minus_u.as_slice()[1..] {
-                (q, t) = profile.step(q, t, minus_u);
-            }
-            weight *= profile.finish(q, t, BLOCK);
-        }
-        weight
     }
 }
 
 /// `−u` along each axis of a block.
 #[inline(always)]
-fn minus_u<S: Simd>(simd: S, axes: &AxisBlock, x: f32, y: f32) -> f32x8<S> {
+fn project<S: Simd>(simd: S, axes: &AxisBlock, [x, y]: [f32; 2]) -> f32x8<S> {
     let [minus_one, zero, one] = [-1.0, 0.0, 1.0].map(|number| f32x8::splat(simd, number));
     let rest = one - f32x8::from_slice(simd, &axes.y) * y;
     let unbounded = f32x8::from_slice(simd, &axes.x) * x - rest;
     unbounded.max(minus_one).min(zero)
+}
+
+/// The weight of a control point, given that of its first axes and the blocks of the others.
+#[inline(always)]
+fn go_on<S: Simd, P: Profile>(
+    simd: S,
+    profile: P,
+    mut weight: f32,
+    blocks: &[AxisBlock],
+    offset: [f32; 2],
+) -> f32 {
+    for block in blocks {
+        let projections = project(simd, block, offset);
+        let (mut q, mut t) = profile.first(projections[0]);
+        for &projection in &projections.as_slice()[1..] {
+            (q, t) = profile.step(q, t, projection);
+        }
+        weight *= profile.finish(q, t, BLOCK);
+    }
+    weight
 }
 
 /// Register `i` of the result holds lane `i` of every register.
@@ -179,7 +167,7 @@ fn transposed<S: Simd>(rows: [f32x8<S>; GROUP]) -> [f32x8<S>; GROUP] {
 
 /// Equation 4 for one weight.
 #[inline(always)]
-fn shifted<S: Simd>(simd: S, weight: f32, shift: [f32; 2], x: f32, y: f32) -> f32 {
+fn shifted<S: Simd>(simd: S, weight: f32, shift: [f32; 2], [x, y]: [f32; 2]) -> f32 {
     let (weight, x) = (f32x4::splat(simd, weight), f32x4::splat(simd, x));
     let [weight] = shift_weights(simd, &[weight], shift, x, &[y]);
     weight.as_slice()[0]
