@@ -4,28 +4,63 @@
 //! are summed; so the time for a position does not depend on the number of points. The grid covers the domain. On an
 //! axis that does not wrap, the bins of the border reach out as far as there are positions.
 //!
-//! With many points, that time is spent waiting for memory. So a bin is a small group of indices in one place, and what
-//! they stand for lies in memory along a Z-shaped curve through the plane: the candidates of a position are near each
-//! other whatever the order of the points.
+//! With many points, that time is spent waiting for memory, and the less there is of it, the more of it is near. So a bin
+//! has 16 bytes, and the numbers in it lead to records that lie in strips, column by column: the candidates of a position
+//! are near each other whatever the order of the points.
 
 use crate::net::{AxisBlock, BLOCK, Instance, Net};
 use glam::DVec2;
 
 /// How many bins there are for each instance: more bins, fewer candidates in each. With 4, a position has some 6
-/// candidates, of which 4 have a weight, and seldom more than a group holds.
+/// candidates, of which 4 have a weight, and seldom more than a bin holds.
 const BINS_PER_INSTANCE: f64 = 4.0;
 
 /// The most bins along one axis.
 const BINS_LIMIT: f64 = 16_384.0;
 
+/// How many rows of bins make a strip.
+const STRIP: usize = 4;
+
 /// How many candidates are evaluated together.
 pub(crate) const GROUP: usize = 8;
 
-/// Up to eight candidates, in their order. The last one may be the index of the group that goes on, with the bit
-/// [`Group::NEXT`].
+/// Up to eight candidates, in their order, as the places of their records in the strips about the bin; or where else to
+/// look.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
-pub(crate) struct Group([u32; GROUP]);
+#[repr(align(16))]
+struct Bin([u16; GROUP]);
+
+impl Bin {
+    /// Stands for no candidate.
+    const NONE: u16 = u16::MAX;
+    /// Stands first in a bin that has candidates with more axes than a block holds, more candidates than eight, or some
+    /// that are too far away; the two halves of the index of a group follow.
+    const ELSEWHERE: u16 = Self::NONE - 1;
+
+    /// The bin for a chain that begins with a group, where records are counted from `base`; nothing if it does not fit.
+    fn of(group: &Group, base: u32) -> Option<Self> {
+        let mut bin = Self([Self::NONE; GROUP]);
+        for (place, &entry) in bin.0.iter_mut().zip(&group.0) {
+            if entry != Group::NONE {
+                let record = Some(entry).filter(|&entry| entry < Group::LONG)?;
+                let distance = u16::try_from(record.checked_sub(base)?).ok()?;
+                *place = Some(distance).filter(|&it| it < Self::ELSEWHERE)?;
+            }
+        }
+        Some(bin)
+    }
+
+    fn elsewhere(group: u32) -> Self {
+        let mut bin = Self([Self::NONE; GROUP]);
+        // Cut into its halves.
+        bin.0[..3].copy_from_slice(&[Self::ELSEWHERE, group as u16, (group >> 16) as u16]);
+        bin
+    }
+}
+
+/// Up to eight candidates, in their order, as their records. The last one may be the index of the group that goes on.
+#[derive(Clone, Copy, Debug)]
+struct Group([u32; GROUP]);
 
 impl Group {
     /// Stands for no candidate.
@@ -38,53 +73,23 @@ impl Group {
     /// A group without candidates.
     const EMPTY: Self = Self([Self::NONE; GROUP]);
 
-    /// The records of the candidates; the first of all where there is no candidate.
-    #[inline(always)]
-    pub(crate) fn records(&self) -> [u32; GROUP] {
-        self.0.map(|entry| {
-            if entry < Self::NEXT {
-                entry & !Self::LONG
-            } else {
-                0
-            }
-        })
-    }
-
-    /// Whether there is a candidate.
-    #[inline(always)]
-    pub(crate) fn has(&self, lane: usize) -> bool {
-        self.0[lane] < Self::NEXT
-    }
-
-    /// One for a candidate, zero for none.
-    #[inline(always)]
-    pub(crate) fn ones(&self) -> [f32; GROUP] {
-        self.0
-            .map(|entry| if entry < Self::NEXT { 1.0 } else { 0.0 })
-    }
-
-    /// Whether a candidate has more axes than a block holds.
-    #[inline(always)]
-    pub(crate) fn is_long(&self, lane: usize) -> bool {
-        self.has(lane) && self.0[lane] & Self::LONG != 0
-    }
-
-    /// Whether one of the candidates has more axes than a block holds.
-    #[inline(always)]
-    pub(crate) fn has_long(&self) -> bool {
-        let mut long = false;
-        for &entry in &self.0 {
-            long |= entry & (Self::LONG | Self::NEXT) == Self::LONG;
-        }
-        long
-    }
-
     /// The group that goes on.
-    #[inline(always)]
-    fn next(&self) -> Option<usize> {
+    fn next(&self) -> Option<u32> {
         let last = self.0[GROUP - 1];
-        (last >= Self::NEXT && last != Self::NONE).then_some((last & !Self::NEXT) as usize)
+        (last >= Self::NEXT && last != Self::NONE).then_some(last & !Self::NEXT)
     }
+}
+
+/// Up to eight candidates, ready to be evaluated.
+pub(crate) struct Candidates {
+    /// Their records; the first of all where there is no candidate.
+    pub(crate) records: [u32; GROUP],
+    /// One for a candidate, zero for none.
+    pub(crate) ones: [f32; GROUP],
+    /// Which have more axes than a block holds, as bits.
+    pub(crate) long: u32,
+    /// Leads to the candidates that come after them.
+    pub(crate) next: Option<u32>,
 }
 
 /// The grid, and what it knows of instances: their records.
@@ -94,7 +99,10 @@ pub(crate) struct Bins {
     origin: DVec2,
     /// Bins per unit of length.
     per_unit: DVec2,
-    /// The first group of each bin, and then those that go on.
+    bins: Vec<Bin>,
+    /// Where the records of each strip of bins are counted from.
+    bases: Vec<u32>,
+    /// The candidates of bins that could not hold them, group by group.
     groups: Vec<Group>,
     /// The first axes of each record.
     pub(crate) axes: Vec<AxisBlock>,
@@ -115,6 +123,8 @@ impl Bins {
             size: [counts.x as usize, counts.y as usize],
             origin: net.domain.origin,
             per_unit: counts / size,
+            bins: Vec::new(),
+            bases: Vec::new(),
             groups: Vec::new(),
             axes: Vec::new(),
             centers: Vec::new(),
@@ -122,20 +132,52 @@ impl Bins {
             points: Vec::new(),
         };
         let places = bins.place_records(net);
-        bins.list_candidates(net, &places);
+        let chains = bins.list_candidates(net, &places);
+        bins.pack(&chains);
         bins
     }
 
-    /// The candidates at a position (which [`Net::local`] has brought into range), group by group.
+    /// The first candidates at a position (which [`Net::local`] has brought into range).
     #[inline(always)]
-    pub(crate) fn first_group(&self, position: DVec2) -> &Group {
-        &self.groups[self.bin(1, position.y) * self.size[0] + self.bin(0, position.x)]
+    pub(crate) fn first_candidates(&self, position: DVec2) -> Candidates {
+        let row = self.bin(1, position.y);
+        let Bin(places) = self.bins[row * self.size[0] + self.bin(0, position.x)];
+        if places[0] == Bin::ELSEWHERE {
+            return self.next_candidates(u32::from(places[1]) | u32::from(places[2]) << 16);
+        }
+        let base = self.bases[row / STRIP];
+        let is_none = |place| place == Bin::NONE;
+        Candidates {
+            records: places.map(|place| {
+                if is_none(place) {
+                    0
+                } else {
+                    base + u32::from(place)
+                }
+            }),
+            ones: places.map(|place| if is_none(place) { 0.0 } else { 1.0 }),
+            long: 0,
+            next: None,
+        }
     }
 
-    /// The candidates that come after those of a group.
-    #[inline(always)]
-    pub(crate) fn next_group(&self, group: &Group) -> Option<&Group> {
-        group.next().map(|next| &self.groups[next])
+    /// The candidates of a group.
+    pub(crate) fn next_candidates(&self, group: u32) -> Candidates {
+        let group = &self.groups[group as usize];
+        let mut candidates = Candidates {
+            records: [0; GROUP],
+            ones: [0.0; GROUP],
+            long: 0,
+            next: group.next(),
+        };
+        for (lane, &entry) in group.0.iter().enumerate() {
+            if entry < Group::NEXT {
+                candidates.records[lane] = entry & !Group::LONG;
+                candidates.ones[lane] = 1.0;
+                candidates.long |= u32::from(entry & Group::LONG != 0) << lane;
+            }
+        }
+        candidates
     }
 
     /// The bin of a coordinate along an axis; what lies outside belongs to the border.
@@ -147,14 +189,13 @@ impl Bins {
         (bin as u32 as usize).min(self.size[axis] - 1)
     }
 
-    /// Makes the records, along the curve. Returns the record of each instance.
+    /// Makes the records, strip by strip. Returns the record of each instance.
     fn place_records(&mut self, net: &Net) -> Vec<u32> {
         let key = |instance: &Instance| {
-            // There are at most 2^14 bins along an axis.
-            let [column, row] = [0, 1].map(|axis| self.bin(axis, instance.center[axis]) as u32);
-            spread_bits(column) | spread_bits(row) << 1
+            let [column, row] = [0, 1].map(|axis| self.bin(axis, instance.center[axis]));
+            (row / STRIP, column, row)
         };
-        let mut order: Vec<(u32, u32)> = net.instances.iter().map(key).zip(0..).collect();
+        let mut order: Vec<_> = net.instances.iter().map(key).zip(0..).collect();
         order.sort_unstable();
         let mut places = vec![0; order.len()];
         for (place, &(_, index)) in (0..).zip(&order) {
@@ -169,11 +210,12 @@ impl Bins {
         places
     }
 
-    /// Lists the candidates of every bin, in the order of the instances.
-    fn list_candidates(&mut self, net: &Net, places: &[u32]) {
-        self.groups = vec![Group::EMPTY; self.size[0] * self.size[1]];
-        // Of each bin, its last group and how much of it is used.
-        let mut ends: Vec<(u32, u32)> = (0..self.groups.len() as u32).map(|bin| (bin, 0)).collect();
+    /// Lists the candidates of every bin, in the order of the instances: in the group of the bin's number, and in those
+    /// that go on from there.
+    fn list_candidates(&self, net: &Net, places: &[u32]) -> Vec<Group> {
+        let mut chains = vec![Group::EMPTY; self.size[0] * self.size[1]];
+        // Of each bin, its last group and how much of it is used. There are at most 2^28 bins.
+        let mut ends: Vec<(u32, u32)> = (0..chains.len() as u32).map(|bin| (bin, 0)).collect();
         for (instance, &place) in net.instances.iter().zip(places) {
             let is_long = net.blocks(instance).len() > 1;
             let entry = if is_long { place | Group::LONG } else { place };
@@ -183,26 +225,42 @@ impl Bins {
             for row in rows {
                 for column in columns.clone() {
                     if self.touches(net, instance, [column, row]) {
-                        self.push(&mut ends[row * self.size[0] + column], entry);
+                        push(&mut chains, &mut ends[row * self.size[0] + column], entry);
                     }
                 }
             }
         }
+        chains
     }
 
-    /// Adds a candidate to a bin that ends in a given group.
-    fn push(&mut self, (group, used): &mut (u32, u32), entry: u32) {
-        if *used as usize == GROUP {
-            // There are less than 2^28 bins, and less than 2^30 instances in the memory of any machine.
-            let next = self.groups.len() as u32;
-            let last = &mut self.groups[*group as usize].0[GROUP - 1];
-            let mut group_after = Group::EMPTY;
-            group_after.0[0] = core::mem::replace(last, next | Group::NEXT);
-            self.groups.push(group_after);
-            (*group, *used) = (next, 1);
+    /// Packs the candidates of bins, and keeps the groups of those that do not fit.
+    fn pack(&mut self, chains: &[Group]) {
+        let n_bins = self.size[0] * self.size[1];
+        for strip in chains[..n_bins].chunks(self.size[0] * STRIP) {
+            let entries = strip.iter().flat_map(|group| group.0);
+            // What has a mark is larger than what has none.
+            let base = entries.min().unwrap_or(0);
+            self.bases.push(base);
+            for first in strip {
+                let bin = Bin::of(first, base).unwrap_or_else(|| {
+                    let bin = Bin::elsewhere(self.groups.len() as u32);
+                    self.keep(chains, first);
+                    bin
+                });
+                self.bins.push(bin);
+            }
         }
-        self.groups[*group as usize].0[*used as usize] = entry;
-        *used += 1;
+    }
+
+    /// Keeps a chain of groups, one after another.
+    fn keep(&mut self, chains: &[Group], first: &Group) {
+        let mut group = *first;
+        while let Some(next) = group.next() {
+            group.0[GROUP - 1] = (self.groups.len() + 1) as u32 | Group::NEXT;
+            self.groups.push(group);
+            group = chains[next as usize];
+        }
+        self.groups.push(group);
     }
 
     /// Whether the support of an instance reaches into a bin, or may do so.
@@ -249,10 +307,17 @@ impl Bins {
     }
 }
 
-/// The lower 16 bits, each with a zero before it.
-fn spread_bits(bits: u32) -> u32 {
-    let bits = (bits | bits << 8) & 0x00FF_00FF;
-    let bits = (bits | bits << 4) & 0x0F0F_0F0F;
-    let bits = (bits | bits << 2) & 0x3333_3333;
-    (bits | bits << 1) & 0x5555_5555
+/// Adds a candidate to a chain of groups, of which the last one and how much of it is used are given.
+fn push(chains: &mut Vec<Group>, (group, used): &mut (u32, u32), entry: u32) {
+    if *used as usize == GROUP {
+        // In the memory of any machine there are less than 2^31 groups, and less than 2^30 instances.
+        let next = chains.len() as u32;
+        let mut group_after = Group::EMPTY;
+        let last = &mut chains[*group as usize].0[GROUP - 1];
+        group_after.0[0] = core::mem::replace(last, next | Group::NEXT);
+        chains.push(group_after);
+        (*group, *used) = (next, 1);
+    }
+    chains[*group as usize].0[*used as usize] = entry;
+    *used += 1;
 }

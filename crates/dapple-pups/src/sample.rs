@@ -3,7 +3,7 @@
 //! Candidates are evaluated in groups of eight: their axes are projected eight at a time, and then turned, so that a
 //! register holds the same axis of all candidates and the products of all of them go on side by side.
 
-use crate::bins::{Bins, GROUP, Group};
+use crate::bins::{Bins, Candidates, GROUP};
 use crate::net::{AxisBlock, BLOCK, Net};
 use crate::profile::{Cubic, Profile};
 use crate::shift::shift_weights;
@@ -38,18 +38,19 @@ impl Net {
         let bins = self.bins();
         // The support of the nearest control point covers the position, so there is one; the first is only for form.
         let mut nearest = (f64::INFINITY, 0);
-        let mut group = Some(bins.first_group(position));
-        while let Some(candidates) = group {
-            for (lane, record) in candidates.records().into_iter().enumerate() {
-                let record = record as usize;
-                let distance_sq = bins.centers[record].distance_squared(position);
-                if candidates.has(lane) && distance_sq < nearest.0 {
-                    nearest = (distance_sq, bins.points[record]);
+        let mut candidates = bins.first_candidates(position);
+        loop {
+            for (&record, one) in candidates.records.iter().zip(candidates.ones) {
+                let distance_sq = bins.centers[record as usize].distance_squared(position);
+                if one > 0.0 && distance_sq < nearest.0 {
+                    nearest = (distance_sq, bins.points[record as usize]);
                 }
             }
-            group = bins.next_group(candidates);
+            match candidates.next {
+                Some(next) => candidates = bins.next_candidates(next),
+                None => return nearest.1,
+            }
         }
-        nearest.1
     }
 
     #[inline(always)]
@@ -62,33 +63,33 @@ impl Net {
         mut take: impl FnMut(A, usize, f32) -> A,
     ) -> A {
         let bins = self.bins();
-        let mut group = bins.first_group(position);
+        let mut candidates = bins.first_candidates(position);
         loop {
-            let records = group.records();
-            let weights = self.weights_of(simd, profile, (bins, group, &records), position);
-            for (&record, weight) in records.iter().zip(weights) {
+            let weights = self.weights_of(simd, profile, bins, &candidates, position);
+            for (&record, weight) in candidates.records.iter().zip(weights) {
                 state = take(state, record as usize, weight);
             }
-            match bins.next_group(group) {
-                Some(next) => group = next,
+            match candidates.next {
+                Some(next) => candidates = bins.next_candidates(next),
                 None => return state,
             }
         }
     }
 
-    /// The weights of a group of candidates; zero where there is none.
+    /// The weights of some candidates; zero where there is none.
     #[inline(always)]
     fn weights_of<S: Simd, P: Profile>(
         &self,
         simd: S,
         profile: P,
-        (bins, group, records): (&Bins, &Group, &[u32; GROUP]),
+        bins: &Bins,
+        candidates: &Candidates,
         position: DVec2,
     ) -> [f32; GROUP] {
         let mut projections = [f32x8::splat(simd, 0.0); GROUP];
         let mut offsets = [[0.0; GROUP]; 2];
         for lane in 0..GROUP {
-            let record = records[lane] as usize;
+            let record = candidates.records[lane] as usize;
             let (axes, center) = (&bins.axes[record], bins.centers[record]);
             let offset = [position.x - center.x, position.y - center.y].map(|axis| axis as f32);
             projections[lane] = project(simd, axes, offset);
@@ -100,13 +101,13 @@ impl Net {
         for &projection in &projections[1..] {
             (q, t) = profile.step(q, t, projection);
         }
-        let weights = profile.finish(q, t, BLOCK) * f32x8::from_slice(simd, &group.ones());
+        let weights = profile.finish(q, t, BLOCK) * f32x8::from_slice(simd, &candidates.ones);
         let mut weights: [f32; GROUP] = weights.into();
-        if group.has_long() || !self.shifts.is_empty() {
+        if candidates.long != 0 || !self.shifts.is_empty() {
             for lane in 0..GROUP {
-                let record = records[lane] as usize;
+                let record = candidates.records[lane] as usize;
                 let offset = [offsets[0][lane], offsets[1][lane]];
-                if group.is_long(lane) {
+                if candidates.long >> lane & 1 != 0 {
                     let instance = &self.instances[bins.instances[record] as usize];
                     let blocks = &self.blocks(instance)[1..];
                     weights[lane] = go_on(simd, profile, weights[lane], blocks, offset);
