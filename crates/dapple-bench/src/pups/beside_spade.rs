@@ -161,7 +161,8 @@ fn one_position(bench: &mut Bench, case: &Case, n_points: u32, turns: u32) -> Re
         for (value, &position) in values.iter_mut().zip(&positions) {
             *value = scene.texture.sample(position);
         }
-    });
+    })
+    .times(8);
     let theirs = Side::new(vec![0.0; N_POSITIONS], |values: &mut Vec<f32>| {
         spade.natural_neighbor_at(&positions, values);
     });
