@@ -118,6 +118,27 @@ impl Pups {
         VectorTexture::new(self.clone(), values)
     }
 
+    /// The weight of a control point at a position as equation 2 has it, or equation 4 with orientations: from 0 outside of
+    /// its support to 1 at the control point.
+    ///
+    /// Where several periodic images of the control point reach the position, it is the largest of their weights. It is
+    /// NaN at a position that is not finite, and 0 for an index that no control point has.
+    #[must_use]
+    pub fn weight(&self, point: PointIdx, position: DVec2) -> f32 {
+        let Some(position) = self.local(position) else {
+            return f32::NAN;
+        };
+        let points = &self.net.bins().points;
+        let larger = |largest: f32, record: usize, weight: f32| {
+            if points[record] == point.0 {
+                largest.max(weight)
+            } else {
+                largest
+            }
+        };
+        self.net.fold_weights(position, 0.0, larger)
+    }
+
     /// The control points with a weight at a position, and their weights, which sum to 1.
     ///
     /// They come in their order; on a small torus a control point may come more than once, for its images. Nothing

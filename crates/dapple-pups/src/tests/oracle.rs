@@ -144,6 +144,17 @@ fn weights_are_those_of_the_equations() {
             let off = sums.iter().map(|off| off.abs()).fold(0.0, f64::max);
             let tolerance = tolerance(&case);
             assert!(off < tolerance, "{}: off by {off} at {position}", case.name);
+
+            for (point, _) in case.points.iter() {
+                let own = exact.iter().filter(|&&(index, _)| index == point.index());
+                let largest = own.map(|&(_, weight)| weight).fold(0.0, f64::max);
+                let off = (f64::from(pups.weight(point, position)) - largest).abs();
+                let name = &case.name;
+                assert!(
+                    off < tolerance,
+                    "{name}: {point:?} off by {off} at {position}"
+                );
+            }
         }
     }
 }

@@ -6,6 +6,7 @@ use super::weight::Star;
 use crate::draw::Canvas;
 use crate::figure::source;
 use crate::{Figure, Panel};
+use dapple_pups::PupsOptions;
 use dapple_raster::Raster;
 
 pub(super) const FIGURE: Figure = Figure {
@@ -20,7 +21,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let window = star.window(size)?;
     let pixel = f64::from(size) / 512.0;
 
-    let weights = Raster::from_window(&window, |at| star.weight(at))?;
+    let pups = star.pups(PupsOptions::default())?;
+    let weights = Raster::from_window(&window, |at| pups.weight(star.center, at))?;
     let mut canvas = Canvas::over(&window, weights)?;
     let center = star.points.position(star.center);
     for axis in star.graph.axes(star.center) {

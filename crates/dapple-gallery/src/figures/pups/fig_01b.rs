@@ -4,6 +4,7 @@ use super::weight::Star;
 use crate::draw::Canvas;
 use crate::figure::source;
 use crate::{Figure, Panel};
+use dapple_pups::PupsOptions;
 use dapple_raster::Raster;
 
 pub(super) const FIGURE: Figure = Figure {
@@ -18,7 +19,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let window = star.window(size)?;
     let pixel = f64::from(size) / 512.0;
 
-    let weights = Raster::from_window(&window, |at| star.weight(at))?;
+    let pups = star.pups(PupsOptions::default())?;
+    let weights = Raster::from_window(&window, |at| pups.weight(star.center, at))?;
     let mut canvas = Canvas::new(&window, 1.0)?;
     let tenths: Vec<f32> = (1..10).map(|tenth| tenth as f32 / 10.0).collect();
     canvas.iso_lines(&weights, &tenths, 2.0 * pixel, 0.0)?;

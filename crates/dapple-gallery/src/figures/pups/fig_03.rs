@@ -8,6 +8,7 @@ use super::weight::Star;
 use crate::draw::Canvas;
 use crate::figure::source;
 use crate::{Figure, Panel};
+use dapple_pups::{Orientation, PupsOptions};
 use dapple_raster::Raster;
 use glam::DVec3;
 
@@ -35,9 +36,12 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         ("b, ε = 0.5", 0.5, [1.0, 1.0]),
         ("c, ε = 0.5", 0.5, [9.0, 1.0]),
     ] {
-        let orientation = DVec3::new(x, 0.0, z).normalize();
-        let weight = |at| star.shifted_weight(at, orientation, strength);
-        let weights = Raster::from_window(&window, weight)?;
+        let vectors = vec![DVec3::new(x, 0.0, z)];
+        let pups = star.pups(PupsOptions {
+            orientation: Some(Orientation { vectors, strength }),
+            ..PupsOptions::default()
+        })?;
+        let weights = Raster::from_window(&window, |at| pups.weight(star.center, at))?;
         let mut canvas = Canvas::over(&window, weights.clone())?;
         canvas.iso_lines(&weights, &[0.1, 0.3], 1.5 * pixel, 1.0)?;
         canvas.iso_lines(&weights, &[0.5, 0.7, 0.9], 1.5 * pixel, 0.0)?;

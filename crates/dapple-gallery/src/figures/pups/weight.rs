@@ -1,12 +1,10 @@
-//! The weight of one control point, written out as the paper has it: equations 1, 2 and 4.
-//!
-//! [`dapple_pups::Pups`] computes the same, faster, and gives it divided by the sum of all weights.
+//! A control point whose weight is drawn: equations 1, 2 and 4.
 
 use dapple_graph::{Graph, delaunay};
 use dapple_points::{Domain, PointIdx, PointSet, poisson_disk};
-use dapple_pups::{AxialWeight, hash::Seed};
+use dapple_pups::{Pups, PupsError, PupsOptions, hash::Seed};
 use dapple_raster::{RasterError, Window};
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 /// Points with the axes of one of them, the one nearest to the middle.
 pub(super) struct Star {
@@ -38,20 +36,8 @@ impl Star {
         Window::new(center - half, 2.0 * half, [size; 2])
     }
 
-    /// Equation 2: the product of the axial weights, each that of the projection onto an axis.
-    pub(super) fn weight(&self, position: DVec2) -> f32 {
-        let offset = position - self.points.position(self.center);
-        let axes = self.graph.axes(self.center).iter();
-        axes.map(|axis| offset.dot(axis.vector) / axis.vector.length_squared())
-            .map(|projection| AxialWeight::Cubic.at(projection as f32))
-            .product()
-    }
-
-    /// Equation 4: the weight, shifted towards an orientation (of length 1) with strength ε.
-    pub(super) fn shifted_weight(&self, position: DVec2, orientation: DVec3, strength: f64) -> f32 {
-        let offset = position - self.points.position(self.center);
-        let k = strength * offset.normalize_or_zero().dot(orientation.truncate());
-        let exponent = if k >= 0.0 { 1.0 - k } else { 1.0 / (1.0 + k) };
-        libm::pow(f64::from(self.weight(position)), exponent) as f32
+    /// The weights of the points.
+    pub(super) fn pups(&self, options: PupsOptions) -> Result<Pups, PupsError> {
+        Pups::new(&self.points, &self.graph, options)
     }
 }
