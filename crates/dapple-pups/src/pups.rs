@@ -235,6 +235,9 @@ impl Pups {
     /// The position as the evaluation takes it, or nothing if it is not finite.
     #[inline]
     pub(crate) fn local(&self, position: DVec2) -> Option<DVec2> {
+        if self.net.domain.contains(position) {
+            return Some(position);
+        }
         let local = DVec2::new(self.net.local(0, position.x), self.net.local(1, position.y));
         local.is_finite().then_some(local)
     }

@@ -4,6 +4,7 @@ use fearless_simd::Level;
 use std::sync::OnceLock;
 
 /// The best level of this machine, looked up once.
+#[inline]
 pub(crate) fn level() -> Level {
     static LEVEL: OnceLock<Level> = OnceLock::new();
     *LEVEL.get_or_init(Level::new)
