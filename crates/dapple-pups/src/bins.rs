@@ -11,9 +11,9 @@
 use crate::net::{AxisBlock, BLOCK, Instance, Net};
 use glam::DVec2;
 
-/// How many bins there are for each instance: more bins, fewer candidates in each. With 4, a position has some 6
-/// candidates, of which 4 have a weight, and seldom more than a bin holds.
-const BINS_PER_INSTANCE: f64 = 4.0;
+/// How many bins there are for each instance: more bins, fewer candidates in each, and more memory. With 3, a position has
+/// some 7 candidates, of which 4 have a weight, and mostly no more than a bin holds.
+const BINS_PER_INSTANCE: f64 = 3.0;
 
 /// The most bins along one axis.
 const BINS_LIMIT: f64 = 16_384.0;
