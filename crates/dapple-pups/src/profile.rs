@@ -2,6 +2,7 @@
 
 use crate::net::BLOCK;
 use crate::weight::{AxialWeight, Lane};
+use fearless_simd::prelude::*;
 
 /// The product of the axial weights of up to [`BLOCK`] axes, taken in one after another.
 ///
@@ -16,6 +17,31 @@ pub(crate) trait Profile: Copy + Send + Sync {
 
     /// The product, after `n` axes, at least one.
     fn finish<V: Lane>(self, q: V, t: V, n: usize) -> V;
+
+    /// The product of the axes of a block, used or not.
+    #[inline(always)]
+    fn product<V: Lane>(self, minus_u: [V; BLOCK]) -> V {
+        let (mut q, mut t) = self.first(minus_u[0]);
+        for &minus_u in &minus_u[1..] {
+            (q, t) = self.step(q, t, minus_u);
+        }
+        self.finish(q, t, BLOCK)
+    }
+}
+
+/// `−u`, from `a_x d_x` and `1 − a_y d_y`: −1 at the control point and behind it, zero (of any sign) at the end of the
+/// axis and beyond.
+#[inline(always)]
+pub(crate) fn minus_u<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, along: V, rest: V) -> V {
+    let unbounded = along - rest;
+    if V::LEN < BLOCK {
+        let [least, most] = [-1.0, 0.0].map(|bound| V::splat(simd, bound));
+        return unbounded.max(least).min(most);
+    }
+    // As whole numbers, which more units of a processor can compare, negative numbers come after positive ones and grow
+    // with their distance from zero.
+    let [zero, minus_one] = [-0.0_f32, -1.0].map(|bound| V::Bits::splat(simd, bound.to_bits()));
+    V::from_bits(unbounded.to_bits().max(zero).min(minus_one))
 }
 
 /// The cubic of equation 1, `u² (3 − 2u)`, as two products: `q = Π −u` and `t = Π (3/2 − u)`, so that an axis costs three

@@ -4,8 +4,8 @@
 //! register holds the same axis of all candidates and the products of all of them go on side by side.
 
 use crate::bins::{Bins, Candidates, GROUP};
-use crate::net::{AxisBlock, BLOCK, Net};
-use crate::profile::{Cubic, Profile};
+use crate::net::{AxisBlock, Net};
+use crate::profile::{Cubic, Profile, minus_u};
 use crate::shift::shift_weights;
 use crate::simd;
 use crate::weight::AxialWeight;
@@ -96,12 +96,8 @@ impl Net {
             // Kept apart, so that the position comes in as two numbers: together, it would wait for being written.
             (offsets[0][lane], offsets[1][lane]) = (offset[0], offset[1]);
         }
-        let projections = transposed(projections);
-        let (mut q, mut t) = profile.first(projections[0]);
-        for &projection in &projections[1..] {
-            (q, t) = profile.step(q, t, projection);
-        }
-        let weights = profile.finish(q, t, BLOCK) * f32x8::from_slice(simd, &candidates.ones);
+        let weights = profile.product(transposed(projections));
+        let weights = weights * f32x8::from_slice(simd, &candidates.ones);
         let mut weights: [f32; GROUP] = weights.into();
         if candidates.long != 0 || !self.shifts.is_empty() {
             for lane in 0..GROUP {
@@ -124,10 +120,8 @@ impl Net {
 /// `−u` along each axis of a block.
 #[inline(always)]
 fn project<S: Simd>(simd: S, axes: &AxisBlock, [x, y]: [f32; 2]) -> f32x8<S> {
-    let [minus_one, zero, one] = [-1.0, 0.0, 1.0].map(|number| f32x8::splat(simd, number));
-    let rest = one - f32x8::from_slice(simd, &axes.y) * y;
-    let unbounded = f32x8::from_slice(simd, &axes.x) * x - rest;
-    unbounded.max(minus_one).min(zero)
+    let rest = f32x8::splat(simd, 1.0) - f32x8::from_slice(simd, &axes.y) * y;
+    minus_u(simd, f32x8::from_slice(simd, &axes.x) * x, rest)
 }
 
 /// The weight of a control point, given that of its first axes and the blocks of the others.
@@ -140,12 +134,7 @@ fn go_on<S: Simd, P: Profile>(
     offset: [f32; 2],
 ) -> f32 {
     for block in blocks {
-        let projections = project(simd, block, offset);
-        let (mut q, mut t) = profile.first(projections[0]);
-        for &projection in &projections.as_slice()[1..] {
-            (q, t) = profile.step(q, t, projection);
-        }
-        weight *= profile.finish(q, t, BLOCK);
+        weight *= profile.product::<f32>(project(simd, block, offset).into());
     }
     weight
 }

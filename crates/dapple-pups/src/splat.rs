@@ -6,7 +6,7 @@
 //! take longer than all that is saved.
 
 use crate::net::{AxisBlock, BLOCK, Instance};
-use crate::profile::Profile;
+use crate::profile::{Profile, minus_u};
 use crate::shift::shift_weights;
 use crate::sink::{Planes, Sink};
 use crate::tile::{Strip, Tile, Tiles};
@@ -171,13 +171,14 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         let axis = take_lowest(&mut active);
         let (along, rest) = (x * ax[axis], &strip.rest[axis][..N]);
         for row in 0..N {
-            (q[row], t[row]) = self.profile.first(minus_u(simd, along, rest[row]));
+            let minus_u = minus_u(simd, along, V::splat(simd, rest[row]));
+            (q[row], t[row]) = self.profile.first(minus_u);
         }
         while active != 0 {
             let axis = take_lowest(&mut active);
             let (along, rest) = (x * ax[axis], &strip.rest[axis][..N]);
             for row in 0..N {
-                let minus_u = minus_u(simd, along, rest[row]);
+                let minus_u = minus_u(simd, along, V::splat(simd, rest[row]));
                 (q[row], t[row]) = self.profile.step(q[row], t[row], minus_u);
             }
         }
@@ -198,19 +199,4 @@ fn take_lowest(bits: &mut u32) -> usize {
     let lowest = bits.trailing_zeros() as usize % BLOCK;
     *bits &= bits.wrapping_sub(1);
     lowest
-}
-
-/// `−u`, from `a_x d_x` and `1 − a_y d_y`: −1 at the control point and behind it, zero (of any sign) at the end of the
-/// axis and beyond.
-#[inline(always)]
-fn minus_u<S: Simd, V: SimdFloat<S, Element = f32>>(simd: S, along: V, rest: f32) -> V {
-    let unbounded = along - V::splat(simd, rest);
-    if V::LEN < BLOCK {
-        let [least, most] = [-1.0, 0.0].map(|bound| V::splat(simd, bound));
-        return unbounded.max(least).min(most);
-    }
-    // As whole numbers, which more units of a processor can compare, negative numbers come after positive ones and grow
-    // with their distance from zero.
-    let [zero, minus_one] = [-0.0_f32, -1.0].map(|bound| V::Bits::splat(simd, bound.to_bits()));
-    V::from_bits(unbounded.to_bits().max(zero).min(minus_one))
 }
