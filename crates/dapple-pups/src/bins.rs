@@ -34,51 +34,33 @@ impl Bin {
     /// Stands for no candidate.
     const NONE: u16 = u16::MAX;
     /// Stands first in a bin that has candidates with more axes than a block holds, more candidates than eight, or some
-    /// that are too far away; the two halves of the index of a group follow.
+    /// that are too far away; the two halves of where they are listed follow.
     const ELSEWHERE: u16 = Self::NONE - 1;
 
-    /// The bin for a chain that begins with a group, where records are counted from `base`; nothing if it does not fit.
-    fn of(group: &Group, base: u32) -> Option<Self> {
+    /// The bin with some candidates, whose records are counted from `base`; nothing if they do not fit.
+    fn of(candidates: &[u32], base: u32) -> Option<Self> {
         let mut bin = Self([Self::NONE; GROUP]);
-        for (place, &entry) in bin.0.iter_mut().zip(&group.0) {
-            if entry != Group::NONE {
-                let record = Some(entry).filter(|&entry| entry < Group::LONG)?;
-                let distance = u16::try_from(record.checked_sub(base)?).ok()?;
-                *place = Some(distance).filter(|&it| it < Self::ELSEWHERE)?;
-            }
+        for (index, &candidate) in candidates.iter().enumerate() {
+            let record = Some(candidate).filter(|&candidate| candidate < LONG)?;
+            let place = u16::try_from(record.checked_sub(base)?).ok()?;
+            *bin.0.get_mut(index)? = Some(place).filter(|&place| place < Self::ELSEWHERE)?;
         }
         Some(bin)
     }
 
-    fn elsewhere(group: u32) -> Self {
+    fn elsewhere(start: u32) -> Self {
         let mut bin = Self([Self::NONE; GROUP]);
         // Cut into its halves.
-        bin.0[..3].copy_from_slice(&[Self::ELSEWHERE, group as u16, (group >> 16) as u16]);
+        bin.0[..3].copy_from_slice(&[Self::ELSEWHERE, start as u16, (start >> 16) as u16]);
         bin
     }
 }
 
-/// Up to eight candidates, in their order, as their records. The last one may be the index of the group that goes on.
-#[derive(Clone, Copy, Debug)]
-struct Group([u32; GROUP]);
+/// Marks a candidate with more axes than a block holds. In the memory of any machine there are less than 2^30 instances.
+const LONG: u32 = 1 << 30;
 
-impl Group {
-    /// Stands for no candidate.
-    const NONE: u32 = u32::MAX;
-    /// Marks the index of a group.
-    const NEXT: u32 = 1 << 31;
-    /// Marks a candidate with more axes than a block holds.
-    const LONG: u32 = 1 << 30;
-
-    /// A group without candidates.
-    const EMPTY: Self = Self([Self::NONE; GROUP]);
-
-    /// The group that goes on.
-    fn next(&self) -> Option<u32> {
-        let last = self.0[GROUP - 1];
-        (last >= Self::NEXT && last != Self::NONE).then_some(last & !Self::NEXT)
-    }
-}
+/// Ends the candidates of a crowded bin.
+const END: u32 = u32::MAX;
 
 /// Up to eight candidates, ready to be evaluated.
 pub(crate) struct Candidates {
@@ -102,8 +84,8 @@ pub(crate) struct Bins {
     bins: Vec<Bin>,
     /// Where the records of each strip of bins are counted from.
     bases: Vec<u32>,
-    /// The candidates of bins that could not hold them, group by group.
-    groups: Vec<Group>,
+    /// The candidates of bins that cannot hold them, each followed by [`END`].
+    crowded: Vec<u32>,
     /// The first axes of each record.
     pub(crate) axes: Vec<AxisBlock>,
     pub(crate) centers: Vec<DVec2>,
@@ -125,15 +107,15 @@ impl Bins {
             per_unit: counts / size,
             bins: Vec::new(),
             bases: Vec::new(),
-            groups: Vec::new(),
+            crowded: Vec::new(),
             axes: Vec::new(),
             centers: Vec::new(),
             instances: Vec::new(),
             points: Vec::new(),
         };
         let places = bins.place_records(net);
-        let chains = bins.list_candidates(net, &places);
-        bins.pack(&chains);
+        let (offsets, candidates) = bins.list_candidates(net, &places);
+        bins.pack(&offsets, &candidates);
         bins
     }
 
@@ -161,21 +143,25 @@ impl Bins {
         }
     }
 
-    /// The candidates of a group.
-    pub(crate) fn next_candidates(&self, group: u32) -> Candidates {
-        let group = &self.groups[group as usize];
+    /// The candidates of a crowded bin, from a place in their list on.
+    pub(crate) fn next_candidates(&self, start: u32) -> Candidates {
         let mut candidates = Candidates {
             records: [0; GROUP],
             ones: [0.0; GROUP],
             long: 0,
-            next: group.next(),
+            next: None,
         };
-        for (lane, &entry) in group.0.iter().enumerate() {
-            if entry < Group::NEXT {
-                candidates.records[lane] = entry & !Group::LONG;
-                candidates.ones[lane] = 1.0;
-                candidates.long |= u32::from(entry & Group::LONG != 0) << lane;
+        for (lane, &candidate) in self.crowded[start as usize..].iter().enumerate() {
+            if candidate == END {
+                break;
             }
+            if lane == GROUP {
+                candidates.next = Some(start + GROUP as u32);
+                break;
+            }
+            candidates.records[lane] = candidate & !LONG;
+            candidates.ones[lane] = 1.0;
+            candidates.long |= u32::from(candidate & LONG != 0) << lane;
         }
         candidates
     }
@@ -210,57 +196,60 @@ impl Bins {
         places
     }
 
-    /// Lists the candidates of every bin, in the order of the instances: in the group of the bin's number, and in those
-    /// that go on from there.
-    fn list_candidates(&self, net: &Net, places: &[u32]) -> Vec<Group> {
-        let mut chains = vec![Group::EMPTY; self.size[0] * self.size[1]];
-        // Of each bin, its last group and how much of it is used. There are at most 2^28 bins.
-        let mut ends: Vec<(u32, u32)> = (0..chains.len() as u32).map(|bin| (bin, 0)).collect();
+    /// Lists the candidates of every bin, in the order of the instances: those of bin `b` are
+    /// `candidates[offsets[b]..offsets[b + 1]]`.
+    fn list_candidates(&self, net: &Net, places: &[u32]) -> (Vec<u32>, Vec<u32>) {
+        let mut entries = Vec::new();
+        let mut offsets = vec![0; self.size[0] * self.size[1] + 1];
         for (instance, &place) in net.instances.iter().zip(places) {
             let is_long = net.blocks(instance).len() > 1;
-            let entry = if is_long { place | Group::LONG } else { place };
+            let candidate = if is_long { place | LONG } else { place };
             let [columns, rows] = [0, 1].map(|axis| {
                 self.bin(axis, instance.min[axis])..=self.bin(axis, instance.max[axis])
             });
             for row in rows {
                 for column in columns.clone() {
                     if self.touches(net, instance, [column, row]) {
-                        push(&mut chains, &mut ends[row * self.size[0] + column], entry);
+                        let bin = row * self.size[0] + column;
+                        entries.push((bin, candidate));
+                        offsets[bin + 1] += 1;
                     }
                 }
             }
         }
-        chains
+        for bin in 1..offsets.len() {
+            offsets[bin] += offsets[bin - 1];
+        }
+        let mut next = offsets.clone();
+        let mut candidates = vec![0; entries.len()];
+        for (bin, candidate) in entries {
+            candidates[next[bin] as usize] = candidate;
+            next[bin] += 1;
+        }
+        (offsets, candidates)
     }
 
-    /// Packs the candidates of bins, and keeps the groups of those that do not fit.
-    fn pack(&mut self, chains: &[Group]) {
+    /// Packs the candidates of bins, and lists those that do not fit.
+    fn pack(&mut self, offsets: &[u32], candidates: &[u32]) {
+        let of = |bin: usize| &candidates[offsets[bin] as usize..offsets[bin + 1] as usize];
         let n_bins = self.size[0] * self.size[1];
-        for strip in chains[..n_bins].chunks(self.size[0] * STRIP) {
-            let entries = strip.iter().flat_map(|group| group.0);
-            // What has a mark is larger than what has none.
-            let base = entries.min().unwrap_or(0);
+        let per_strip = self.size[0] * STRIP;
+        for strip in (0..n_bins).step_by(per_strip) {
+            let bins = strip..(strip + per_strip).min(n_bins);
+            // A mark makes a number larger.
+            let base = bins.clone().flat_map(of).min().map_or(0, |&least| least);
             self.bases.push(base);
-            for first in strip {
-                let bin = Bin::of(first, base).unwrap_or_else(|| {
-                    let bin = Bin::elsewhere(self.groups.len() as u32);
-                    self.keep(chains, first);
-                    bin
+            for bin in bins {
+                let packed = Bin::of(of(bin), base).unwrap_or_else(|| {
+                    // In the memory of any machine there are less than 2^32 of them.
+                    let start = self.crowded.len() as u32;
+                    self.crowded.extend_from_slice(of(bin));
+                    self.crowded.push(END);
+                    Bin::elsewhere(start)
                 });
-                self.bins.push(bin);
+                self.bins.push(packed);
             }
         }
-    }
-
-    /// Keeps a chain of groups, one after another.
-    fn keep(&mut self, chains: &[Group], first: &Group) {
-        let mut group = *first;
-        while let Some(next) = group.next() {
-            group.0[GROUP - 1] = (self.groups.len() + 1) as u32 | Group::NEXT;
-            self.groups.push(group);
-            group = chains[next as usize];
-        }
-        self.groups.push(group);
     }
 
     /// Whether the support of an instance reaches into a bin, or may do so.
@@ -305,19 +294,4 @@ impl Bins {
         };
         [first, last]
     }
-}
-
-/// Adds a candidate to a chain of groups, of which the last one and how much of it is used are given.
-fn push(chains: &mut Vec<Group>, (group, used): &mut (u32, u32), entry: u32) {
-    if *used as usize == GROUP {
-        // In the memory of any machine there are less than 2^31 groups, and less than 2^30 instances.
-        let next = chains.len() as u32;
-        let mut group_after = Group::EMPTY;
-        let last = &mut chains[*group as usize].0[GROUP - 1];
-        group_after.0[0] = core::mem::replace(last, next | Group::NEXT);
-        chains.push(group_after);
-        (*group, *used) = (next, 1);
-    }
-    chains[*group as usize].0[*used as usize] = entry;
-    *used += 1;
 }
