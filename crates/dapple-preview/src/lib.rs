@@ -1,0 +1,1 @@
+//! Lit previews on the CPU.

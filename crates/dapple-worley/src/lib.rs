@@ -1,0 +1,1 @@
+//! Worley's cellular basis function.
