@@ -49,7 +49,7 @@ pub const fn hash4(seed: Seed, cell: [i64; 4], index: u32) -> u64 {
 /// A seed and a cell, taken in once, for drawing as many numbers as the cell needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellHash {
-    state: [u32; 2],
+    pub(crate) state: [u32; 2],
 }
 
 impl CellHash {
@@ -58,14 +58,33 @@ impl CellHash {
     #[inline]
     pub const fn new<const N: usize>(seed: Seed, cell: [i64; N]) -> Self {
         let [low, high] = words(seed.0);
-        let mut state = absorb(absorb([0, 0], high), low);
+        let state = absorb(absorb([0, 0], high), low);
+        let mut hash = Self { state };
         let mut axis = N;
         while axis > 0 {
             axis -= 1;
-            let [low, high] = words(cell[axis].cast_unsigned());
-            state = absorb(absorb(state, high), low);
+            hash = hash.axis(cell[axis]);
         }
-        Self { state }
+        hash
+    }
+
+    /// Takes in the coordinate of one more axis, a faster one than those before.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_hash::{CellHash, Seed};
+    ///
+    /// let row = CellHash::new(Seed(7), [-5]);
+    /// assert_eq!(row.axis(3), CellHash::new(Seed(7), [3, -5]));
+    /// ```
+    #[must_use]
+    #[inline]
+    pub const fn axis(self, coordinate: i64) -> Self {
+        let [low, high] = words(coordinate.cast_unsigned());
+        Self {
+            state: absorb(absorb(self.state, high), low),
+        }
     }
 
     /// The 64 random bits of counter `index`.

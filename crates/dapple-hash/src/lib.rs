@@ -16,12 +16,16 @@
 //! assert!((0.0..1.0).contains(&x));
 //! ```
 //!
+//! With the feature `simd`, `CellHashes` does sixteen cells at once.
+//!
 //! All arithmetic is on integers, in 32-bit lanes where it is hot, so the bits are the same on every platform and
 //! the same code fits SIMD lanes and a GPU.
 
 #![forbid(unsafe_code)]
 
 mod cell;
+#[cfg(feature = "simd")]
+mod lanes;
 mod mix;
 mod poisson;
 mod seed;
@@ -29,6 +33,8 @@ mod stream;
 mod unit;
 
 pub use cell::{CellHash, hash1, hash2, hash3, hash4};
+#[cfg(feature = "simd")]
+pub use lanes::CellHashes;
 pub use poisson::{PoissonCounts, PoissonError, PoissonErrorKind};
 pub use rand_core;
 pub use rand_pcg::Pcg32;

@@ -8,10 +8,10 @@
 pub(crate) const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
 // Odd multipliers with about half of their bits set; the avalanche test decides whether they are good enough.
-const M0: u32 = 0x9E37_79B1;
-const M1: u32 = 0x85EB_CA6B;
-const M2: u32 = 0xC2B2_AE35;
-const M3: u32 = 0x27D4_EB2F;
+pub(crate) const M0: u32 = 0x9E37_79B1;
+pub(crate) const M1: u32 = 0x85EB_CA6B;
+pub(crate) const M2: u32 = 0xC2B2_AE35;
+pub(crate) const M3: u32 = 0x27D4_EB2F;
 
 /// A bijection of 64 bits in which every input bit flips every output bit about half of the time.
 pub(crate) const fn mix64(mut z: u64) -> u64 {

@@ -1,0 +1,95 @@
+//! Hashes of sixteen cells at once, in SIMD lanes: the bits of [`CellHash`], lane by lane.
+//!
+//! The arithmetic is that of [`mix`](crate::mix), written once more for registers; a test compares the two.
+
+use crate::CellHash;
+use crate::mix::{M0, M1, M2, M3};
+use fearless_simd::{prelude::*, u32x16};
+
+/// Sixteen [`CellHash`]es, one in each lane.
+#[derive(Clone, Copy, Debug)]
+pub struct CellHashes<S: Simd> {
+    state: [u32x16<S>; 2],
+}
+
+impl<S: Simd> CellHashes<S> {
+    /// The same hash in every lane: where a row of cells begins.
+    #[inline(always)]
+    pub fn splat(simd: S, hash: CellHash) -> Self {
+        let [a, b] = hash.state;
+        Self {
+            state: [u32x16::splat(simd, a), u32x16::splat(simd, b)],
+        }
+    }
+
+    /// Takes in the coordinate of one more axis, a faster one than those before: its low and its high 32 bits.
+    #[inline(always)]
+    pub fn axis(self, low: u32x16<S>, high: u32x16<S>) -> Self {
+        Self {
+            state: absorb(absorb(self.state, high), low),
+        }
+    }
+
+    /// The 64 random bits of counter `index`, which may differ from lane to lane: the high 32 bits, then the low.
+    #[inline(always)]
+    pub fn at(self, index: u32x16<S>) -> [u32x16<S>; 2] {
+        finish(absorb(self.state, index))
+    }
+}
+
+#[inline(always)]
+fn absorb<S: Simd>([mut a, mut b]: [u32x16<S>; 2], word: u32x16<S>) -> [u32x16<S>; 2] {
+    a = (a ^ word) * M0;
+    a ^= a >> 15;
+    b = (b ^ a) * M1;
+    b ^= b >> 13;
+    [a + (b << 11 | b >> 21), b]
+}
+
+#[inline(always)]
+fn finish<S: Simd>([mut a, mut b]: [u32x16<S>; 2]) -> [u32x16<S>; 2] {
+    a = (a ^ (a >> 16)) * M2;
+    b = (b + (a ^ (a >> 15))) * M3;
+    b ^= b >> 15;
+    a = (a + b) * M1;
+    a ^= a >> 13;
+    b = (b ^ a) * M0;
+    b ^= b >> 16;
+    [a ^ (b << 7 | b >> 25), b]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::CellHashes;
+    use crate::{CellHash, Seed, hash1};
+    use fearless_simd::{Level, dispatch, prelude::*, u32x16};
+
+    #[test]
+    fn lanes_have_the_bits_of_single_cells() {
+        let random = |axis: i64, lane: usize| hash1(Seed(3), [axis], lane as u32).cast_signed();
+        let cells: [[i64; 3]; 16] =
+            core::array::from_fn(|lane| [random(0, lane), random(1, lane) >> 40, random(2, 0)]);
+        let hash = CellHash::new(Seed(9), [cells[0][2]]);
+        let lanes = dispatch!(Level::new(), simd => high_and_low(simd, hash, &cells));
+        for (lane, cell) in cells.into_iter().enumerate() {
+            let expected = CellHash::new(Seed(9), cell).at(lane as u32);
+            assert_eq!(lanes[lane], expected, "lane {lane}");
+        }
+    }
+
+    #[inline(always)]
+    fn high_and_low<S: Simd>(simd: S, row: CellHash, cells: &[[i64; 3]; 16]) -> [u64; 16] {
+        let mut words = [[0; 16]; 5];
+        for (lane, cell) in cells.iter().enumerate() {
+            words[0][lane] = cell[0] as u32;
+            words[1][lane] = (cell[0] >> 32) as u32;
+            words[2][lane] = cell[1] as u32;
+            words[3][lane] = (cell[1] >> 32) as u32;
+            words[4][lane] = lane as u32;
+        }
+        let [x, x_high, y, y_high, index] = words.map(|word| u32x16::from_slice(simd, &word));
+        let hashes = CellHashes::splat(simd, row).axis(y, y_high).axis(x, x_high);
+        let [high, low] = hashes.at(index);
+        core::array::from_fn(|lane| u64::from(high[lane]) << 32 | u64::from(low[lane]))
+    }
+}
