@@ -1,1 +1,25 @@
 //! Worley's cellular basis function.
+
+#![forbid(unsafe_code)]
+
+mod combination;
+mod error;
+mod fixed;
+mod lattice;
+mod metric;
+mod scatter;
+mod search;
+mod space;
+mod worley;
+
+pub use combination::Combination;
+pub use dapple_hash as hash;
+pub use dapple_raster as raster;
+pub use error::{WorleyError, WorleyErrorKind};
+pub use metric::Metric;
+pub use scatter::Scatter;
+pub use space::{Axes, Space, Vector};
+pub use worley::{CellPoint, Feature, LIMIT, RESOLUTION, Worley, Worley2, Worley3, Worley4};
+
+#[cfg(test)]
+mod tests;

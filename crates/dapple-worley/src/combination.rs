@@ -1,0 +1,76 @@
+//! Linear combinations of F1 to F4.
+//!
+//! Worley finds that differences of two or more of them have more character than F1 to F4 alone ("A Cellular Texture
+//! Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>).
+
+/// `C1·F1 + C2·F2 + C3·F3 + C4·F4`.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_worley::Combination;
+///
+/// assert_eq!(Combination::F2_MINUS_F1, Combination::new([-1.0, 1.0, 0.0, 0.0]));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(transparent)
+)]
+pub struct Combination {
+    coefficients: [f32; 4],
+}
+
+impl Combination {
+    /// The distance to the nearest feature point: cones that meet in valleys.
+    pub const F1: Self = Self::new([1.0, 0.0, 0.0, 0.0]);
+    /// The distance to the second nearest feature point.
+    pub const F2: Self = Self::new([0.0, 1.0, 0.0, 0.0]);
+    /// The distance to the third nearest feature point.
+    pub const F3: Self = Self::new([0.0, 0.0, 1.0, 0.0]);
+    /// The distance to the fourth nearest feature point.
+    pub const F4: Self = Self::new([0.0, 0.0, 0.0, 1.0]);
+    /// Zero on the borders of the Voronoi cells: cracks, veins, flagstones.
+    pub const F2_MINUS_F1: Self = Self::new([-1.0, 1.0, 0.0, 0.0]);
+    /// `F1 + F2`.
+    pub const F1_PLUS_F2: Self = Self::new([1.0, 1.0, 0.0, 0.0]);
+    /// `F3 − F2`.
+    pub const F3_MINUS_F2: Self = Self::new([0.0, -1.0, 1.0, 0.0]);
+    /// `2·F3 − F2 − F1`, which the paper names.
+    pub const TWO_F3_MINUS_F2_MINUS_F1: Self = Self::new([-1.0, -1.0, 2.0, 0.0]);
+
+    /// The combination with these coefficients, of F1 to F4 in their order.
+    #[must_use]
+    pub const fn new(coefficients: [f32; 4]) -> Self {
+        Self { coefficients }
+    }
+
+    /// The coefficients of F1 to F4.
+    #[must_use]
+    pub const fn coefficients(&self) -> [f32; 4] {
+        self.coefficients
+    }
+
+    /// The greatest n whose F_n takes part; 1 for a combination of nothing.
+    #[must_use]
+    pub fn depth(&self) -> usize {
+        let last = self.coefficients.iter().rposition(|&part| part != 0.0);
+        last.map_or(1, |last| last + 1)
+    }
+
+    /// The combination of the first distances, at least [`depth`](Self::depth) of them.
+    ///
+    /// What has the coefficient zero takes no part. The sum goes from F1 up.
+    #[must_use]
+    #[inline]
+    pub fn of(&self, distances: &[f32]) -> f32 {
+        let mut sum = 0.0;
+        for (&coefficient, &distance) in self.coefficients.iter().zip(distances) {
+            if coefficient != 0.0 {
+                sum += coefficient * distance;
+            }
+        }
+        sum
+    }
+}

@@ -1,0 +1,81 @@
+//! Positions as a cell and a whole number of steps within it.
+//!
+//! This is the frame rule of the crate. A coordinate is rounded down to a multiple of 2^-21 of a cell, and so are the
+//! coordinates of feature points. Their differences are then exact whole numbers, wherever they are and from whichever
+//! corner they are counted, and only the difference is rounded, once, to `f32` (below 8 cells not even that). So the
+//! single position, the many positions and the window agree to the last bit, and a picture at 1e9 is as sharp as at 0.
+
+/// The binary logarithm of the steps of a cell.
+pub(crate) const STEP_BITS: u32 = 21;
+
+/// The steps of a cell, along each axis.
+pub(crate) const STEPS: i32 = 1 << STEP_BITS;
+
+/// The size of a step, in cells.
+pub(crate) const STEP: f32 = 1.0 / STEPS as f32;
+
+/// Coordinates past this have no cell: neighbors of a cell must be whole numbers too.
+const FARTHEST: f64 = (1_u64 << 62) as f64;
+
+/// A position: the cell that it is in, and the steps from the cell's lower corner, `0..STEPS`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place<const N: usize> {
+    pub(crate) cell: [i64; N],
+    pub(crate) steps: [i32; N],
+}
+
+impl<const N: usize> Place<N> {
+    /// The place of a position in cells, or nothing if a coordinate is not finite or further out than 2^62.
+    #[inline]
+    pub(crate) fn new(position: [f64; N]) -> Option<Self> {
+        let mut place = Self {
+            cell: [0; N],
+            steps: [0; N],
+        };
+        for axis in 0..N {
+            (place.cell[axis], place.steps[axis]) = split(position[axis])?;
+        }
+        Some(place)
+    }
+}
+
+/// The cell of a coordinate and the steps from its lower edge.
+#[inline]
+pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
+    if !(coordinate.abs() <= FARTHEST) {
+        return None;
+    }
+    let floor = coordinate.floor();
+    let steps = ((coordinate - floor) * f64::from(STEPS)) as i32;
+    // Just below a whole number the difference can be rounded up to a whole cell.
+    let carry = steps >> STEP_BITS;
+    Some((floor as i64 + i64::from(carry), steps - (carry << STEP_BITS)))
+}
+
+/// A number of steps as cells, rounded to `f32` once.
+#[inline(always)]
+pub(crate) fn cells(steps: i64) -> f32 {
+    steps as f32 * STEP
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Place, STEPS, split};
+
+    #[test]
+    fn places_are_rounded_down_to_steps() {
+        assert_eq!(split(1.5), Some((1, STEPS / 2)));
+        assert_eq!(split(-0.25), Some((-1, STEPS / 4 * 3)));
+        assert_eq!(split(1e9 + 0.5), Some((1_000_000_000, STEPS / 2)));
+        assert_eq!(split(-1e-30), Some((0, 0)), "rounded up to the next cell");
+        assert_eq!(split(-0.0), Some((0, 0)));
+    }
+
+    #[test]
+    fn positions_without_a_cell_have_no_place() {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e19, -1e300] {
+            assert_eq!(Place::new([0.0, bad]), None, "{bad}");
+        }
+        assert!(Place::new([4e18, -4e18]).is_some(), "4e18 is within 2^62");
+    }
+}

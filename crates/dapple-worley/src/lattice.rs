@@ -1,0 +1,130 @@
+//! The feature points of each cell, made from one hash of the cell; nothing is stored.
+//!
+//! Counter 0 of a cell's hash draws how many points it has, counter `1 + i` the position of point `i`, and counter
+//! `2^31 + i` its id. With a period, a cell has the hash of the cell that it repeats.
+
+use crate::fixed::{STEP_BITS, STEPS};
+use crate::scatter::{JITTER_PARTS, Scatter};
+use crate::search::{Name, Source};
+use core::ops::{Add, BitAnd, BitOr, Mul, Shl, Shr};
+use dapple_hash::{CellHash, PoissonCounts, Seed};
+
+/// The counter of the position of point 0.
+pub(crate) const POSITIONS: u32 = 1;
+
+/// The counter of the id of point 0.
+pub(crate) const IDS: u32 = 1 << 31;
+
+/// Feature points in unit cells, by seed.
+#[derive(Clone, Debug)]
+pub(crate) struct Lattice<const N: usize> {
+    /// The hash that every cell's begins with.
+    pub(crate) root: CellHash,
+    pub(crate) counts: PoissonCounts,
+    /// In parts of [`JITTER_PARTS`].
+    pub(crate) jitter: u32,
+    /// The cells after which an axis repeats; 0 if it does not.
+    pub(crate) period: [u32; N],
+}
+
+impl<const N: usize> Lattice<N> {
+    pub(crate) fn new(seed: Seed, scatter: Scatter, counts: PoissonCounts) -> Self {
+        Self {
+            root: CellHash::new(seed.child("feature points", 0), []),
+            counts,
+            jitter: scatter.jitter(),
+            period: [0; N],
+        }
+    }
+
+    /// The coordinate of the cell that a cell repeats, along one axis.
+    #[inline]
+    pub(crate) fn wrap(&self, axis: usize, cell: i64) -> i64 {
+        match self.period[axis] {
+            0 => cell,
+            period => cell.rem_euclid(i64::from(period)),
+        }
+    }
+
+    #[inline]
+    pub(crate) fn hash(&self, cell: [i64; N]) -> CellHash {
+        let axes = (0..N).rev();
+        axes.fold(self.root, |hash, axis| hash.axis(self.wrap(axis, cell[axis])))
+    }
+
+    /// How many points the cell with this hash has.
+    #[inline]
+    pub(crate) fn count(&self, hash: CellHash) -> u32 {
+        self.counts.count((hash.at(0) >> 32) as u32)
+    }
+
+    /// Where in its cell a point lies.
+    #[inline]
+    pub(crate) fn steps(&self, hash: CellHash, index: u32) -> [i32; N] {
+        let bits = hash.at(POSITIONS + index);
+        steps([(bits >> 32) as u32, bits as u32], self.jitter).map(u32::cast_signed)
+    }
+}
+
+impl<const N: usize> Source<N> for Lattice<N> {
+    #[inline]
+    fn visit(&self, cell: [i64; N], mut each: impl FnMut([i32; N], Name)) {
+        let hash = self.hash(cell);
+        for index in 0..self.count(hash) {
+            each(self.steps(hash, index), Name { hash, index });
+        }
+    }
+
+    #[inline]
+    fn id(&self, name: Name) -> u64 {
+        name.hash.at(IDS + name.index)
+    }
+}
+
+/// What 32 random bits, or sixteen times as many, are computed with.
+pub(crate) trait Word:
+    Copy
+    + Shr<u32, Output = Self>
+    + Shl<u32, Output = Self>
+    + BitAnd<u32, Output = Self>
+    + BitOr<Output = Self>
+    + Add<u32, Output = Self>
+    + Mul<u32, Output = Self>
+{
+}
+
+impl<W> Word for W where
+    W: Copy
+        + Shr<u32, Output = W>
+        + Shl<u32, Output = W>
+        + BitAnd<u32, Output = W>
+        + BitOr<Output = W>
+        + Add<u32, Output = W>
+        + Mul<u32, Output = W>
+{
+}
+
+/// The steps from the lower corner of the cell along each axis, from 64 random bits.
+///
+/// With two and three axes all steps are equally likely; with four, every 32nd.
+#[inline(always)]
+pub(crate) fn steps<W: Word, const N: usize>([high, low]: [W; 2], jitter: u32) -> [W; N] {
+    let mut steps = [high; N];
+    for (axis, steps) in steps.iter_mut().enumerate() {
+        *steps = match (N, axis) {
+            (2 | 3, 0) => high >> (32 - STEP_BITS),
+            (2 | 3, 1) => low >> (32 - STEP_BITS),
+            (3, _) => (high & 0x7FF) << 10 | (low & 0x3FF),
+            (_, 0) => ((high >> 16) << 5) + 16,
+            (_, 1) => ((high & 0xFFFF) << 5) + 16,
+            (_, 2) => ((low >> 16) << 5) + 16,
+            _ => ((low & 0xFFFF) << 5) + 16,
+        };
+        if jitter < JITTER_PARTS {
+            // The mean of the position and the middle; the sum stays below 2^32.
+            let middle = STEPS as u32 / 2 * (JITTER_PARTS - jitter);
+            *steps = (*steps * jitter + middle) >> JITTER_PARTS.ilog2();
+        }
+    }
+    steps
+}

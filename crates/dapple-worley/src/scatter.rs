@@ -1,0 +1,106 @@
+//! How feature points are spread over the cells.
+
+use crate::{WorleyError, WorleyErrorKind};
+use core::ops::RangeInclusive;
+use dapple_hash::PoissonCounts;
+
+/// How many feature points a cell has, and where in it they lie.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_worley::{Scatter, Worley2, hash::Seed};
+///
+/// let dense = Worley2::new(Seed(7)).with_scatter(Scatter::Poisson { density: 6.0 })?;
+/// assert!(!dense.cell_points([3, -5]).is_empty());
+/// # Ok::<(), dapple_worley::WorleyError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum Scatter {
+    /// Worley's: a Poisson-distributed number of points with a uniform position each. The number is clamped to
+    /// 1 to 9, as in the paper, which moves its mean; see [`Scatter::mean`].
+    Poisson {
+        /// Feature points per cell on average, before clamping: from 1/64 to 64.
+        density: f64,
+    },
+    /// The same without clamping: a cell may be empty, and the points have no trace of the grid.
+    Unclamped {
+        /// Feature points per cell on average: from 1/64 to 64.
+        density: f64,
+    },
+    /// One point in each cell, as most other libraries have it. The grid can be seen.
+    Jittered {
+        /// How far the point leaves the middle: from 0, a regular grid, to 1, anywhere in its cell. It is rounded to
+        /// a multiple of 1/1024.
+        jitter: f64,
+    },
+}
+
+/// The clamped counts of the paper.
+const CLAMPED: RangeInclusive<u32> = 1..=9;
+
+/// The least and the largest density.
+pub(crate) const DENSITIES: RangeInclusive<f64> = 1.0 / 64.0..=64.0;
+
+/// The parts of a cell that a jitter is rounded to.
+pub(crate) const JITTER_PARTS: u32 = 1024;
+
+impl Default for Scatter {
+    /// [`Scatter::Poisson`] with the density [`Scatter::DENSITY`].
+    fn default() -> Self {
+        Self::Poisson {
+            density: Self::DENSITY,
+        }
+    }
+}
+
+impl Scatter {
+    /// The default density. Worley found his program fastest at about 3.
+    pub const DENSITY: f64 = 3.0;
+
+    /// The feature points of a cell, on average over all cells: the density after clamping.
+    ///
+    /// # Errors
+    ///
+    /// [`WorleyErrorKind::Range`] if the density or the jitter is out of its range.
+    pub fn mean(self) -> Result<f64, WorleyError> {
+        Ok(self.counts()?.mean())
+    }
+
+    /// The table of counts.
+    pub(crate) fn counts(self) -> Result<PoissonCounts, WorleyError> {
+        let (density, range) = match self {
+            Self::Poisson { density } => (density, CLAMPED),
+            Self::Unclamped { density } => (density, 0..=u32::MAX),
+            Self::Jittered { jitter } => {
+                WorleyError::check((0.0..=1.0).contains(&jitter), "jitter", jitter, "from 0 to 1")?;
+                (1.0, 1..=1)
+            }
+        };
+        let refused = || {
+            WorleyError::new(WorleyErrorKind::Range {
+                what: "density",
+                value: density,
+                range: "from 1/64 to 64",
+            })
+        };
+        if !DENSITIES.contains(&density) {
+            return Err(refused());
+        }
+        PoissonCounts::new(density, range).map_err(|_| refused())
+    }
+
+    /// The jitter in parts of [`JITTER_PARTS`].
+    pub(crate) fn jitter(self) -> u32 {
+        match self {
+            Self::Jittered { jitter } => (jitter * f64::from(JITTER_PARTS)).round() as u32,
+            _ => JITTER_PARTS,
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! The spaces of two, three and four axes, and their vectors.
+
+use core::fmt;
+use glam::{DVec2, DVec3, DVec4};
+
+/// Where the number of axes is known, [`Space`] names the vector that has as many.
+#[derive(Debug)]
+pub struct Axes;
+
+/// A space with `N` axes; [`Axes`] implements it for 2, 3 and 4, and nothing else can.
+pub trait Space<const N: usize>: sealed::Sealed<N> {
+    /// Its vectors: `DVec2`, `DVec3` or `DVec4`.
+    type Vector: Copy + fmt::Debug + PartialEq + From<[f64; N]> + Into<[f64; N]> + Send + Sync;
+}
+
+/// The vectors of the space with `N` axes.
+pub type Vector<const N: usize> = <Axes as Space<N>>::Vector;
+
+impl Space<2> for Axes {
+    type Vector = DVec2;
+}
+
+impl Space<3> for Axes {
+    type Vector = DVec3;
+}
+
+impl Space<4> for Axes {
+    type Vector = DVec4;
+}
+
+mod sealed {
+    pub trait Sealed<const N: usize> {}
+    impl Sealed<2> for super::Axes {}
+    impl Sealed<3> for super::Axes {}
+    impl Sealed<4> for super::Axes {}
+}

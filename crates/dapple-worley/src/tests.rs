@@ -1,0 +1,3 @@
+//! The basis beside its oracle.
+
+mod oracle;

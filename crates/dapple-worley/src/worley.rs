@@ -1,0 +1,188 @@
+//! The basis: distances to the nearest feature points.
+
+use crate::fixed::{Place, STEP, STEPS};
+use crate::lattice::Lattice;
+use crate::metric::with_norm;
+use crate::search::{Hit, Source, nearest};
+use crate::{Axes, Metric, Scatter, Space, Vector, WorleyError};
+use dapple_hash::Seed;
+
+/// The greatest n of F_n.
+pub const LIMIT: usize = 4;
+
+/// Worley's basis in the plane.
+pub type Worley2 = Worley<2>;
+
+/// Worley's basis in space.
+pub type Worley3 = Worley<3>;
+
+/// Worley's basis in four dimensions, for what moves: a loop is a period along the fourth axis.
+pub type Worley4 = Worley<4>;
+
+/// Worley's cellular basis: feature points scattered over unit cells, and the distances to the nearest of them.
+///
+/// F1 is the distance to the nearest feature point, F2 to the second nearest, up to F4. All are exact: no neighbor is
+/// missed, whatever the metric, the density or the number of axes. Positions are in cells.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_worley::{Metric, Worley3, hash::Seed};
+///
+/// let hull = Worley3::new(Seed(7)).with_metric(Metric::Manhattan)?;
+/// let [first, second] = hull.sample([0.25, 0.75, -1e9]);
+/// assert!(first.distance <= second.distance);
+/// # Ok::<(), dapple_worley::WorleyError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Worley<const N: usize> {
+    pub(crate) seed: Seed,
+    pub(crate) lattice: Lattice<N>,
+    pub(crate) scatter: Scatter,
+    pub(crate) metric: Metric,
+}
+
+/// A feature point as it is seen from a position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Feature<V> {
+    /// How far away it is, in cells: zero or more. NaN if the position has no place, see [`Worley::sample`].
+    pub distance: f32,
+    /// The way from the feature point to the position, in cells. For the Euclidean metric, this over the distance is
+    /// the gradient of the distance; see [`Metric::gradient`].
+    pub vector: V,
+    /// What the point is known by: 64 random bits, the same wherever it is seen from.
+    pub id: u64,
+}
+
+/// A feature point of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellPoint<V> {
+    /// Where it lies, from the lower corner of the cell: each part in `[0, 1)`.
+    pub offset: V,
+    /// What it is known by.
+    pub id: u64,
+}
+
+impl<const N: usize> Worley<N>
+where
+    Axes: Space<N>,
+{
+    /// The basis with a Poisson-distributed number of points per cell, the Euclidean metric, and no period.
+    #[must_use]
+    pub fn new(seed: Seed) -> Self {
+        let scatter = Scatter::default();
+        let counts = scatter.counts().expect("the default density is in its range");
+        Self {
+            seed,
+            lattice: Lattice::new(seed, scatter, counts),
+            scatter,
+            metric: Metric::default(),
+        }
+    }
+
+    /// Spreads the feature points in another way.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::WorleyErrorKind::Range) if the density or the jitter is out of its range.
+    pub fn with_scatter(self, scatter: Scatter) -> Result<Self, WorleyError> {
+        let counts = scatter.counts()?;
+        let period = self.lattice.period;
+        Ok(Self {
+            lattice: Lattice { period, ..Lattice::new(self.seed, scatter, counts) },
+            scatter,
+            ..self
+        })
+    }
+
+    /// Scatters `density` feature points per cell on average, clamped to 1 to 9: [`Scatter::Poisson`].
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::WorleyErrorKind::Range) if the density is not from 1/64 to 64.
+    pub fn with_density(self, density: f64) -> Result<Self, WorleyError> {
+        self.with_scatter(Scatter::Poisson { density })
+    }
+
+    /// Measures distances in another way.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::WorleyErrorKind::Range) if the exponent of [`Metric::Minkowski`] is not from 1 to 10.
+    pub fn with_metric(self, metric: Metric) -> Result<Self, WorleyError> {
+        Ok(Self { metric: metric.check()?, ..self })
+    }
+
+    /// Repeats the feature points after so many cells along each axis; `None` where the axis does not repeat.
+    ///
+    /// The repeat is exact, and nothing is blended. Repeats of a point are points of their own with one id, so with a
+    /// period of 1 F1 and F2 may belong to the same id.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::WorleyErrorKind::Range) if a period is 0.
+    pub fn with_period(self, period: [Option<u32>; N]) -> Result<Self, WorleyError> {
+        WorleyError::check(!period.contains(&Some(0)), "period", 0.0, "at least 1 cell")?;
+        let period = period.map(|cells| cells.unwrap_or(0));
+        Ok(Self { lattice: Lattice { period, ..self.lattice }, ..self })
+    }
+
+    /// How distances are measured.
+    #[must_use]
+    pub fn metric(&self) -> Metric {
+        self.metric
+    }
+
+    /// How the feature points are spread.
+    #[must_use]
+    pub fn scatter(&self) -> Scatter {
+        self.scatter
+    }
+
+    /// The `K` nearest feature points of a position, nearest first; `K` is from 1 to 4.
+    ///
+    /// Points at the same distance are in the order of their ids. A position with a coordinate that is not finite, or
+    /// further out than 2^62, has no place: its distances and vectors are NaN and its ids 0.
+    #[must_use]
+    pub fn sample<const K: usize>(&self, position: impl Into<Vector<N>>) -> [Feature<Vector<N>>; K] {
+        const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
+        match Place::new(position.into().into()) {
+            Some(place) => self.hits(place).map(|hit| self.feature(hit)),
+            None => [Feature {
+                distance: f32::NAN,
+                vector: [f64::NAN; N].into(),
+                id: 0,
+            }; K],
+        }
+    }
+
+    /// The feature points of a cell, in no particular order: what everything else is computed from.
+    #[must_use]
+    pub fn cell_points(&self, cell: [i64; N]) -> Vec<CellPoint<Vector<N>>> {
+        let mut points = Vec::new();
+        self.lattice.visit(cell, |steps, name| {
+            points.push(CellPoint {
+                offset: steps.map(|steps| f64::from(steps) / f64::from(STEPS)).into(),
+                id: self.lattice.id(name),
+            });
+        });
+        points
+    }
+
+    /// The nearest points of a place.
+    pub(crate) fn hits<const K: usize>(&self, place: Place<N>) -> [Hit<N>; K] {
+        with_norm!(self.metric, norm => nearest(&self.lattice, norm, place))
+    }
+
+    pub(crate) fn feature(&self, hit: Hit<N>) -> Feature<Vector<N>> {
+        use crate::metric::Norm as _;
+        Feature {
+            distance: with_norm!(self.metric, norm => norm.distance(hit.key)),
+            vector: hit.vector.map(f64::from).into(),
+            id: hit.name.map_or(0, |name| self.lattice.id(name)),
+        }
+    }
+}
+
+/// The largest error of a coordinate, in cells: positions are rounded down to whole steps.
+pub const RESOLUTION: f32 = STEP;
