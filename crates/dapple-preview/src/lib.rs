@@ -1,1 +1,74 @@
-//! Lit previews on the CPU.
+//! Lit previews on the CPU: what a procedural texture looks like on a thing.
+//!
+//! A [`Scene`] holds a [`Camera`], [`Object`]s, [`Light`]s and an [`Environment`], and renders to a raster of linear
+//! colors. An object is a [`Shape`] and a closure: for a [`Surface`], the point where a ray met the shape, it gives a
+//! [`Material`] of a color, the gradient of a bump, highlights and a mirror. The crate knows no texture; a solid texture is
+//! asked at the position in the space of the object, so that it sticks to it and goes through it, as the flat face of a
+//! [`Cut`] shows.
+//!
+//! ```
+//! use dapple_color::LinearRgb;
+//! use dapple_preview::glam::DVec3;
+//! use dapple_preview::{Camera, Light, Material, Object, Scene, Shape, Supersampling, Surface};
+//!
+//! // A texture in space: boards of one unit.
+//! let boards = |surface: &Surface| {
+//!     let board = surface.position.floor().element_sum();
+//!     let odd = board * 0.5 != (board * 0.5).floor();
+//!     Material::matte(LinearRgb::gray(if odd { 0.7 } else { 0.2 })).with_specular(0.2, 50.0)
+//! };
+//! let scene = Scene::new(Camera::look_at(DVec3::new(0.0, 2.0, 6.0), DVec3::Y))
+//!     .with_object(Object::new(Shape::Plane, boards))
+//!     .with_object(Object::new(Shape::torus(1.0, 0.4), boards).at(DVec3::new(0.0, 0.4, 0.0)))
+//!     .with_light(Light::directional(DVec3::new(1.0, 2.0, 1.0), LinearRgb::WHITE))
+//!     .with_ambient(LinearRgb::gray(0.1));
+//! let picture = scene.render([160, 120], Supersampling(2))?;
+//! assert_eq!(picture.size(), [160, 120]);
+//! # Ok::<(), dapple_preview::PreviewError>(())
+//! ```
+//!
+//! The world is right-handed with y up; a camera on the positive z axis sees x to the right. Lengths are in the units of
+//! the world, or of the object where that is said, and angles in radians. Row 0 of a picture is the top. Colors are
+//! linear and not tone mapped; what is above 1 is for the caller to clamp.
+//!
+//! # How it works
+//!
+//! One ray per sample of a regular grid finds the nearest shape: planes and spheres by a formula, tori by the roots of
+//! their quartic, meshes by a hierarchy of boxes. A texture's gradient tilts the normal (Blinn 1978), lights are looked up
+//! with shadow rays, and mirrors send on a ray that sees the other objects and the environment. There is no light between
+//! surfaces: this is for textures.
+//!
+//! # Reproducibility
+//!
+//! A picture is a function of the scene: the same bits on every number of threads. Value paths use `+ − × ÷ sqrt floor`
+//! and `libm`, so the bits are those of the closures' results on every platform.
+
+#![forbid(unsafe_code)]
+
+mod bump;
+mod camera;
+mod environment;
+mod error;
+mod light;
+mod material;
+mod mesh;
+mod object;
+mod ray;
+mod scene;
+mod shape;
+mod surface;
+mod trace;
+mod transform;
+
+pub use camera::Camera;
+pub use environment::{Environment, Sky, Sun};
+pub use error::{PreviewError, PreviewErrorKind};
+pub use glam;
+pub use light::{Falloff, Light, LightSource, Shadows};
+pub use material::{Material, Mirror};
+pub use mesh::Mesh;
+pub use object::Object;
+pub use scene::{Scene, Supersampling};
+pub use shape::{Cut, Shape};
+pub use surface::{Part, Surface};
+pub use transform::Transform;

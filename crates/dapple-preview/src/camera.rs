@@ -1,0 +1,117 @@
+//! Where a picture is seen from.
+
+use crate::ray::Ray;
+use crate::{PreviewError, PreviewErrorKind};
+use glam::{DVec2, DVec3};
+
+/// A perspective camera: an eye that looks at a point.
+///
+/// Row 0 of the picture is the top, where `up` points; x to the right, y up and the view make a left-handed triple, so in
+/// a world with y up a camera on the positive z axis sees x to the right.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_preview::{Camera, glam::DVec3};
+///
+/// let camera = Camera::look_at(DVec3::new(0.0, 2.0, 5.0), DVec3::ZERO).with_fov(35_f64.to_radians());
+/// assert_eq!(camera.up, DVec3::Y);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Where the eye is, in the world.
+    pub eye: DVec3,
+    /// The point that the middle of the picture shows, in the world.
+    pub target: DVec3,
+    /// A direction that the picture shows as upward; it need not be at right angles to the view. By default +y.
+    pub up: DVec3,
+    /// The angle between the top and the bottom of the picture, in radians, above 0 and below π. By default 0.7, which
+    /// is 40°.
+    pub vertical_fov: f64,
+}
+
+impl Camera {
+    /// A camera at `eye` that looks at `target`, with +y up and a field of view of 0.7 radians.
+    #[must_use]
+    pub fn look_at(eye: DVec3, target: DVec3) -> Self {
+        Self {
+            eye,
+            target,
+            up: DVec3::Y,
+            vertical_fov: 0.7,
+        }
+    }
+
+    /// The same camera turned so that another direction is up.
+    #[must_use]
+    pub fn with_up(self, up: DVec3) -> Self {
+        Self { up, ..self }
+    }
+
+    /// The same camera with another vertical field of view, in radians.
+    #[must_use]
+    pub fn with_fov(self, vertical_fov: f64) -> Self {
+        Self {
+            vertical_fov,
+            ..self
+        }
+    }
+
+    /// The camera as a source of rays for a grid of samples.
+    pub(crate) fn prepare(&self, samples: [f64; 2]) -> Result<View, PreviewError> {
+        PreviewError::check_vector("eye of the camera", self.eye)?;
+        PreviewError::check_vector("target of the camera", self.target)?;
+        let fov = self.vertical_fov;
+        let holds = (1e-9..core::f64::consts::PI).contains(&fov);
+        PreviewError::check(
+            holds,
+            "field of view of the camera",
+            fov,
+            "from 1e-9 to below π",
+        )?;
+        let forward = PreviewError::direction("view of the camera", self.target - self.eye)?;
+        let up = PreviewError::direction("up of the camera", self.up)?;
+        let across = forward.cross(up);
+        // Closer to parallel than this, rounding decides what is right.
+        if across.length_squared() < 1e-24 {
+            let what = "up of the camera, seen along its view,";
+            return Err(PreviewError::new(PreviewErrorKind::NoDirection { what }));
+        }
+        let right = across.normalize();
+        let sample = 2.0 * libm::tan(0.5 * fov) / samples[1];
+        Ok(View {
+            eye: self.eye,
+            forward,
+            right: right * sample,
+            down: -right.cross(forward) * sample,
+            middle: DVec2::from(samples) * 0.5,
+            sample,
+        })
+    }
+}
+
+/// A camera for a grid of samples.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    eye: DVec3,
+    forward: DVec3,
+    /// One sample to the right, at the distance 1.
+    right: DVec3,
+    /// One sample down, at the distance 1.
+    down: DVec3,
+    middle: DVec2,
+    /// The width of a sample in the middle of the picture, at the distance 1.
+    pub(crate) sample: f64,
+}
+
+impl View {
+    /// The ray through a point of the picture, counted in samples from its top left corner.
+    pub(crate) fn ray(&self, at: DVec2) -> Ray {
+        let offset = at - self.middle;
+        let direction = self.forward + self.right * offset.x + self.down * offset.y;
+        Ray {
+            origin: self.eye,
+            direction: direction.normalize(),
+        }
+    }
+}

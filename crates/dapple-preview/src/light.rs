@@ -1,0 +1,224 @@
+//! Where light comes from, and how it throws shadows.
+
+use crate::PreviewError;
+use crate::ray::frame;
+use core::f64::consts::PI;
+use dapple_color::LinearRgb;
+use glam::{DVec2, DVec3};
+
+/// A light.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::LinearRgb;
+/// use dapple_preview::{Light, Shadows, glam::DVec3};
+///
+/// let sun = Light::directional(DVec3::new(1.0, 2.0, 1.0), LinearRgb::gray(0.9));
+/// let lamp = Light::point(DVec3::new(0.0, 5.0, 0.0), LinearRgb::gray(0.4)).with_shadows(Shadows::None);
+/// assert_eq!(sun.shadows, Shadows::Hard);
+/// # let _ = lamp;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Where the light comes from.
+    pub source: LightSource,
+    /// What a white surface shows that is lit straight, from any distance if the light does not fall off.
+    pub color: LinearRgb,
+    /// How the light is blocked. By default hard.
+    pub shadows: Shadows,
+}
+
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum LightSource {
+    /// From far away.
+    Directional {
+        /// The direction *to* the light, in the world; any length but zero.
+        toward: DVec3,
+    },
+    /// From a point.
+    Point {
+        /// Where the light is, in the world.
+        position: DVec3,
+        /// How the light gets weaker with the distance.
+        falloff: Falloff,
+    },
+}
+
+/// How the light of a point gets weaker with the distance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Falloff {
+    /// Not at all.
+    #[default]
+    None,
+    /// With the square of the distance, so that the light has its color at this one, in units of the world.
+    InverseSquare(f64),
+}
+
+/// How a light is blocked.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Shadows {
+    /// Not at all: the light goes through everything.
+    None,
+    /// By one ray.
+    #[default]
+    Hard,
+    /// By rays to a disk of light; the same pattern of rays at every point, so few rays show as steps.
+    Soft {
+        /// The radius of the disk: of a point light in units of the world, of a directional one at the distance 1, so
+        /// that it is the tangent of an angle.
+        radius: f64,
+        /// The number of rays, from 1 to 1024; 16 to 64 is usual.
+        rays: u32,
+    },
+}
+
+impl Light {
+    /// A light from far away, in the direction `toward`, with hard shadows.
+    #[must_use]
+    pub fn directional(toward: DVec3, color: LinearRgb) -> Self {
+        Self {
+            source: LightSource::Directional { toward },
+            color,
+            shadows: Shadows::Hard,
+        }
+    }
+
+    /// A light at a point that does not get weaker with the distance, with hard shadows.
+    #[must_use]
+    pub fn point(position: DVec3, color: LinearRgb) -> Self {
+        let falloff = Falloff::None;
+        Self {
+            source: LightSource::Point { position, falloff },
+            color,
+            shadows: Shadows::Hard,
+        }
+    }
+
+    /// The same light with other shadows.
+    #[must_use]
+    pub fn with_shadows(self, shadows: Shadows) -> Self {
+        Self { shadows, ..self }
+    }
+
+    pub(crate) fn prepare(&self) -> Result<Lamp, PreviewError> {
+        let mut source = self.source;
+        match &mut source {
+            LightSource::Directional { toward } => {
+                *toward = PreviewError::direction("direction to a light", *toward)?;
+            }
+            LightSource::Point { position, falloff } => {
+                PreviewError::check_vector("position of a light", *position)?;
+                if let Falloff::InverseSquare(distance) = *falloff {
+                    PreviewError::check_length("distance of the falloff of a light", distance)?;
+                }
+            }
+        }
+        Ok(Lamp {
+            source,
+            color: crate::material::clean(self.color),
+            pattern: self.shadows.pattern()?,
+        })
+    }
+}
+
+impl Shadows {
+    /// Where shadow rays go on a disk of light.
+    ///
+    /// Reference: Helmut Vogel, "A better way to construct the sunflower head", Mathematical Biosciences 44, 1979.
+    fn pattern(self) -> Result<Vec<DVec2>, PreviewError> {
+        let (radius, rays) = match self {
+            Self::None => return Ok(Vec::new()),
+            Self::Hard => return Ok(vec![DVec2::ZERO]),
+            Self::Soft { radius, rays } => (radius, rays),
+        };
+        let what = "radius of a light";
+        PreviewError::check(
+            (0.0..=1e30).contains(&radius),
+            what,
+            radius,
+            "from 0 to 1e30",
+        )?;
+        let what = "number of shadow rays";
+        let holds = (1..=1024).contains(&rays);
+        PreviewError::check(holds, what, rays.into(), "from 1 to 1024")?;
+        let golden_angle = PI * (3.0 - 5_f64.sqrt());
+        let point = |ray: u32| {
+            let out = radius * ((f64::from(ray) + 0.5) / f64::from(rays)).sqrt();
+            let angle = golden_angle * f64::from(ray);
+            DVec2::new(libm::cos(angle), libm::sin(angle)) * out
+        };
+        Ok((0..rays).map(point).collect())
+    }
+}
+
+/// A checked light.
+#[derive(Clone, Debug)]
+pub(crate) struct Lamp {
+    source: LightSource,
+    color: LinearRgb,
+    /// The points of the disk of light that shadow rays go to; none for a light without shadows.
+    pattern: Vec<DVec2>,
+}
+
+/// What a light does at a point, before shadows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Incoming {
+    pub(crate) color: LinearRgb,
+    /// The unit vector to the light.
+    pub(crate) toward: DVec3,
+    /// How far the light is; infinite for a directional one.
+    pub(crate) distance: f64,
+}
+
+impl Lamp {
+    /// The light that comes to a point, or nothing if the point is where the light is.
+    pub(crate) fn incoming(&self, point: DVec3) -> Option<Incoming> {
+        let color = self.color;
+        match self.source {
+            LightSource::Directional { toward } => Some(Incoming {
+                color,
+                toward,
+                distance: f64::INFINITY,
+            }),
+            LightSource::Point { position, falloff } => {
+                let offset = position - point;
+                let distance = offset.length();
+                let weight = match falloff {
+                    Falloff::None => 1.0,
+                    Falloff::InverseSquare(unit) => (unit / distance) * (unit / distance),
+                };
+                Some(Incoming {
+                    color: color * weight.min(1e30) as f32,
+                    toward: offset.try_normalize()?,
+                    distance,
+                })
+            }
+        }
+    }
+
+    /// The part of the light, from 0 to 1, that is not blocked: `blocked` says it of a unit vector and a distance.
+    pub(crate) fn visible(
+        &self,
+        incoming: &Incoming,
+        mut blocked: impl FnMut(DVec3, f64) -> bool,
+    ) -> f32 {
+        if self.pattern.is_empty() {
+            return 1.0;
+        }
+        let [right, up] = frame(incoming.toward);
+        let reach = match self.source {
+            LightSource::Directional { .. } => 1.0,
+            LightSource::Point { .. } => incoming.distance,
+        };
+        let free = self.pattern.iter().filter(|offset| {
+            let to_disk = incoming.toward * reach + right * offset.x + up * offset.y;
+            let length = to_disk.length();
+            let distance = incoming.distance.max(length);
+            !blocked(to_disk / length, distance)
+        });
+        free.count() as f32 / self.pattern.len() as f32
+    }
+}

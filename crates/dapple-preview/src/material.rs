@@ -1,0 +1,162 @@
+//! What a surface looks like at a point.
+//!
+//! Light is reflected after Lambert and, for highlights, after Blinn, "Models of Light Reflection for Computer Synthesized
+//! Pictures", SIGGRAPH 1977, doi 10.1145/563858.563893: `color · light · (n·l)` and `specular · light · (n·h)^shininess`.
+//! No factor of π is hidden: white, lit straight by a light of 1, is 1. Mirrors may follow Fresnel's law in the form of
+//! Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", Computer Graphics Forum 13(3), 1994,
+//! doi 10.1111/1467-8659.1330233.
+
+use dapple_color::LinearRgb;
+use glam::DVec3;
+
+/// The look of a surface at a point.
+///
+/// A number that is not finite counts as zero, so that a texture with a hole gives a dark spot and not NaN.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::LinearRgb;
+/// use dapple_preview::{Material, glam::DVec3};
+///
+/// let hide = Material::matte(LinearRgb::new(0.2, 0.4, 0.1))
+///     .with_bump(DVec3::new(0.3, 0.0, 0.0))
+///     .with_specular(0.3, 40.0);
+/// assert_eq!(hide.shininess, 40.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// The part of the light that is scattered, per channel, mostly from 0 to 1.
+    pub color: LinearRgb,
+    /// Light that the surface gives off by itself. By default none.
+    pub emission: LinearRgb,
+    /// The gradient of a height over the surface: units of height per unit of length, both in units of the object, as a
+    /// vector in its space. Its part along the normal has no effect. By default zero, which is smooth.
+    pub bump: DVec3,
+    /// The strength of highlights, at least 0. By default 0.
+    pub specular: f32,
+    /// The exponent of highlights, at least 0: 10 is dull, 1000 sharp. By default 1.
+    pub shininess: f32,
+    /// How much the surface mirrors. By default not at all.
+    pub mirror: Mirror,
+}
+
+/// The part of the light that comes from the mirrored direction; what is mirrored is not scattered.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Mirror {
+    /// None.
+    #[default]
+    None,
+    /// The same part, from 0 to 1, at every angle.
+    Constant(f32),
+    /// This part, from 0 to 1, seen straight, and more at a slant, up to 1, after Schlick. Water has 0.02.
+    Fresnel(f32),
+}
+
+impl Material {
+    /// A surface that scatters light and does nothing else.
+    #[must_use]
+    pub fn matte(color: LinearRgb) -> Self {
+        Self {
+            color,
+            emission: LinearRgb::BLACK,
+            bump: DVec3::ZERO,
+            specular: 0.0,
+            shininess: 1.0,
+            mirror: Mirror::None,
+        }
+    }
+
+    /// The same with another gradient of the height over the surface.
+    #[must_use]
+    pub fn with_bump(self, bump: DVec3) -> Self {
+        Self { bump, ..self }
+    }
+
+    /// The same with highlights.
+    #[must_use]
+    pub fn with_specular(self, specular: f32, shininess: f32) -> Self {
+        Self {
+            specular,
+            shininess,
+            ..self
+        }
+    }
+
+    /// The same with a mirror.
+    #[must_use]
+    pub fn with_mirror(self, mirror: Mirror) -> Self {
+        Self { mirror, ..self }
+    }
+
+    /// The same with light of its own.
+    #[must_use]
+    pub fn with_emission(self, emission: LinearRgb) -> Self {
+        Self { emission, ..self }
+    }
+
+    /// The material with every number finite.
+    pub(crate) fn cleaned(self) -> Self {
+        Self {
+            color: clean(self.color),
+            emission: clean(self.emission),
+            bump: if self.bump.is_finite() {
+                self.bump
+            } else {
+                DVec3::ZERO
+            },
+            specular: finite(self.specular).max(0.0),
+            shininess: finite(self.shininess).max(0.0),
+            mirror: self.mirror,
+        }
+    }
+}
+
+impl Mirror {
+    /// The part that is mirrored at a cosine between the normal and the direction to the eye.
+    pub(crate) fn part(self, cosine: f64) -> f32 {
+        match self {
+            Self::None => 0.0,
+            Self::Constant(part) => finite(part).clamp(0.0, 1.0),
+            Self::Fresnel(straight) => {
+                let straight = finite(straight).clamp(0.0, 1.0);
+                let rest = (1.0 - cosine.clamp(0.0, 1.0)) as f32;
+                let square = rest * rest;
+                straight + (1.0 - straight) * (square * square * rest)
+            }
+        }
+    }
+}
+
+fn finite(value: f32) -> f32 {
+    if value.is_finite() { value } else { 0.0 }
+}
+
+/// The color with parts that are not finite at zero.
+pub(crate) fn clean(color: LinearRgb) -> LinearRgb {
+    color.to_array().map(finite).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Mirror;
+
+    #[test]
+    fn fresnel_is_its_number_seen_straight_and_one_at_a_slant() {
+        assert_eq!(Mirror::Fresnel(0.02).part(1.0), 0.02, "straight");
+        assert_eq!(Mirror::Fresnel(0.02).part(0.0), 1.0, "at a slant");
+        // 0.5^5 = 1/32 is exact, and so is everything else.
+        assert_eq!(Mirror::Fresnel(0.5).part(0.5), 0.5 + 0.5 / 32.0, "between");
+    }
+
+    #[test]
+    fn mirrors_that_are_not_numbers_are_none() {
+        assert_eq!(Mirror::Constant(f32::NAN).part(0.5), 0.0, "NaN");
+        assert_eq!(Mirror::Constant(7.0).part(0.5), 1.0, "more than all");
+        assert_eq!(
+            Mirror::Fresnel(f32::INFINITY).part(1.0),
+            0.0,
+            "infinitely much"
+        );
+    }
+}

@@ -1,0 +1,84 @@
+//! Rays and triangles.
+//!
+//! Reference: Sven Woop, Carsten Benthin and Ingo Wald, "Watertight Ray/Triangle Intersection", Journal of Computer
+//! Graphics Techniques 2(1), 2013. Space is sheared so that the ray is an axis, and the signs of three areas in the plane
+//! across say whether it goes through. Two triangles compute the area of an edge that they share from the same numbers, so
+//! no ray gets between them. The distance is a mean of those of the corners, so it is never outside of the triangle's box
+//! by more than rounding.
+
+use crate::ray::Ray;
+use glam::DVec3;
+
+/// The corners of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corners([[f64; 3]; 3]);
+
+impl Corners {
+    pub(crate) fn new(positions: [DVec3; 3]) -> Self {
+        Self(positions.map(|position| position.to_array()))
+    }
+
+    pub(crate) fn positions(&self) -> [DVec3; 3] {
+        self.0.map(DVec3::from)
+    }
+}
+
+/// A ray with the shear that makes it an axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Probe {
+    origin: [f64; 3],
+    /// The axes of space: two across the ray, and the one that the ray is closest to.
+    axes: [usize; 3],
+    shear: [f64; 3],
+}
+
+impl Probe {
+    pub(crate) fn new(ray: &Ray) -> Self {
+        let size = ray.direction.abs();
+        let along = if size.x >= size.y && size.x >= size.z {
+            0
+        } else if size.y >= size.z {
+            1
+        } else {
+            2
+        };
+        let direction = ray.direction.to_array();
+        let [x, y] = [(along + 1) % 3, (along + 2) % 3];
+        Self {
+            origin: ray.origin.to_array(),
+            axes: [x, y, along],
+            shear: [
+                direction[x] / direction[along],
+                direction[y] / direction[along],
+                1.0 / direction[along],
+            ],
+        }
+    }
+
+    /// The distance along the ray, of any sign, and the weights of the corners.
+    #[inline]
+    pub(crate) fn meet(&self, corners: &Corners) -> Option<(f64, [f64; 3])> {
+        let [a, b, c] = corners.0.map(|corner| self.sheared(corner));
+        let areas = [
+            c[0] * b[1] - c[1] * b[0],
+            a[0] * c[1] - a[1] * c[0],
+            b[0] * a[1] - b[1] * a[0],
+        ];
+        if areas.iter().any(|&area| area < 0.0) && areas.iter().any(|&area| area > 0.0) {
+            return None;
+        }
+        let whole = areas[0] + areas[1] + areas[2];
+        let weights = areas.map(|area| area / whole);
+        let depth = weights[0] * a[2] + weights[1] * b[2] + weights[2] * c[2];
+        let distance = depth * self.shear[2];
+        // Also false for a triangle that is seen from its edge, whose weights are not numbers.
+        distance.is_finite().then_some((distance, weights))
+    }
+
+    /// A point with the ray as the third axis; the first two are zero on the ray.
+    #[inline]
+    fn sheared(&self, point: [f64; 3]) -> [f64; 3] {
+        let [x, y, z] = self.axes.map(|axis| point[axis] - self.origin[axis]);
+        [x - self.shear[0] * z, y - self.shear[1] * z, z]
+    }
+}

@@ -1,0 +1,92 @@
+//! Things in a scene.
+
+use crate::shape::Body;
+use crate::transform::Placement;
+use crate::{Cut, Material, PreviewError, Shape, Surface, Transform};
+use core::fmt;
+use glam::DVec3;
+
+/// A shape that stands somewhere and looks like something.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::LinearRgb;
+/// use dapple_preview::{Material, Object, Shape, glam::DVec3};
+///
+/// let ball = Object::new(Shape::sphere(1.0), |surface| {
+///     let stripe = surface.position.y * 4.0;
+///     Material::matte(LinearRgb::gray((stripe - stripe.floor()) as f32))
+/// })
+/// .at(DVec3::new(0.0, 1.0, 0.0));
+/// # let _ = ball;
+/// ```
+pub struct Object<'a> {
+    shape: Shape,
+    transform: Transform,
+    cut: Option<Cut>,
+    look: Look<'a>,
+}
+
+/// What an object looks like at a point.
+type Look<'a> = Box<dyn Fn(&Surface) -> Material + Send + Sync + 'a>;
+
+impl<'a> Object<'a> {
+    /// A shape at the origin of the world that looks as `look` says.
+    ///
+    /// `look` is called from several threads, and has to be a function of the surface alone.
+    #[must_use]
+    pub fn new(shape: Shape, look: impl Fn(&Surface) -> Material + Send + Sync + 'a) -> Self {
+        Self {
+            shape,
+            transform: Transform::default(),
+            cut: None,
+            look: Box::new(look),
+        }
+    }
+
+    /// The same object with its origin elsewhere in the world.
+    #[must_use]
+    pub fn at(mut self, translation: DVec3) -> Self {
+        self.transform.translation = translation;
+        self
+    }
+
+    /// The same object with another way from its space to the world.
+    #[must_use]
+    pub fn with_transform(self, transform: Transform) -> Self {
+        Self { transform, ..self }
+    }
+
+    /// The same object cut open; for spheres and tori.
+    #[must_use]
+    pub fn with_cut(self, cut: Cut) -> Self {
+        let cut = Some(cut);
+        Self { cut, ..self }
+    }
+
+    pub(crate) fn prepare(&self) -> Result<Placed<'_>, PreviewError> {
+        Ok(Placed {
+            body: self.shape.prepare(self.cut)?,
+            placement: self.transform.prepare()?,
+            look: &*self.look,
+        })
+    }
+}
+
+impl fmt::Debug for Object<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Object")
+            .field("shape", &self.shape)
+            .field("transform", &self.transform)
+            .field("cut", &self.cut)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A checked object.
+pub(crate) struct Placed<'a> {
+    pub(crate) body: Body<'a>,
+    pub(crate) placement: Placement,
+    pub(crate) look: &'a (dyn Fn(&Surface) -> Material + Send + Sync + 'a),
+}

@@ -1,0 +1,61 @@
+//! Rays, and the frame around a direction.
+
+use glam::DVec3;
+
+/// A half line; `direction` has length 1, so that a parameter along it is a distance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ray {
+    pub(crate) origin: DVec3,
+    pub(crate) direction: DVec3,
+}
+
+impl Ray {
+    /// The point at a distance from the origin.
+    pub(crate) fn at(&self, distance: f64) -> DVec3 {
+        self.origin + self.direction * distance
+    }
+}
+
+/// Two unit vectors at right angles to a unit vector and to each other.
+///
+/// Reference: Tom Duff et al., "Building an Orthonormal Basis, Revisited", Journal of Computer Graphics Techniques 6(1),
+/// 2017.
+pub(crate) fn frame(normal: DVec3) -> [DVec3; 2] {
+    let sign = if normal.z < 0.0 { -1.0 } else { 1.0 };
+    let a = -1.0 / (sign + normal.z);
+    let b = normal.x * normal.y * a;
+    [
+        DVec3::new(
+            1.0 + sign * normal.x * normal.x * a,
+            sign * b,
+            -sign * normal.x,
+        ),
+        DVec3::new(b, sign + normal.y * normal.y * a, -normal.y),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::frame;
+    use glam::DVec3;
+
+    #[test]
+    fn frame_is_orthonormal_for_directions_all_around() {
+        for (x, y, z) in [
+            (0.0, 0.0, 1.0),
+            (0.0, 0.0, -1.0),
+            (1.0, 0.0, 0.0),
+            (0.3, -2.0, -0.4),
+            (-5.0, 1.0, 1e-9),
+        ] {
+            let normal = DVec3::new(x, y, z).normalize();
+            let [a, b] = frame(normal);
+            // A dozen roundings of numbers of size 1.
+            let zero = [a.dot(b), a.dot(normal), b.dot(normal)];
+            let one = [a.length() - 1.0, b.length() - 1.0];
+            for error in zero.into_iter().chain(one) {
+                assert!(error.abs() < 1e-14, "{normal}: {error}");
+            }
+        }
+    }
+}

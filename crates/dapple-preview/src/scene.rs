@@ -1,0 +1,145 @@
+//! A scene, and its picture.
+
+use crate::trace::{Path, World};
+use crate::{Camera, Environment, Light, Object, PreviewError};
+use dapple_color::LinearRgb;
+use dapple_raster::Raster;
+use glam::DVec2;
+
+/// The most samples per pixel along an axis.
+const SUPERSAMPLING_MAX: u32 = 64;
+/// The most times that a ray may be mirrored.
+const BOUNCES_MAX: u32 = 16;
+
+/// Objects, the light on them, and a camera that sees them.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::LinearRgb;
+/// use dapple_preview::{Camera, Light, Material, Object, Scene, Shape, Supersampling, glam::DVec3};
+///
+/// let gray = |_: &_| Material::matte(LinearRgb::gray(0.5));
+/// let scene = Scene::new(Camera::look_at(DVec3::new(0.0, 0.0, 4.0), DVec3::ZERO))
+///     .with_object(Object::new(Shape::sphere(1.0), gray))
+///     .with_light(Light::directional(DVec3::Z, LinearRgb::WHITE));
+/// let picture = scene.render([3, 3], Supersampling(1))?;
+/// assert_eq!(picture.row(1)[1], LinearRgb::gray(0.5));
+/// assert_eq!(picture.row(0)[0], LinearRgb::BLACK);
+/// # Ok::<(), dapple_preview::PreviewError>(())
+/// ```
+#[derive(Debug)]
+pub struct Scene<'a> {
+    /// Where the picture is seen from.
+    pub camera: Camera,
+    /// What is seen.
+    pub objects: Vec<Object<'a>>,
+    /// What lights it.
+    pub lights: Vec<Light>,
+    /// The light that comes from everywhere to every point and is never blocked. By default none.
+    pub ambient: LinearRgb,
+    /// What is seen where no object is. By default black.
+    pub environment: Environment<'a>,
+    /// How many times a ray that is mirrored sees the objects, from 0 to 16; after that it sees the environment only. By
+    /// default 1.
+    pub bounces: u32,
+}
+
+/// The side of the regular grid of samples within a pixel, from 1 to 64: its square is the number of samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Supersampling(pub u32);
+
+impl<'a> Scene<'a> {
+    /// A scene with nothing but a camera.
+    #[must_use]
+    pub fn new(camera: Camera) -> Self {
+        Self {
+            camera,
+            objects: Vec::new(),
+            lights: Vec::new(),
+            ambient: LinearRgb::BLACK,
+            environment: Environment::Constant(LinearRgb::BLACK),
+            bounces: 1,
+        }
+    }
+
+    /// The scene with one object more.
+    #[must_use]
+    pub fn with_object(mut self, object: Object<'a>) -> Self {
+        self.objects.push(object);
+        self
+    }
+
+    /// The scene with one light more.
+    #[must_use]
+    pub fn with_light(mut self, light: Light) -> Self {
+        self.lights.push(light);
+        self
+    }
+
+    /// The same scene with other light from everywhere.
+    #[must_use]
+    pub fn with_ambient(self, ambient: LinearRgb) -> Self {
+        Self { ambient, ..self }
+    }
+
+    /// The same scene with another environment.
+    #[must_use]
+    pub fn with_environment(self, environment: Environment<'a>) -> Self {
+        Self {
+            environment,
+            ..self
+        }
+    }
+
+    /// The same scene with another number of reflections.
+    #[must_use]
+    pub fn with_bounces(self, bounces: u32) -> Self {
+        Self { bounces, ..self }
+    }
+
+    /// The picture, `size` columns and rows, the top row first, on all cores where the feature `rayon` is on.
+    ///
+    /// Colors are linear, finite and not tone mapped: they may be above 1.
+    ///
+    /// # Errors
+    ///
+    /// [`Raster`](crate::PreviewErrorKind::Raster) for a size without pixels or past 2^31,
+    /// [`NoDirection`](crate::PreviewErrorKind::NoDirection) for a camera, a light or a cut that points nowhere,
+    /// [`NotSolid`](crate::PreviewErrorKind::NotSolid) for a cut through a plane or a mesh, and
+    /// [`Range`](crate::PreviewErrorKind::Range) for any number that is not finite or outside of its documented range.
+    pub fn render(
+        &self,
+        size: [u32; 2],
+        samples: Supersampling,
+    ) -> Result<Raster<LinearRgb>, PreviewError> {
+        let Supersampling(side) = samples;
+        let holds = (1..=SUPERSAMPLING_MAX).contains(&side);
+        let what = "supersampling";
+        PreviewError::check(holds, what, side.into(), "from 1 to 64")?;
+        let holds = self.bounces <= BOUNCES_MAX;
+        let what = "number of bounces";
+        PreviewError::check(holds, what, self.bounces.into(), "from 0 to 16")?;
+        let grid = size.map(|pixels| f64::from(pixels) * f64::from(side));
+        let view = self.camera.prepare(grid)?;
+        let world = World::new(self)?;
+        let pixel = |column: u32, row: u32| {
+            let corner = DVec2::new(column.into(), row.into()) * f64::from(side);
+            let mut sum = [0.0_f64; 3];
+            for index in 0..side * side {
+                let inside = DVec2::new((index % side).into(), (index / side).into()) + 0.5;
+                let path = Path::new(view.ray(corner + inside), view.sample, self.bounces);
+                let color = world.light(&path).to_array();
+                sum = core::array::from_fn(|part| sum[part] + f64::from(color[part]));
+            }
+            let count = f64::from(side * side);
+            LinearRgb::from(sum.map(|part| (part / count) as f32))
+        };
+        let pixel = &pixel;
+        let row = |row: u32| (0..size[0]).map(move |column| pixel(column, row));
+        Ok(Raster::from_rows(size, row)?)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,223 @@
+//! The shapes that a scene is made of, and how rays meet them.
+//!
+//! Closed shapes are met as solids: [`solid`] lists the stretches of a ray that are inside, [`cut`] takes some of them
+//! away, and what is left begins and ends at the skin or at the flat face of a cut.
+
+mod cut;
+mod solid;
+
+pub use cut::Cut;
+
+use crate::mesh::{Mesh, MeshHit};
+use crate::ray::Ray;
+use crate::surface::{Chart, Part};
+use crate::{PreviewError, PreviewErrorKind};
+use glam::{DVec2, DVec3};
+use solid::{Boundary, Skin, Solid};
+use std::sync::Arc;
+
+/// What an object is, in its own space.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Shape {
+    /// The plane `y = 0`, without an end.
+    Plane,
+    /// The part of the plane `y = 0` with x and z at most this far from zero.
+    Rectangle {
+        /// Half the sides along x and z, above zero.
+        half_size: DVec2,
+    },
+    /// A ball around the origin.
+    Sphere {
+        /// The radius, above zero.
+        radius: f64,
+    },
+    /// A ring around the y axis, in the plane `y = 0`.
+    Torus {
+        /// The radius of the circle in the middle of the tube.
+        major_radius: f64,
+        /// The radius of the tube, above zero and at most the major radius.
+        minor_radius: f64,
+    },
+    /// Triangles.
+    Mesh(Arc<Mesh>),
+}
+
+impl Shape {
+    /// A ball around the origin.
+    #[must_use]
+    pub fn sphere(radius: f64) -> Self {
+        Self::Sphere { radius }
+    }
+
+    /// A ring around the y axis: the radius of its middle circle, and that of its tube.
+    #[must_use]
+    pub fn torus(major_radius: f64, minor_radius: f64) -> Self {
+        Self::Torus {
+            major_radius,
+            minor_radius,
+        }
+    }
+
+    /// A rectangle in the plane `y = 0` around the origin, from half its sides along x and z.
+    #[must_use]
+    pub fn rectangle(half_x: f64, half_z: f64) -> Self {
+        let half_size = DVec2::new(half_x, half_z);
+        Self::Rectangle { half_size }
+    }
+
+    /// Triangles; pass an `Arc` to share them between objects.
+    #[must_use]
+    pub fn mesh(mesh: impl Into<Arc<Mesh>>) -> Self {
+        Self::Mesh(mesh.into())
+    }
+
+    pub(crate) fn prepare(&self, cut: Option<Cut>) -> Result<Body<'_>, PreviewError> {
+        let no_cut = |shape| match cut {
+            Some(_) => Err(PreviewError::new(PreviewErrorKind::NotSolid { shape })),
+            None => Ok(()),
+        };
+        let skin = match self {
+            Self::Plane => {
+                no_cut("plane")?;
+                let half_size = DVec2::INFINITY;
+                return Ok(Body::Flat { half_size });
+            }
+            Self::Rectangle { half_size } => {
+                no_cut("rectangle")?;
+                let half_size = *half_size;
+                PreviewError::check_length("half of a side of a rectangle", half_size.x)?;
+                PreviewError::check_length("half of a side of a rectangle", half_size.y)?;
+                return Ok(Body::Flat { half_size });
+            }
+            Self::Mesh(mesh) => {
+                no_cut("mesh")?;
+                return Ok(Body::Mesh(mesh));
+            }
+            Self::Sphere { radius } => {
+                PreviewError::check_length("radius of a sphere", *radius)?;
+                Skin::Sphere { radius: *radius }
+            }
+            Self::Torus {
+                major_radius,
+                minor_radius,
+            } => {
+                let [major, minor] = [*major_radius, *minor_radius];
+                PreviewError::check_length("major radius of a torus", major)?;
+                PreviewError::check_length("minor radius of a torus", minor)?;
+                let what = "minor radius of a torus";
+                let range = "at most the major radius";
+                PreviewError::check(minor <= major, what, minor, range)?;
+                Skin::Torus { major, minor }
+            }
+        };
+        let wedge = cut.map(|cut| cut.prepare()).transpose()?;
+        Ok(Body::Solid(Solid { skin, wedge }))
+    }
+}
+
+/// A checked shape.
+#[derive(Debug)]
+pub(crate) enum Body<'a> {
+    Flat { half_size: DVec2 },
+    Solid(Solid),
+    Mesh(&'a Mesh),
+}
+
+/// Where a ray meets a body: as little as is needed to compare it with others.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hit {
+    /// How far along the ray, above zero.
+    pub(crate) distance: f64,
+    face: HitFace,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum HitFace {
+    Flat,
+    Solid(Boundary),
+    Triangle(MeshHit),
+}
+
+/// What a body is like where a ray meets it, in the space of the object. The normals may point either way.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Detail {
+    pub(crate) position: DVec3,
+    pub(crate) geometric_normal: DVec3,
+    pub(crate) normal: DVec3,
+    pub(crate) part: Part,
+    pub(crate) chart: Chart,
+    /// Where shadow rays start: the position, or the smooth surface that a triangle stands for.
+    pub(crate) lit_position: DVec3,
+}
+
+impl Body<'_> {
+    /// The nearest point of the ray that is on the body, with a distance above zero and below `limit`.
+    pub(crate) fn hit(&self, ray: &Ray, limit: f64) -> Option<Hit> {
+        let (distance, face) = match self {
+            Body::Flat { half_size } => (flat_hit(ray, *half_size)?, HitFace::Flat),
+            Body::Solid(solid) => {
+                let boundary = solid.hit(ray)?;
+                (boundary.distance, HitFace::Solid(boundary))
+            }
+            Body::Mesh(mesh) => {
+                let hit = mesh.nearest(ray, limit)?;
+                (hit.distance, HitFace::Triangle(hit))
+            }
+        };
+        (distance < limit).then_some(Hit { distance, face })
+    }
+
+    /// Whether any point of the ray is on the body, with a distance above zero and below `limit`.
+    pub(crate) fn blocks(&self, ray: &Ray, limit: f64) -> bool {
+        match self {
+            Body::Mesh(mesh) => mesh.blocks(ray, limit),
+            Body::Flat { .. } | Body::Solid(_) => self.hit(ray, limit).is_some(),
+        }
+    }
+
+    /// All that is to be known of a hit of this ray.
+    pub(crate) fn detail(&self, ray: &Ray, hit: &Hit) -> Detail {
+        let position = ray.at(hit.distance);
+        match (self, hit.face) {
+            (Body::Solid(solid), HitFace::Solid(boundary)) => {
+                let (normal, part, chart) = solid.detail(position, boundary.face);
+                Detail::flat(position, normal, part, chart)
+            }
+            (Body::Mesh(mesh), HitFace::Triangle(hit)) => mesh.detail(position, &hit),
+            // A body gives no other hit than its own, so what is left is a plane.
+            _ => {
+                let position = DVec3::new(position.x, 0.0, position.z);
+                Detail::flat(position, DVec3::Y, Part::Skin, Chart::Plane)
+            }
+        }
+    }
+}
+
+impl Detail {
+    /// A point where the smooth surface is the true one.
+    fn flat(position: DVec3, normal: DVec3, part: Part, chart: Chart) -> Self {
+        Self {
+            position,
+            geometric_normal: normal,
+            normal,
+            part,
+            chart,
+            lit_position: position,
+        }
+    }
+}
+
+/// How far a ray is from the plane `y = 0`, where it meets it within the rectangle.
+fn flat_hit(ray: &Ray, half_size: DVec2) -> Option<f64> {
+    let distance = -ray.origin.y / ray.direction.y;
+    // Also false for NaN, which is a ray within the plane.
+    if !(distance > 0.0 && distance.is_finite()) {
+        return None;
+    }
+    let at = ray.at(distance);
+    (at.x.abs() <= half_size.x && at.z.abs() <= half_size.y).then_some(distance)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,154 @@
+//! Cuts through solids, which show a solid texture inside.
+//!
+//! A cut is a convex wedge of at most two half spaces, and either what is inside of it stays or what is outside. A ray is
+//! in a wedge along one stretch, so a cut is a matter of stretches: constructive solid geometry after Scott D. Roth, "Ray
+//! Casting for Modeling Solids", Computer Graphics and Image Processing 18(2), 1982, doi 10.1016/0146-664X(82)90169-1.
+
+use super::solid::{Boundary, Face, Stretch};
+use crate::PreviewError;
+use crate::ray::Ray;
+use core::f64::consts::{PI, TAU};
+use glam::DVec3;
+
+/// What is left of a solid, in the space of the object. The faces of the cut are closed and belong to the solid.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_preview::{Cut, glam::DVec3};
+/// use std::f64::consts::{FRAC_PI_2, PI};
+///
+/// // The lower half, and all but the quarter between +x and -z.
+/// let half = Cut::HalfSpace { normal: DVec3::Y, offset: 0.0 };
+/// let three_quarters = Cut::Sector { start: FRAC_PI_2, sweep: 1.5 * PI };
+/// # let _ = (half, three_quarters);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Cut {
+    /// Keeps the points `p` with `normal · p ≤ offset` for the normal made as long as 1.
+    HalfSpace {
+        /// Points to what is taken away; any length but zero.
+        normal: DVec3,
+        /// How far the face is from the origin along the normal.
+        offset: f64,
+    },
+    /// Keeps the points whose angle around the y axis is in a range.
+    Sector {
+        /// Where the range begins, in radians: 0 is +x, π/2 is -z.
+        start: f64,
+        /// How long the range is, in radians, above 0 and below 2π.
+        sweep: f64,
+    },
+}
+
+/// A checked cut.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wedge {
+    /// The outward unit normals and offsets of the half spaces; the second may be the first again.
+    faces: [(DVec3, f64); 2],
+    keeps: Keeps,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Keeps {
+    Inside,
+    Outside,
+}
+
+impl Cut {
+    pub(crate) fn prepare(&self) -> Result<Wedge, PreviewError> {
+        match *self {
+            Self::HalfSpace { normal, offset } => {
+                let normal = PreviewError::direction("normal of a cut", normal)?;
+                let holds = offset.abs() <= 1e30;
+                PreviewError::check(holds, "offset of a cut", offset, "from -1e30 to 1e30")?;
+                Ok(Wedge {
+                    faces: [(normal, offset); 2],
+                    keeps: Keeps::Inside,
+                })
+            }
+            Self::Sector { start, sweep } => {
+                let holds = start.abs() <= 1e3;
+                PreviewError::check(holds, "start of a sector", start, "from -1000 to 1000")?;
+                let holds = sweep > 0.0 && sweep < TAU;
+                let range = "above 0 and below 2π";
+                PreviewError::check(holds, "sweep of a sector", sweep, range)?;
+                // The wedge is the smaller of the sector and the rest.
+                Ok(if sweep <= PI {
+                    Wedge::sector(start, sweep, Keeps::Inside)
+                } else {
+                    Wedge::sector(start + sweep, TAU - sweep, Keeps::Outside)
+                })
+            }
+        }
+    }
+}
+
+impl Wedge {
+    /// A wedge around the y axis, of at most half a turn.
+    fn sector(start: f64, sweep: f64, keeps: Keeps) -> Self {
+        // A quarter of a turn ahead of an angle, by its sine and cosine.
+        let ahead = |angle: f64| DVec3::new(-libm::sin(angle), 0.0, -libm::cos(angle));
+        Self {
+            faces: [(-ahead(start), 0.0), (ahead(start + sweep), 0.0)],
+            keeps,
+        }
+    }
+
+    /// The normal of a face, either way.
+    pub(crate) fn normal(&self, face: usize) -> DVec3 {
+        self.faces[face].0
+    }
+
+    /// What is left of the stretches of a ray within a solid. `None` has no length.
+    pub(crate) fn apply(&self, ray: &Ray, stretches: [Option<Stretch>; 2]) -> [Option<Stretch>; 4] {
+        let wedge = self.stretch(ray);
+        match (self.keeps, wedge) {
+            (Keeps::Inside, None) => [None; 4],
+            (Keeps::Outside, None) => [stretches[0], stretches[1], None, None],
+            (Keeps::Inside, Some(wedge)) => {
+                let [a, b] = stretches.map(|stretch| stretch?.and(wedge));
+                [a, b, None, None]
+            }
+            (Keeps::Outside, Some(wedge)) => {
+                let [a, b] = stretches.map(|stretch| {
+                    stretch.map_or([None; 2], |stretch| {
+                        [stretch.before(wedge.enter), stretch.after(wedge.exit)]
+                    })
+                });
+                [a[0], a[1], b[0], b[1]]
+            }
+        }
+    }
+
+    /// The stretch of a ray that is in all half spaces, possibly without an end.
+    fn stretch(&self, ray: &Ray) -> Option<Stretch> {
+        let end = |distance| Boundary {
+            distance,
+            face: Face::Skin,
+        };
+        let mut stretch = Stretch {
+            enter: end(f64::NEG_INFINITY),
+            exit: end(f64::INFINITY),
+        };
+        for (index, (normal, offset)) in self.faces.iter().enumerate() {
+            let outside = normal.dot(ray.origin) - offset;
+            let speed = normal.dot(ray.direction);
+            let boundary = Boundary {
+                distance: -outside / speed,
+                face: Face::Cut(index),
+            };
+            stretch = if speed > 0.0 {
+                stretch.before(boundary)?
+            } else if speed < 0.0 {
+                stretch.after(boundary)?
+            } else if outside > 0.0 {
+                return None;
+            } else {
+                stretch
+            };
+        }
+        Some(stretch)
+    }
+}

@@ -1,0 +1,283 @@
+//! Spheres and tori as solids: the stretches of a ray that are inside.
+//!
+//! A torus is met where a quartic is zero. Along a ray from its point nearest to the center the quartic has no cubic term,
+//! and its roots are isolated by those of its derivatives, each found by Newton steps that never leave a bracket with a
+//! change of sign: Cem Yuksel, "High-Performance Polynomial Root Finding for Graphics", Proceedings of the ACM on Computer
+//! Graphics and Interactive Techniques 5(3), 2022, doi 10.1145/3543865. Only `+ − × ÷ sqrt` are used. Where a ray touches
+//! the torus in a double root, rounding decides; either answer is a stretch of next to no length.
+
+use super::cut::Wedge;
+use crate::ray::Ray;
+use crate::surface::{Chart, Part};
+use glam::DVec3;
+
+/// More steps than bisection needs to reach neighboring numbers from a bracket of any size that a torus has.
+const ROOT_STEPS_MAX: u32 = 128;
+
+/// A closed surface that fills its inside.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Skin {
+    Sphere { radius: f64 },
+    Torus { major: f64, minor: f64 },
+}
+
+/// A closed surface with its inside, cut or whole.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Solid {
+    pub(crate) skin: Skin,
+    pub(crate) wedge: Option<Wedge>,
+}
+
+/// Which surface a ray goes through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Face {
+    Skin,
+    /// A face of the wedge.
+    Cut(usize),
+}
+
+/// Where a ray goes in or out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Boundary {
+    pub(crate) distance: f64,
+    pub(crate) face: Face,
+}
+
+/// A part of a ray that is inside, longer than nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stretch {
+    pub(crate) enter: Boundary,
+    pub(crate) exit: Boundary,
+}
+
+impl Stretch {
+    fn checked(self) -> Option<Self> {
+        (self.enter.distance < self.exit.distance).then_some(self)
+    }
+
+    /// What is left before a boundary.
+    pub(crate) fn before(mut self, end: Boundary) -> Option<Self> {
+        if end.distance < self.exit.distance {
+            self.exit = end;
+        }
+        self.checked()
+    }
+
+    /// What is left after a boundary.
+    pub(crate) fn after(mut self, start: Boundary) -> Option<Self> {
+        if start.distance > self.enter.distance {
+            self.enter = start;
+        }
+        self.checked()
+    }
+
+    /// What is in both.
+    pub(crate) fn and(self, other: Self) -> Option<Self> {
+        self.after(other.enter)?.before(other.exit)
+    }
+}
+
+impl Solid {
+    /// The first boundary at a distance above zero.
+    pub(crate) fn hit(&self, ray: &Ray) -> Option<Boundary> {
+        let stretches = self.skin.stretches(ray);
+        let stretches = match &self.wedge {
+            Some(wedge) if stretches[0].is_some() => wedge.apply(ray, stretches),
+            _ => [stretches[0], stretches[1], None, None],
+        };
+        // The stretches are in order and apart.
+        let boundaries = stretches.iter().flatten().flat_map(|s| [s.enter, s.exit]);
+        boundaries
+            .into_iter()
+            .find(|boundary| boundary.distance > 0.0)
+    }
+
+    /// The unit normal, outward on the skin and either way on a cut, and what surface it is.
+    pub(crate) fn detail(&self, position: DVec3, face: Face) -> (DVec3, Part, Chart) {
+        match (face, &self.wedge) {
+            (Face::Cut(index), Some(wedge)) => (wedge.normal(index), Part::Cut, Chart::None),
+            _ => {
+                let (normal, chart) = self.skin.detail(position);
+                (normal, Part::Skin, chart)
+            }
+        }
+    }
+}
+
+impl Skin {
+    /// The parts of a ray that are inside, in order, those behind the origin included.
+    fn stretches(&self, ray: &Ray) -> [Option<Stretch>; 2] {
+        // The point of the ray nearest to the center, from which distances are small.
+        let middle = -ray.origin.dot(ray.direction);
+        let nearest = ray.at(middle);
+        let stretch = |[enter, exit]: [f64; 2]| {
+            let at = |distance: f64| Boundary {
+                distance: middle + distance,
+                face: Face::Skin,
+            };
+            let stretch = Stretch {
+                enter: at(enter),
+                exit: at(exit),
+            };
+            stretch.checked()
+        };
+        match *self {
+            Self::Sphere { radius } => {
+                let half_sq = radius * radius - nearest.length_squared();
+                let half = half_sq.max(0.0).sqrt();
+                [stretch([-half, half]), None]
+            }
+            Self::Torus { major, minor } => {
+                let nearest = Ray {
+                    origin: nearest,
+                    direction: ray.direction,
+                };
+                torus_stretches(&nearest, major, minor).map(|ends| stretch(ends?))
+            }
+        }
+    }
+
+    fn detail(&self, position: DVec3) -> (DVec3, Chart) {
+        match *self {
+            Self::Sphere { .. } => (position.normalize_or(DVec3::Y), Chart::Sphere),
+            Self::Torus { major, .. } => {
+                let outward = DVec3::new(position.x, 0.0, position.z).normalize_or(DVec3::X);
+                let normal = (position - outward * major).normalize_or(DVec3::Y);
+                let major_radius = major;
+                (normal, Chart::Torus { major_radius })
+            }
+        }
+    }
+}
+
+/// Where a ray that starts at its point nearest to the center of a torus goes in and out.
+fn torus_stretches(nearest: &Ray, major: f64, minor: f64) -> [Option<[f64; 2]>; 2] {
+    let [origin, direction] = [nearest.origin, nearest.direction];
+    // In units of the outer radius, within which the torus is.
+    let unit = major + minor;
+    let (origin, major, minor) = (origin / unit, major / unit, minor / unit);
+    let reach_sq = 1.0 - origin.length_squared();
+    if reach_sq <= 0.0 {
+        return [None; 2];
+    }
+    let reach = reach_sq.sqrt();
+    if (origin.y.abs() - direction.y.abs() * reach) > minor {
+        return [None; 2];
+    }
+    let quartic = Quartic::of_torus(origin, direction, [major, minor]);
+    let mut ends = [[0.0; 2]; 2];
+    let (mut count, mut from) = (0, -reach);
+    // Inside from the start only if the ray touches the sphere around it all, by rounding.
+    let mut enter = (quartic.at(from) < 0.0).then_some(from);
+    for to in quartic.turns(reach).into_iter().chain([reach]) {
+        let root = quartic.root([from, to]);
+        match (enter, root) {
+            (None, Some(root)) => enter = Some(root),
+            (Some(start), Some(root)) if count < 2 => {
+                ends[count] = [start, root];
+                count += 1;
+                enter = None;
+            }
+            _ => {}
+        }
+        from = to;
+    }
+    // Inside to the end only if the ray touches that sphere again, by rounding.
+    if let Some(start) = enter
+        && count < 2
+    {
+        ends[count] = [start, reach];
+        count += 1;
+    }
+    let end = |index: usize| (index < count).then(|| ends[index].map(|end| end * unit));
+    [end(0), end(1)]
+}
+
+/// The polynomial `t⁴ + c[2] t² + c[1] t + c[0]`.
+#[derive(Clone, Copy, Debug)]
+struct Quartic {
+    c: [f64; 3],
+}
+
+impl Quartic {
+    /// Below zero where a ray is inside of a torus; the ray starts at its point nearest to the center.
+    ///
+    /// Inside is `(|p|² + R² - r²)² < 4 R² (x² + z²)`, and `|p|² = |o|² + t²` since o and d are at right angles.
+    fn of_torus(origin: DVec3, direction: DVec3, [major, minor]: [f64; 2]) -> Self {
+        let four_major_sq = 4.0 * major * major;
+        let a = origin.length_squared() + (major - minor) * (major + minor);
+        let level = direction.x * direction.x + direction.z * direction.z;
+        let outward_sq = origin.x * origin.x + origin.z * origin.z;
+        Self {
+            c: [
+                a * a - four_major_sq * outward_sq,
+                2.0 * four_major_sq * origin.y * direction.y,
+                2.0 * a - four_major_sq * level,
+            ],
+        }
+    }
+
+    fn at(&self, t: f64) -> f64 {
+        let [c0, c1, c2] = self.c;
+        ((t * t + c2) * t + c1) * t + c0
+    }
+
+    fn slope(&self, t: f64) -> f64 {
+        let [_, c1, c2] = self.c;
+        (4.0 * t * t + 2.0 * c2) * t + c1
+    }
+
+    /// The places between `-reach` and `reach`, in order, between which the quartic only rises or only falls.
+    fn turns(&self, reach: f64) -> [f64; 3] {
+        let [_, _, c2] = self.c;
+        // The slope turns where 12 t² + 2 c2 is zero.
+        let turn = (-c2 / 6.0).max(0.0).sqrt().min(reach);
+        let slope = |t: f64| (self.slope(t), 12.0 * t * t + 2.0 * c2);
+        let [mut turns, brackets] = [[-reach, 0.0, reach], [-reach, -turn, turn]];
+        let ends = [-turn, turn, reach];
+        for (place, (from, to)) in turns.iter_mut().zip(brackets.into_iter().zip(ends)) {
+            // A slope without a root here leaves the quartic monotonic, and any place of the bracket will do.
+            *place = bracketed_root([from, to], slope).unwrap_or(from);
+        }
+        turns
+    }
+
+    /// The root between two places between which the quartic only rises or only falls.
+    fn root(&self, bracket: [f64; 2]) -> Option<f64> {
+        bracketed_root(bracket, |t| (self.at(t), self.slope(t)))
+    }
+}
+
+/// The root of a function that has a change of sign in a bracket, from its value and its slope.
+///
+/// Newton steps, and a bisection where a step would leave the bracket or the bracket has hardly become shorter.
+fn bracketed_root([low, high]: [f64; 2], function: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
+    let [mut low, mut high] = [low, high];
+    let [at_low, at_high] = [low, high].map(|t| function(t).0);
+    if (at_low < 0.0) == (at_high < 0.0) {
+        return None;
+    }
+    let rises = at_low < 0.0;
+    let mut t = 0.5 * (low + high);
+    for step in 0..ROOT_STEPS_MAX {
+        let (value, slope) = function(t);
+        if (value < 0.0) == rises {
+            low = t;
+        } else {
+            high = t;
+        }
+        let newton = t - value / slope;
+        // Also for a slope of zero, which gives infinity or NaN; every eighth step bisects, so that the bracket shrinks.
+        let inside = newton > low && newton < high;
+        let next = if inside && step % 8 != 7 {
+            newton
+        } else {
+            0.5 * (low + high)
+        };
+        if (next - t).abs() <= 1e-15 || value == 0.0 {
+            return Some(if value == 0.0 { t } else { next });
+        }
+        t = next;
+    }
+    Some(t)
+}

@@ -1,0 +1,76 @@
+//! What is known of a surface where a ray meets it.
+
+use core::f64::consts::{PI, TAU};
+use glam::{DVec2, DVec3};
+
+/// A point of a surface that is about to be shaded.
+///
+/// Positions and normals without a word about their space are in the space of the object, so that a solid texture sticks
+/// to the object. Normals are unit vectors and point to the side that is seen.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Surface {
+    /// Where the point is, in the space of the object.
+    pub position: DVec3,
+    /// Where the point is, in the world.
+    pub world_position: DVec3,
+    /// The normal of the smooth surface: for a mesh, mixed from those of the corners.
+    pub normal: DVec3,
+    /// The normal of the true surface: for a mesh, that of the triangle.
+    pub geometric_normal: DVec3,
+    /// Whether this is the skin of the shape or the flat face of a cut.
+    pub part: Part,
+    /// The width of a sample of the picture across the ray, in units of the object: what is finer cannot be shown.
+    ///
+    /// Along the slope of a surface that is seen at a slant it is wider: `footprint / incidence`.
+    pub footprint: f64,
+    /// The cosine of the angle between the ray and `geometric_normal`: 1 seen straight, toward 0 at a slant.
+    pub incidence: f64,
+    pub(crate) chart: Chart,
+}
+
+/// A part of a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Part {
+    /// The surface that the shape has anyway.
+    Skin,
+    /// The flat face where a solid was cut.
+    Cut,
+}
+
+/// How a shape is laid out flat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Chart {
+    None,
+    Plane,
+    Sphere,
+    Torus { major_radius: f64 },
+}
+
+impl Surface {
+    /// Coordinates on the surface, where the shape has them: on the skin of all shapes but meshes.
+    ///
+    /// * Plane and rectangle: x and z, in units of the object. Seen from above with -z up, u goes right and v down.
+    /// * Sphere: the angle around y from +x toward -z, and the angle from +y, as parts of a turn and of half a turn: both
+    ///   from 0 to 1, with v = 0 at the top.
+    /// * Torus: the angle around y as on a sphere, and the angle around the tube from the outside toward +y, both as parts
+    ///   of a turn, from 0 to 1.
+    #[must_use]
+    pub fn uv(&self) -> Option<DVec2> {
+        let at = self.position;
+        let turn = |y: f64, x: f64| {
+            let part = libm::atan2(y, x) / TAU;
+            if part < 0.0 { part + 1.0 } else { part }
+        };
+        let around = || turn(-at.z, at.x);
+        let outward = || (at.x * at.x + at.z * at.z).sqrt();
+        match self.chart {
+            Chart::None => None,
+            Chart::Plane => Some(DVec2::new(at.x, at.z)),
+            Chart::Sphere => Some(DVec2::new(around(), libm::atan2(outward(), at.y) / PI)),
+            Chart::Torus { major_radius } => {
+                Some(DVec2::new(around(), turn(at.y, outward() - major_radius)))
+            }
+        }
+    }
+}

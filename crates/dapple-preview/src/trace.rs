@@ -1,0 +1,240 @@
+//! The light that comes along a ray.
+
+use crate::bump::{bump_shadow, bumped, facing};
+use crate::light::{Incoming, Lamp};
+use crate::material::clean;
+use crate::object::Placed;
+use crate::ray::Ray;
+use crate::shape::Detail;
+use crate::shape::Hit;
+use crate::{Environment, Material, PreviewError, Scene, Surface};
+use dapple_color::LinearRgb;
+use glam::DVec3;
+
+/// How far rays start from a surface, as a part of the largest of the numbers that the point was computed from: well above
+/// their rounding, which is about 1e-15, and below what can be seen.
+const LIFT: f64 = 1e-9;
+
+/// A ray that light comes along, and its history.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Path {
+    ray: Ray,
+    /// The length of the path before this ray.
+    length: f64,
+    /// The width of a sample of the picture at the distance 1.
+    sample: f64,
+    bounces: u32,
+}
+
+impl Path {
+    /// A path from an eye.
+    pub(crate) fn new(ray: Ray, sample: f64, bounces: u32) -> Self {
+        Self {
+            ray,
+            length: 0.0,
+            sample,
+            bounces,
+        }
+    }
+}
+
+/// A checked scene.
+pub(crate) struct World<'a> {
+    objects: Vec<Placed<'a>>,
+    lamps: Vec<Lamp>,
+    ambient: LinearRgb,
+    environment: &'a Environment<'a>,
+}
+
+/// A surface in the world, about to be lit.
+struct Lit {
+    /// The unit vector to the eye.
+    to_eye: DVec3,
+    /// The unit normal of the smooth surface.
+    smooth: DVec3,
+    /// The unit normal with its bumps.
+    normal: DVec3,
+    /// Where the light is looked up.
+    position: DVec3,
+    /// Where shadow rays start.
+    shadow_origin: DVec3,
+}
+
+impl<'a> World<'a> {
+    pub(crate) fn new(scene: &'a Scene<'_>) -> Result<Self, PreviewError> {
+        scene.environment.check()?;
+        let objects: Result<_, _> = scene
+            .objects
+            .iter()
+            .map(|object| object.prepare())
+            .collect();
+        let lamps: Result<_, _> = scene.lights.iter().map(|light| light.prepare()).collect();
+        Ok(World {
+            objects: objects?,
+            lamps: lamps?,
+            ambient: clean(scene.ambient),
+            environment: &scene.environment,
+        })
+    }
+
+    /// The light that comes along a path, finite.
+    pub(crate) fn light(&self, path: &Path) -> LinearRgb {
+        let light = match self.nearest(&path.ray) {
+            Some((object, hit, distance)) => self.surface_light(path, object, &hit, distance),
+            None => self.background(path.ray.direction),
+        };
+        // Materials and lights of enormous numbers overflow; what they stand for is very bright.
+        let finite = |part: f32| match part {
+            part if part.is_nan() => 0.0,
+            part => part.clamp(f32::MIN, f32::MAX),
+        };
+        light.to_array().map(finite).into()
+    }
+
+    fn background(&self, direction: DVec3) -> LinearRgb {
+        clean(self.environment.light(direction))
+    }
+
+    /// The first object that a ray meets; of several at one distance the first of the list.
+    fn nearest(&self, ray: &Ray) -> Option<(&Placed<'a>, Hit, f64)> {
+        let mut best = None;
+        let mut limit = f64::INFINITY;
+        for object in &self.objects {
+            let scale = object.placement.scale;
+            let own_ray = object.placement.ray_to_object(ray);
+            if let Some(hit) = object.body.hit(&own_ray, limit / scale) {
+                limit = hit.distance * scale;
+                best = Some((object, hit, limit));
+            }
+        }
+        best
+    }
+
+    /// Whether something is along a ray before a distance.
+    fn blocked(&self, ray: &Ray, distance: f64) -> bool {
+        self.objects.iter().any(|object| {
+            let own_ray = object.placement.ray_to_object(ray);
+            let limit = distance / object.placement.scale;
+            object.body.blocks(&own_ray, limit)
+        })
+    }
+
+    fn surface_light(
+        &self,
+        path: &Path,
+        object: &Placed<'_>,
+        hit: &Hit,
+        distance: f64,
+    ) -> LinearRgb {
+        let placement = &object.placement;
+        let own_ray = placement.ray_to_object(&path.ray);
+        let detail = seen(object.body.detail(&own_ray, hit), -own_ray.direction);
+        let length = path.length + distance;
+        let position = placement.point_to_world(detail.position);
+        let surface = Surface {
+            position: detail.position,
+            world_position: position,
+            normal: detail.normal,
+            geometric_normal: detail.geometric_normal,
+            part: detail.part,
+            footprint: length * path.sample / placement.scale,
+            incidence: -detail.geometric_normal.dot(own_ray.direction),
+            chart: detail.chart,
+        };
+        let material = (object.look)(&surface).cleaned();
+        let normal = bumped(detail.normal, material.bump, -own_ray.direction);
+        let geometric_normal = placement.direction_to_world(detail.geometric_normal);
+        let size = position.abs().max_element().max(length);
+        let lift = geometric_normal * (LIFT * size);
+        let lit = Lit {
+            to_eye: -path.ray.direction,
+            smooth: placement.direction_to_world(detail.normal),
+            normal: placement.direction_to_world(normal),
+            position,
+            shadow_origin: placement.point_to_world(detail.lit_position) + lift,
+        };
+        let part = material.mirror.part(lit.normal.dot(lit.to_eye));
+        let [scattered, highlights] = self.local_light(&lit, &material);
+        let mut light = scattered * (1.0 - part) + highlights + material.emission;
+        if part > 0.0 {
+            let ray = Ray {
+                origin: position + lift,
+                direction: mirrored(path.ray.direction, lit.normal, geometric_normal),
+            };
+            let seen = match path.bounces.checked_sub(1) {
+                None => self.background(ray.direction),
+                Some(bounces) => self.light(&Path {
+                    ray,
+                    length,
+                    sample: path.sample,
+                    bounces,
+                }),
+            };
+            light = light + seen * part;
+        }
+        light
+    }
+
+    /// What a surface scatters of the lights and of the ambient light, and its highlights.
+    fn local_light(&self, lit: &Lit, material: &Material) -> [LinearRgb; 2] {
+        let mut scattered = times(material.color, self.ambient);
+        let mut highlights = LinearRgb::BLACK;
+        let slope = lit.smooth.dot(lit.normal);
+        for lamp in &self.lamps {
+            let Some(incoming) = lamp.incoming(lit.position) else {
+                continue;
+            };
+            let toward = incoming.toward;
+            let cosine = lit.normal.dot(toward);
+            let seen = bump_shadow(lit.smooth.dot(toward), slope);
+            if cosine <= 0.0 || seen <= 0.0 {
+                continue;
+            }
+            let free = lamp.visible(&incoming, |direction, distance| {
+                let origin = lit.shadow_origin;
+                self.blocked(&Ray { origin, direction }, distance)
+            });
+            if free <= 0.0 {
+                continue;
+            }
+            let color = incoming.color * (free * seen as f32);
+            scattered = scattered + times(material.color, color) * cosine as f32;
+            highlights = highlights + color * highlight(lit, &incoming, material);
+        }
+        [scattered, highlights]
+    }
+}
+
+/// The detail with its normals on the side of the eye.
+fn seen(mut detail: Detail, to_eye: DVec3) -> Detail {
+    if detail.geometric_normal.dot(to_eye) < 0.0 {
+        detail.geometric_normal = -detail.geometric_normal;
+    }
+    if detail.normal.dot(detail.geometric_normal) < 0.0 {
+        detail.normal = -detail.normal;
+    }
+    detail.normal = facing(detail.normal, to_eye);
+    detail
+}
+
+/// The strength of the highlight of a light, after Blinn.
+fn highlight(lit: &Lit, incoming: &Incoming, material: &Material) -> f32 {
+    if material.specular <= 0.0 {
+        return 0.0;
+    }
+    let half = (lit.to_eye + incoming.toward).normalize_or_zero();
+    let cosine = lit.normal.dot(half).clamp(0.0, 1.0);
+    material.specular * libm::pow(cosine, material.shininess.into()) as f32
+}
+
+/// The direction of a ray after a mirror with bumps; one that would go into the surface is mirrored out of it again.
+fn mirrored(direction: DVec3, normal: DVec3, geometric_normal: DVec3) -> DVec3 {
+    let away = direction - normal * (2.0 * direction.dot(normal));
+    let depth = away.dot(geometric_normal).min(0.0);
+    (away - geometric_normal * (2.0 * depth)).normalize_or(geometric_normal)
+}
+
+/// The product of two colors, channel by channel.
+fn times(a: LinearRgb, b: LinearRgb) -> LinearRgb {
+    LinearRgb::new(a.r * b.r, a.g * b.g, a.b * b.b)
+}

@@ -1,0 +1,109 @@
+//! Where an object stands in the world.
+
+use crate::PreviewError;
+use crate::ray::Ray;
+use glam::{DMat3, DQuat, DVec3};
+
+/// From an object's own space to the world: a scale, then a rotation, then a translation.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_preview::{Transform, glam::{DQuat, DVec3}};
+///
+/// let tilted = Transform::from_translation(DVec3::Y).with_rotation(DQuat::from_rotation_x(0.3));
+/// assert_eq!(tilted.scale, 1.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transform {
+    /// Where the origin of the object is in the world. By default the origin.
+    pub translation: DVec3,
+    /// How the object is turned. By default not at all; of another length than 1 it is normalized.
+    pub rotation: DQuat,
+    /// How many units of the world one unit of the object is, above zero. By default 1.
+    pub scale: f64,
+}
+
+impl Default for Transform {
+    fn default() -> Self {
+        Self::from_translation(DVec3::ZERO)
+    }
+}
+
+impl Transform {
+    /// A move without rotation and scale.
+    #[must_use]
+    pub fn from_translation(translation: DVec3) -> Self {
+        Self {
+            translation,
+            rotation: DQuat::IDENTITY,
+            scale: 1.0,
+        }
+    }
+
+    /// The same with another rotation.
+    #[must_use]
+    pub fn with_rotation(self, rotation: DQuat) -> Self {
+        Self { rotation, ..self }
+    }
+
+    /// The same with another scale.
+    #[must_use]
+    pub fn with_scale(self, scale: f64) -> Self {
+        Self { scale, ..self }
+    }
+
+    pub(crate) fn prepare(&self) -> Result<Placement, PreviewError> {
+        PreviewError::check_vector("translation of an object", self.translation)?;
+        PreviewError::check_length("scale of an object", self.scale)?;
+        let length = self.rotation.length();
+        let holds = (1e-9..=1e9).contains(&length);
+        let what = "length of a rotation as a quaternion";
+        PreviewError::check(holds, what, length, "from 1e-9 to 1e9")?;
+        Ok(Placement {
+            translation: self.translation,
+            rotation: DMat3::from_quat(self.rotation * (1.0 / length)),
+            scale: self.scale,
+        })
+    }
+}
+
+/// A checked transform, with the rotation as a matrix.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placement {
+    translation: DVec3,
+    rotation: DMat3,
+    pub(crate) scale: f64,
+}
+
+impl Placement {
+    /// A direction of the world in the space of the object, as long as before.
+    pub(crate) fn direction_to_object(&self, direction: DVec3) -> DVec3 {
+        // The transpose of a rotation is its inverse.
+        DVec3::new(
+            self.rotation.x_axis.dot(direction),
+            self.rotation.y_axis.dot(direction),
+            self.rotation.z_axis.dot(direction),
+        )
+    }
+
+    /// A direction of the object in the world, as long as before.
+    pub(crate) fn direction_to_world(&self, direction: DVec3) -> DVec3 {
+        self.rotation.x_axis * direction.x
+            + self.rotation.y_axis * direction.y
+            + self.rotation.z_axis * direction.z
+    }
+
+    /// A point of the object in the world.
+    pub(crate) fn point_to_world(&self, point: DVec3) -> DVec3 {
+        self.direction_to_world(point) * self.scale + self.translation
+    }
+
+    /// A ray of the world in the space of the object; distances along it are in units of the object.
+    pub(crate) fn ray_to_object(&self, ray: &Ray) -> Ray {
+        Ray {
+            origin: self.direction_to_object(ray.origin - self.translation) / self.scale,
+            direction: self.direction_to_object(ray.direction),
+        }
+    }
+}
