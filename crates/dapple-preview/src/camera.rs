@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 
 /// A perspective camera: an eye that looks at a point.
 ///
-/// Row 0 of the picture is the top, where `up` points; x to the right, y up and the view make a left-handed triple, so in
-/// a world with y up a camera on the positive z axis sees x to the right.
+/// Row 0 of the picture is the top, where `up` points. With y up, a camera on the positive z axis that looks at the origin
+/// sees x to the right.
 ///
 /// # Examples
 ///

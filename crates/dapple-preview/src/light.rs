@@ -222,3 +222,44 @@ impl Lamp {
         free.count() as f32 / self.pattern.len() as f32
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Falloff, Light, LightSource, Shadows};
+    use dapple_color::LinearRgb;
+    use glam::DVec3;
+
+    #[test]
+    fn point_light_falls_off_with_the_square_of_the_distance() {
+        let light = Light {
+            source: LightSource::Point {
+                position: DVec3::ZERO,
+                falloff: Falloff::InverseSquare(3.0),
+            },
+            color: LinearRgb::WHITE,
+            shadows: Shadows::None,
+        };
+        let lamp = light.prepare().unwrap();
+        let at = |x: f64| lamp.incoming(DVec3::X * x).map(|light| light.color);
+        assert_eq!(at(3.0), Some(LinearRgb::WHITE), "at its distance");
+        assert_eq!(at(6.0), Some(LinearRgb::gray(0.25)), "twice as far");
+        assert_eq!(at(0.0), None, "where the light is");
+    }
+
+    #[test]
+    fn soft_light_is_seen_through_a_hole_in_the_middle_by_its_share() {
+        let soft = Shadows::Soft {
+            radius: 0.2,
+            rays: 100,
+        };
+        let light = Light::point(DVec3::Z * 4.0, LinearRgb::WHITE).with_shadows(soft);
+        let lamp = light.prepare().unwrap();
+        let incoming = lamp.incoming(DVec3::ZERO).unwrap();
+        // Half of the radius is a quarter of the disk, and the pattern has equal shares of area.
+        let edge = 0.1 / 4.0;
+        let part = lamp.visible(&incoming, |direction, _| {
+            (direction / direction.z).truncate().length() > edge
+        });
+        assert_eq!(part, 0.25);
+    }
+}

@@ -1,5 +1,6 @@
 //! Triangle meshes, ready for rays.
 
+mod build;
 mod bvh;
 mod triangle;
 
@@ -7,7 +8,8 @@ use crate::ray::Ray;
 use crate::shape::Detail;
 use crate::surface::{Chart, Part};
 use crate::{PreviewError, PreviewErrorKind};
-use bvh::{Bounds, Bvh};
+use build::Bounds;
+use bvh::Bvh;
 use core::fmt;
 use glam::DVec3;
 use triangle::{Corners, Probe};

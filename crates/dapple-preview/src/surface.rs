@@ -74,3 +74,50 @@ impl Surface {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Chart, Part, Surface};
+    use glam::{DVec2, DVec3};
+
+    fn uv(chart: Chart, position: DVec3) -> Option<DVec2> {
+        let surface = Surface {
+            position,
+            world_position: position,
+            normal: DVec3::Y,
+            geometric_normal: DVec3::Y,
+            part: Part::Skin,
+            footprint: 0.0,
+            incidence: 1.0,
+            chart,
+        };
+        surface.uv()
+    }
+
+    #[test]
+    fn uv_of_a_sphere_goes_around_from_x_to_minus_z_and_down() {
+        let at = |x, y, z| uv(Chart::Sphere, DVec3::new(x, y, z)).unwrap();
+        assert_eq!(at(2.0, 0.0, 0.0), DVec2::new(0.0, 0.5), "+x");
+        assert_eq!(at(0.0, 0.0, -2.0), DVec2::new(0.25, 0.5), "-z");
+        assert_eq!(at(0.0, 0.0, 2.0), DVec2::new(0.75, 0.5), "+z");
+        assert_eq!(at(0.0, 2.0, 0.0).y, 0.0, "top");
+        assert_eq!(at(0.0, -2.0, 0.0).y, 1.0, "bottom");
+    }
+
+    #[test]
+    fn uv_of_a_torus_goes_around_it_and_around_its_tube() {
+        let chart = Chart::Torus { major_radius: 2.0 };
+        let at = |x, y, z| uv(chart, DVec3::new(x, y, z)).unwrap();
+        assert_eq!(at(3.0, 0.0, 0.0), DVec2::new(0.0, 0.0), "outside");
+        assert_eq!(at(0.0, 1.0, -2.0), DVec2::new(0.25, 0.25), "top");
+        assert_eq!(at(-1.0, 0.0, 0.0), DVec2::new(0.5, 0.5), "hole");
+        assert_eq!(at(2.0, -1.0, 0.0), DVec2::new(0.0, 0.75), "bottom");
+    }
+
+    #[test]
+    fn uv_of_a_plane_is_x_and_z_and_of_a_mesh_nothing() {
+        let at = DVec3::new(3.0, 0.0, -4.0);
+        assert_eq!(uv(Chart::Plane, at), Some(DVec2::new(3.0, -4.0)), "plane");
+        assert_eq!(uv(Chart::None, at), None, "mesh");
+    }
+}
