@@ -2,21 +2,28 @@
 
 #![forbid(unsafe_code)]
 
+mod cellular;
 mod combination;
 mod error;
 mod fixed;
 mod lattice;
 mod metric;
+mod plane;
+mod render;
 mod scatter;
 mod search;
+mod simd;
+mod sink;
 mod space;
 mod worley;
 
+pub use cellular::Cellular;
 pub use combination::Combination;
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
 pub use error::{WorleyError, WorleyErrorKind};
 pub use metric::Metric;
+pub use plane::Plane;
 pub use scatter::Scatter;
 pub use space::{Axes, Space, Vector};
 pub use worley::{CellPoint, Feature, LIMIT, RESOLUTION, Worley, Worley2, Worley3, Worley4};

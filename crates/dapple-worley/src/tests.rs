@@ -1,3 +1,4 @@
 //! The basis beside its oracle.
 
+mod bits;
 mod oracle;

@@ -1,0 +1,76 @@
+//! Planes through spaces of two, three and four axes.
+
+use crate::{Axes, Space, Vector};
+use glam::DVec2;
+
+/// A plane through space: where the picture lies. Its position `[x, y]` is `origin + x·u + y·v`.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_worley::{Plane, raster::glam::{DVec2, DVec3}};
+///
+/// let slice = Plane::<3>::slice(DVec3::new(0.0, 0.0, 7.5));
+/// assert_eq!(slice.position(DVec2::new(1.0, 2.0)), DVec3::new(1.0, 2.0, 7.5));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane<const N: usize>
+where
+    Axes: Space<N>,
+{
+    /// The position of `[0, 0]`.
+    pub origin: Vector<N>,
+    /// The way from `[0, 0]` to `[1, 0]`. Pictures are fastest where it goes along the first axis, and `v` does not.
+    pub u: Vector<N>,
+    /// The way from `[0, 0]` to `[0, 1]`.
+    pub v: Vector<N>,
+}
+
+impl<const N: usize> Plane<N>
+where
+    Axes: Space<N>,
+{
+    /// The plane along the first two axes, through `origin`.
+    #[must_use]
+    pub fn slice(origin: Vector<N>) -> Self {
+        let along = |axis: usize| {
+            let mut way = [0.0; N];
+            way[axis] = 1.0;
+            Vector::<N>::from(way)
+        };
+        Self {
+            origin,
+            u: along(0),
+            v: along(1),
+        }
+    }
+
+    /// Where in space a position of the plane is.
+    #[must_use]
+    pub fn position(&self, position: DVec2) -> Vector<N> {
+        Vector::<N>::from(core::array::from_fn(|axis| self.coordinate(axis, position)))
+    }
+
+    /// One coordinate of [`position`](Self::position).
+    #[inline]
+    pub(crate) fn coordinate(&self, axis: usize, position: DVec2) -> f64 {
+        let [origin, u, v] = [self.origin, self.u, self.v].map(|part| part.into()[axis]);
+        origin + (u * position.x + v * position.y)
+    }
+
+    /// Whether the first axis, and no other, goes with the columns.
+    pub(crate) fn is_upright(&self) -> bool {
+        let [u, v]: [[f64; N]; 2] = [self.u.into(), self.v.into()];
+        v[0] == 0.0 && u[1..].iter().all(|&part| part == 0.0)
+    }
+}
+
+impl<const N: usize> Default for Plane<N>
+where
+    Axes: Space<N>,
+{
+    /// The plane along the first two axes, where the others are zero.
+    fn default() -> Self {
+        Self::slice(Vector::<N>::from([0.0; N]))
+    }
+}

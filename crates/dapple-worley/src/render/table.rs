@@ -1,0 +1,186 @@
+//! The feature points of a box of cells, made once and then looked up.
+
+use crate::fixed::STEP_BITS;
+use crate::lattice::{Lattice, POSITIONS, steps};
+use crate::render::LANES;
+use core::ops::Range;
+use dapple_hash::{CellHash, CellHashes};
+use fearless_simd::{prelude::*, u32x16};
+
+/// Cells along each axis, from the first to the last.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CellBox<const N: usize> {
+    pub(crate) first: [i64; N],
+    pub(crate) last: [i64; N],
+}
+
+impl<const N: usize> CellBox<N> {
+    /// How many cells there are along an axis.
+    pub(crate) fn side(&self, axis: usize) -> usize {
+        (self.last[axis] - self.first[axis] + 1) as usize
+    }
+
+    /// The same with so many more cells on every side.
+    pub(crate) fn widened(&self, by: i64) -> Self {
+        Self {
+            first: self.first.map(|cell| cell - by),
+            last: self.last.map(|cell| cell + by),
+        }
+    }
+
+    /// How many cells there are.
+    pub(crate) fn n_cells(&self) -> u128 {
+        let sides = self.first.iter().zip(self.last);
+        sides.map(|(&first, last)| (i128::from(last) - i128::from(first) + 1) as u128).product()
+    }
+}
+
+/// The feature points of a box of cells, row by row of cells.
+#[derive(Debug)]
+pub(crate) struct Table<const N: usize> {
+    pub(crate) cells: CellBox<N>,
+    /// Where the points of each cell begin, and where those of the last end.
+    starts: Vec<u32>,
+    /// The coordinates along each axis, in steps from the lower corner of the box. After the last point there is room
+    /// for a whole register.
+    pub(crate) steps: [Vec<i32>; N],
+}
+
+impl<const N: usize> Table<N> {
+    /// An empty table.
+    pub(crate) fn new() -> Self {
+        Self {
+            cells: CellBox { first: [0; N], last: [0; N] },
+            starts: Vec::new(),
+            steps: core::array::from_fn(|_| Vec::new()),
+        }
+    }
+
+    /// Makes the points of `cells`, which are at most 1000 along each axis.
+    #[inline(always)]
+    pub(crate) fn fill<S: Simd>(&mut self, simd: S, lattice: &Lattice<N>, cells: CellBox<N>) {
+        self.cells = cells;
+        self.starts.clear();
+        self.starts.push(0);
+        let side = cells.side(0);
+        let columns: Vec<[u32; 2]> = (0..side.next_multiple_of(LANES) as i64)
+            .map(|column| words(lattice.wrap(0, cells.first[0] + column)))
+            .collect();
+        let n_rows: usize = (1..N).map(|axis| cells.side(axis)).product();
+        let mut scratch = vec![0; (*lattice.counts.range().end() as usize * N + 1) * LANES];
+        for row in 0..n_rows {
+            let mut hash = lattice.root;
+            let mut corner = [0; N];
+            let mut rest = n_rows;
+            let mut index = row;
+            for axis in (1..N).rev() {
+                rest /= cells.side(axis);
+                let along = index / rest;
+                index %= rest;
+                corner[axis] = (along as i32) << STEP_BITS;
+                hash = hash.axis(lattice.wrap(axis, cells.first[axis] + along as i64));
+            }
+            for (chunk, columns) in columns.chunks_exact(LANES).enumerate() {
+                let first = chunk * LANES;
+                corner[0] = (first as i32) << STEP_BITS;
+                let n_cells = (side - first).min(LANES);
+                self.add(simd, lattice, hash, columns, (corner, n_cells), &mut scratch);
+            }
+        }
+        for steps in &mut self.steps {
+            let end = *self.starts.last().unwrap_or(&0) as usize;
+            steps.resize(end + LANES, 0);
+        }
+    }
+
+    /// Adds the points of up to sixteen cells side by side.
+    #[inline(always)]
+    fn add<S: Simd>(
+        &mut self,
+        simd: S,
+        lattice: &Lattice<N>,
+        row: CellHash,
+        columns: &[[u32; 2]],
+        (corner, n_cells): ([i32; N], usize),
+        scratch: &mut [u32],
+    ) {
+        let mut halves = [[0; LANES]; 2];
+        for (lane, &[low, high]) in columns.iter().enumerate() {
+            halves[0][lane] = low;
+            halves[1][lane] = high;
+        }
+        let [low, high] = halves;
+        let hashes = CellHashes::splat(simd, row).axis(
+            u32x16::from_slice(simd, &low),
+            u32x16::from_slice(simd, &high),
+        );
+        let counts = counts(simd, lattice, hashes);
+        let mut numbers = [0; LANES];
+        counts.store_slice(&mut numbers);
+        let most = numbers[..n_cells].iter().copied().fold(0, u32::max);
+        for index in 0..most {
+            let bits = hashes.at(u32x16::splat(simd, POSITIONS + index));
+            let steps: [u32x16<S>; N] = steps(bits, lattice.jitter);
+            for axis in 0..N {
+                let at = (index as usize * N + axis) * LANES;
+                steps[axis].store_slice(&mut scratch[at..at + LANES]);
+            }
+        }
+        let mut end = *self.starts.last().unwrap_or(&0);
+        for (lane, &number) in numbers[..n_cells].iter().enumerate() {
+            for axis in 0..N {
+                let shift = if axis == 0 { (lane as i32) << STEP_BITS } else { 0 };
+                let to = &mut self.steps[axis];
+                to.truncate(end as usize);
+                for index in 0..number as usize {
+                    let steps = scratch[(index * N + axis) * LANES + lane];
+                    to.push(steps.cast_signed() + corner[axis] + shift);
+                }
+            }
+            end += number;
+            self.starts.push(end);
+        }
+    }
+
+    /// The points of the cells `columns` (along the first axis) of a row of cells, as a range.
+    #[inline(always)]
+    pub(crate) fn run(&self, row: usize, columns: Range<usize>) -> Range<usize> {
+        let first = row * self.cells.side(0);
+        self.starts[first + columns.start] as usize..self.starts[first + columns.end] as usize
+    }
+
+    /// The cell of a point, and its place among the points of that cell.
+    pub(crate) fn name(&self, point: u32) -> ([i64; N], u32) {
+        let cell = self.starts.partition_point(|&start| start <= point) - 1;
+        let mut index = cell;
+        let cell_at = core::array::from_fn(|axis| {
+            let side = self.cells.side(axis);
+            let along = index % side;
+            index /= side;
+            self.cells.first[axis] + along as i64
+        });
+        (cell_at, point - self.starts[cell])
+    }
+}
+
+/// How many points each of sixteen cells has.
+#[inline(always)]
+pub(crate) fn counts<S: Simd, const N: usize>(
+    simd: S,
+    lattice: &Lattice<N>,
+    hashes: CellHashes<S>,
+) -> u32x16<S> {
+    let [bits, _] = hashes.at(u32x16::splat(simd, 0));
+    let mut counts = u32x16::splat(simd, lattice.counts.least());
+    let one = u32x16::splat(simd, 1);
+    for &threshold in lattice.counts.thresholds() {
+        let more = bits.simd_ge(threshold);
+        counts = more.select(counts + one, counts);
+    }
+    counts
+}
+
+/// The low and the high half.
+pub(crate) fn words(coordinate: i64) -> [u32; 2] {
+    [coordinate as u32, (coordinate >> 32) as u32]
+}

@@ -1,0 +1,112 @@
+//! Equal bits: windows, doors, SIMD levels and threads.
+
+use super::oracle::{METRICS, SCATTERS};
+use crate::simd::for_every_level;
+use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError};
+use dapple_hash::{Seed, hash1, unit_f64};
+use dapple_raster::{Raster, Window};
+use glam::DVec2;
+
+pub(super) const COMBINATIONS: [Combination; 5] = [
+    Combination::F1,
+    Combination::F2_MINUS_F1,
+    Combination::TWO_F3_MINUS_F2_MINUS_F1,
+    Combination::F4,
+    Combination::new([0.3, -0.7, 0.0, 1.1]),
+];
+
+/// Windows with large and small pixels, near and far, flipped, of odd sizes.
+fn windows() -> Vec<Window> {
+    let window = |origin: [f64; 2], pixel: [f64; 2], size: [u32; 2]| Window {
+        origin: origin.into(),
+        pixel: pixel.into(),
+        first: [-3, 5],
+        size,
+    };
+    vec![
+        window([0.0, 0.0], [1.0 / 64.0, 1.0 / 64.0], [97, 70]),
+        window([0.3, -0.7], [1.0 / 16.0, -1.0 / 15.0], [61, 50]),
+        window([1e9, -1e9], [-0.09, 0.13], [70, 67]),
+        window([3.1, 1e6], [0.25, 0.25], [50, 37]),
+        window([-7.0, 2.0], [0.9, 0.31], [33, 17]),
+        window([0.0, 0.0], [17.3, 1e-3], [19, 18]),
+        window([1e12, 5.0], [1e-7, 40.0], [17, 3]),
+        window([f64::MAX, f64::NAN], [1e300, 1.0], [5, 3]),
+    ]
+}
+
+fn doors_agree<const N: usize>(worley: &Worley<N>, planes: &[Plane<N>]) -> Result<(), WorleyError>
+where
+    Axes: Space<N>,
+{
+    for (combination, plane) in COMBINATIONS.iter().flat_map(|c| planes.iter().map(move |p| (c, p))) {
+        let texture = worley.combine(*combination);
+        for window in windows() {
+            let mut expected = Raster::filled(window.size, 0.0)?;
+            for row in 0..window.size[1] {
+                for column in 0..window.size[0] {
+                    let at = plane.position(window.position(column, row));
+                    expected.view_mut().row_mut(row)[column as usize] = texture.value(at);
+                }
+            }
+            for_every_level(|level| {
+                let mut out = Raster::filled(window.size, -1.0).unwrap();
+                texture.picture(plane, &window).render_at(level, out.view_mut());
+                let differ = out.pixels().iter().zip(expected.pixels());
+                let differ = differ.filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+                assert_eq!(
+                    differ, 0,
+                    "{:?} {:?} {combination:?} {plane:?} {window:?} {level:?}",
+                    worley.metric, worley.scatter
+                );
+            });
+        }
+    }
+    Ok(())
+}
+
+fn random<const N: usize>(seed: Seed, index: u64) -> Vector<N>
+where
+    Axes: Space<N>,
+{
+    let unit = |axis| unit_f64(hash1(seed.child("plane", index), [axis as i64], 0));
+    Vector::<N>::from(core::array::from_fn(|axis| 2.0 * unit(axis) - 1.0))
+}
+
+#[test]
+fn render_equals_sample_bit_for_bit_in_the_plane() -> Result<(), WorleyError> {
+    for (index, scatter) in SCATTERS.into_iter().enumerate() {
+        let worley = Worley::new(Seed(11)).with_scatter(scatter)?;
+        let metric = METRICS[index % METRICS.len()];
+        doors_agree::<2>(&worley, &[Plane::default()])?;
+        doors_agree::<2>(&worley.with_metric(metric)?, &[Plane::default()])?;
+    }
+    Ok(())
+}
+
+#[test]
+fn render_equals_sample_bit_for_bit_in_space() -> Result<(), WorleyError> {
+    let seed = Seed(12);
+    let oblique = Plane { origin: random::<3>(seed, 0), u: random::<3>(seed, 1), v: random::<3>(seed, 2) };
+    let planes = [Plane::slice([0.1, 0.2, -5.3].into()), oblique];
+    for metric in METRICS {
+        doors_agree::<3>(&Worley::new(seed).with_metric(metric)?, &planes)?;
+    }
+    let planes = [Plane::slice([0.1, 0.2, -5.3, 1e4].into())];
+    doors_agree::<4>(&Worley::new(seed).with_density(1.0)?, &planes)
+}
+
+#[test]
+fn windows_are_crops_bit_for_bit() -> Result<(), WorleyError> {
+    let texture = Worley::<2>::new(Seed(3)).combine(Combination::F2_MINUS_F1);
+    let whole = Window::new(DVec2::new(-3.0, 1e5), DVec2::splat(7.3), [300, 200])?;
+    let mut all = Raster::filled(whole.size, 0.0)?;
+    texture.render_plane(&Plane::default(), &whole, all.view_mut())?;
+    for (first, size) in [([1, 3], [77, 60]), ([250, 131], [50, 69]), ([299, 199], [1, 1])] {
+        let part = whole.crop(first.map(i64::from), size)?;
+        let mut pixels = Raster::filled(size, 0.0)?;
+        texture.render_plane(&Plane::default(), &part, pixels.view_mut())?;
+        assert_eq!(pixels, all.crop(first, size)?, "{first:?}");
+    }
+    Ok(())
+}
