@@ -1,4 +1,6 @@
-//! A scene, and its picture.
+//! A scene, and its picture: the mean of a regular grid of samples in every pixel.
+//!
+//! Reference: our own; `trace` says how a sample is lit, after Whitted 1980.
 
 use crate::trace::{Path, World};
 use crate::{Camera, Environment, Light, Object, PreviewError};

@@ -64,6 +64,7 @@ impl Transform {
             translation: self.translation,
             rotation: DMat3::from_quat(self.rotation * (1.0 / length)),
             scale: self.scale,
+            inverse_scale: 1.0 / self.scale,
         })
     }
 }
@@ -74,6 +75,7 @@ pub(crate) struct Placement {
     translation: DVec3,
     rotation: DMat3,
     pub(crate) scale: f64,
+    pub(crate) inverse_scale: f64,
 }
 
 impl Placement {
@@ -102,7 +104,7 @@ impl Placement {
     /// A ray of the world in the space of the object; distances along it are in units of the object.
     pub(crate) fn ray_to_object(&self, ray: &Ray) -> Ray {
         Ray {
-            origin: self.direction_to_object(ray.origin - self.translation) / self.scale,
+            origin: self.direction_to_object(ray.origin - self.translation) * self.inverse_scale,
             direction: self.direction_to_object(ray.direction),
         }
     }

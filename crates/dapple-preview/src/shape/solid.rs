@@ -155,6 +155,9 @@ fn torus_stretches(nearest: &Ray, major: f64, minor: f64) -> [Option<[f64; 2]>; 
     let [origin, direction] = [nearest.origin, nearest.direction];
     // In units of the outer radius, within which the torus is.
     let unit = major + minor;
+    if origin.length_squared() >= unit * unit {
+        return [None; 2];
+    }
     let (origin, major, minor) = (origin / unit, major / unit, minor / unit);
     let reach_sq = 1.0 - origin.length_squared();
     if reach_sq <= 0.0 {
