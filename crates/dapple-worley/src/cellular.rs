@@ -1,7 +1,6 @@
 //! Scalar textures of the basis: a combination at every position.
 
 use crate::fixed::Place;
-use crate::metric::{Norm as _, with_norm};
 use crate::render::Picture;
 use crate::sink::{Tone, Values};
 use crate::{Axes, Combination, Plane, Space, Vector, Worley};
@@ -48,22 +47,8 @@ where
     /// The value at a position. NaN if the position has no place, see [`Worley::sample`].
     #[must_use]
     pub fn value(&self, position: impl Into<Vector<N>>) -> f32 {
-        let Some(place) = Place::new(position.into().into()) else {
-            return f32::NAN;
-        };
-        match self.tone.combination.depth() {
-            1 => self.value_of::<1>(place),
-            2 => self.value_of::<2>(place),
-            3 => self.value_of::<3>(place),
-            _ => self.value_of::<4>(place),
-        }
-    }
-
-    fn value_of<const K: usize>(&self, place: Place<N>) -> f32 {
-        let hits = self.worley.hits::<K>(place);
-        with_norm!(self.worley.metric, norm => {
-            self.tone.of(&hits.map(|hit| norm.distance(hit.key)))
-        })
+        let place = Place::new(position.into().into());
+        place.map_or(f32::NAN, |place| self.tone.at(&self.worley, place))
     }
 
     /// The values at the pixel centers of a window of a plane, into memory of its size.

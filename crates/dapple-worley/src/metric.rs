@@ -114,6 +114,18 @@ pub(crate) trait Norm: Copy + Send + Sync {
         }
         key
     }
+
+    /// The key of a vector of this length along one axis.
+    #[inline(always)]
+    fn key_along_one_axis(self, length: f32) -> f32 {
+        self.term(length)
+    }
+
+    /// A bound that holds for exact keys, made to hold for rounded ones.
+    #[inline(always)]
+    fn tightened(self, bound: f32) -> f32 {
+        bound / Self::LOOSE
+    }
 }
 
 #[derive(Clone, Copy)]

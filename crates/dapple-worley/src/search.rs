@@ -172,8 +172,6 @@ impl<Q: Source<N>, M: Norm, const N: usize, const K: usize> Search<'_, Q, M, N, 
             let width = ring * i64::from(STEPS);
             nearest = nearest.min(inside + width).min(i64::from(STEPS) - inside + width);
         }
-        let mut along_one_axis = [0.0; N];
-        along_one_axis[0] = cells(nearest);
-        self.norm.key(along_one_axis)
+        self.norm.key_along_one_axis(cells(nearest))
     }
 }

@@ -1,7 +1,8 @@
 //! What becomes of the keys of sixteen pixels.
 
-use crate::Combination;
+use crate::fixed::Place;
 use crate::metric::Norm;
+use crate::{Axes, Combination, Space, Worley};
 use fearless_simd::{f32x16, prelude::*};
 
 /// A combination, scaled and shifted: `shift + scale · (C1·F1 + …)`.
@@ -22,9 +23,21 @@ impl Tone {
         }
     }
 
+    /// At a place.
+    pub(crate) fn at<const N: usize>(&self, worley: &Worley<N>, place: Place<N>) -> f32
+    where
+        Axes: Space<N>,
+    {
+        match self.combination.depth() {
+            1 => self.of(&worley.distances::<1>(place)),
+            2 => self.of(&worley.distances::<2>(place)),
+            3 => self.of(&worley.distances::<3>(place)),
+            _ => self.of(&worley.distances::<4>(place)),
+        }
+    }
+
     /// From distances, at least [`Combination::depth`] of them.
-    #[inline(always)]
-    pub(crate) fn of(&self, distances: &[f32]) -> f32 {
+    fn of(&self, distances: &[f32]) -> f32 {
         self.shift + self.scale * self.combination.of(distances)
     }
 
@@ -54,6 +67,23 @@ pub(crate) struct Values {
 }
 
 impl Values {
+    /// The value at a place; NaN where there is none.
+    pub(crate) fn put_one<const N: usize>(
+        &self,
+        worley: &Worley<N>,
+        place: Option<Place<N>>,
+        out: &mut f32,
+    ) where
+        Axes: Space<N>,
+    {
+        let value = place.map_or(f32::NAN, |place| self.tone.at(worley, place));
+        *out = match self.weight {
+            Some(_) if value.is_nan() => f32::NAN,
+            Some(weight) => *out + value * weight,
+            None => value,
+        };
+    }
+
     /// Takes in the keys of up to sixteen pixels.
     #[inline(always)]
     pub(crate) fn put<S: Simd, M: Norm, const K: usize>(

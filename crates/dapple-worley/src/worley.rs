@@ -174,6 +174,13 @@ where
         with_norm!(self.metric, norm => nearest(&self.lattice, norm, place))
     }
 
+    /// The distances of a place.
+    pub(crate) fn distances<const K: usize>(&self, place: Place<N>) -> [f32; K] {
+        use crate::metric::Norm as _;
+        let hits = self.hits::<K>(place);
+        with_norm!(self.metric, norm => hits.map(|hit| norm.distance(hit.key)))
+    }
+
     pub(crate) fn feature(&self, hit: Hit<N>) -> Feature<Vector<N>> {
         use crate::metric::Norm as _;
         Feature {

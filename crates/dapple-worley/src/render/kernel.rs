@@ -1,69 +1,123 @@
-//! The inner loop: the `K` smallest keys of sixteen pixels side by side, for several rows at once.
+//! The inner loop: the smallest keys of sixteen pixels side by side, for several rows at once.
 
-use crate::metric::Norm;
-use crate::render::LANES;
-use crate::render::cull::Candidates;
-use fearless_simd::{f32x16, prelude::*, u32x16};
+use super::LANES;
+use crate::Metric;
+use crate::fixed::STEP;
+use crate::metric::{Norm, with_norm};
+use crate::sink::Values;
+use core::ops::Range;
+use fearless_simd::{Level, dispatch, f32x16, i32x16, prelude::*, u32x16};
 
-/// The most rows of a tile: those of one register.
-pub(crate) const TILE_ROWS: usize = LANES;
-
-/// What the rows of a tile add to the key of each candidate: the terms of all axes but the first, joined.
-#[derive(Debug, Default)]
-pub(crate) struct RowTerms {
-    /// For each candidate, one for each row of the tile.
-    terms: Vec<f32>,
+/// The feature points that matter to a tile.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shortlist<'a> {
+    /// Their coordinates along the first axis, in cells from the lower corner of the tile.
+    pub(super) columns: &'a [f32],
+    /// The terms of all axes but the first, joined: for each point, one for each of sixteen rows of the tile.
+    pub(super) row_terms: &'a [f32],
 }
 
-impl RowTerms {
-    /// Computes them for rows with these coordinates, along the axes from the second on.
+/// Some rows of a tile.
+#[derive(Debug)]
+pub(super) struct Rows<'a> {
+    /// The rows, in the band.
+    pub(super) rows: Range<usize>,
+    /// The first row of the tile, in the band.
+    pub(super) first: usize,
+    /// The columns, in the window; at most [`LANES`].
+    pub(super) columns: Range<usize>,
+    /// The coordinates of the columns, in steps.
+    pub(super) steps: &'a [i32],
+    /// The coordinate that is the smallest of them.
+    pub(super) low: i32,
+    pub(super) shortlist: Shortlist<'a>,
+    /// Keys from here on may be wrong.
+    pub(super) limit: f32,
+    pub(super) values: &'a Values,
+}
+
+impl Rows<'_> {
+    /// Fills pixels row by row, and returns the row from which on keys reach the limit: the end, if none does.
+    pub(super) fn fill(
+        &self,
+        level: Level,
+        metric: Metric,
+        depth: usize,
+        out: &mut [&mut [f32]],
+    ) -> usize {
+        with_norm!(metric, norm => match depth {
+            1 => dispatch!(level, simd => self.fill_with::<_, _, 1>(simd, norm, out)),
+            2 => dispatch!(level, simd => self.fill_with::<_, _, 2>(simd, norm, out)),
+            3 => dispatch!(level, simd => self.fill_with::<_, _, 3>(simd, norm, out)),
+            _ => dispatch!(level, simd => self.fill_with::<_, _, 4>(simd, norm, out)),
+        })
+    }
+
+    /// As many rows at once as there are registers for.
     #[inline(always)]
-    pub(crate) fn fill<S: Simd, M: Norm, const N: usize>(
-        &mut self,
+    fn fill_with<S: Simd, M: Norm, const K: usize>(
+        &self,
+        simd: S,
         norm: M,
-        rows: &[f32x16<S>; N],
-        candidates: &Candidates<N>,
-    ) {
-        if self.terms.len() < candidates.len * LANES {
-            self.terms.resize(candidates.len.next_power_of_two() * LANES, 0.0);
-        }
-        for (index, terms) in self.terms.chunks_exact_mut(LANES).take(candidates.len).enumerate() {
-            let term = |axis: usize| norm.terms(rows[axis] - candidates.coordinates[axis][index]);
-            let mut key = term(N - 1);
-            for axis in (1..N - 1).rev() {
-                key = norm.joins(term(axis), key);
-            }
-            key.store_slice(terms);
+        out: &mut [&mut [f32]],
+    ) -> usize {
+        if const { <S::f32s as SimdBase<S>>::LEN == LANES } {
+            self.fill_groups::<S, M, K, 8>(simd, norm, out)
+        } else {
+            self.fill_groups::<S, M, K, 2>(simd, norm, out)
         }
     }
-}
 
-/// The `K` smallest keys, smallest first, of `R` rows from row `first` of a tile on; and the largest of the `K`-th.
-#[inline(always)]
-pub(crate) fn smallest<S: Simd, M: Norm, const N: usize, const K: usize, const R: usize>(
-    norm: M,
-    columns: f32x16<S>,
-    candidates: &Candidates<N>,
-    row_terms: &RowTerms,
-    first: usize,
-) -> ([[f32x16<S>; K]; R], f32x16<S>) {
-    let simd = columns.simd;
-    let mut best = [[f32x16::splat(simd, f32::INFINITY); K]; R];
-    let coordinates = &candidates.coordinates[0][..candidates.len];
-    let terms = &row_terms.terms[..candidates.len * LANES];
-    for (index, &coordinate) in coordinates.iter().enumerate() {
-        let column_terms = norm.terms(columns - coordinate);
-        let row_terms = &terms[index * LANES + first..][..R];
-        for row in 0..R {
-            let key = norm.joins(column_terms, f32x16::splat(simd, row_terms[row]));
-            insert(&mut best[row], key);
+    #[inline(always)]
+    fn fill_groups<S: Simd, M: Norm, const K: usize, const R: usize>(
+        &self,
+        simd: S,
+        norm: M,
+        out: &mut [&mut [f32]],
+    ) -> usize {
+        let columns = i32x16::from_slice(simd, &self.steps[..LANES]) - self.low;
+        let columns = columns.to_float::<f32x16<S>>() * STEP;
+        let mut row = self.rows.start;
+        while row < self.rows.end {
+            let (keys, worst) = self.smallest::<S, M, K, R>(norm, columns, row - self.first);
+            if !worst.simd_lt(self.limit).all_true() {
+                return row;
+            }
+            for keys in keys {
+                if row < self.rows.end {
+                    self.values.put(norm, keys, &mut out[row][self.columns.clone()]);
+                    row += 1;
+                }
+            }
         }
+        row
     }
-    let mut worst = best[0][K - 1];
-    for row in 1..R {
-        worst = greater(worst, best[row][K - 1]);
+
+    /// The `K` smallest keys, smallest first, of `R` rows from row `first` of the tile on; and the largest of the
+    /// `K`-th.
+    #[inline(always)]
+    fn smallest<S: Simd, M: Norm, const K: usize, const R: usize>(
+        &self,
+        norm: M,
+        columns: f32x16<S>,
+        first: usize,
+    ) -> ([[f32x16<S>; K]; R], f32x16<S>) {
+        let simd = columns.simd;
+        let mut best = [[f32x16::splat(simd, f32::INFINITY); K]; R];
+        for (index, &column) in self.shortlist.columns.iter().enumerate() {
+            let column_terms = norm.terms(columns - column);
+            let row_terms = &self.shortlist.row_terms[index * LANES + first..][..R];
+            for row in 0..R {
+                let key = norm.joins(column_terms, f32x16::splat(simd, row_terms[row]));
+                insert(&mut best[row], key);
+            }
+        }
+        let mut worst = best[0][K - 1];
+        for row in 1..R {
+            worst = greater(worst, best[row][K - 1]);
+        }
+        (best, worst)
     }
-    (best, worst)
 }
 
 /// Takes in one more key, and leaves out the largest.

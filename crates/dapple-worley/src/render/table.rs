@@ -9,19 +9,19 @@ use fearless_simd::{prelude::*, u32x16};
 
 /// Cells along each axis, from the first to the last.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CellBox<const N: usize> {
-    pub(crate) first: [i64; N],
-    pub(crate) last: [i64; N],
+pub(super) struct CellBox<const N: usize> {
+    pub(super) first: [i64; N],
+    pub(super) last: [i64; N],
 }
 
 impl<const N: usize> CellBox<N> {
     /// How many cells there are along an axis.
-    pub(crate) fn side(&self, axis: usize) -> usize {
+    pub(super) fn side(&self, axis: usize) -> usize {
         (self.last[axis] - self.first[axis] + 1) as usize
     }
 
     /// The same with so many more cells on every side.
-    pub(crate) fn widened(&self, by: i64) -> Self {
+    pub(super) fn widened(&self, by: i64) -> Self {
         Self {
             first: self.first.map(|cell| cell - by),
             last: self.last.map(|cell| cell + by),
@@ -29,7 +29,7 @@ impl<const N: usize> CellBox<N> {
     }
 
     /// How many cells there are.
-    pub(crate) fn n_cells(&self) -> u128 {
+    pub(super) fn n_cells(&self) -> u128 {
         let sides = self.first.iter().zip(self.last);
         sides.map(|(&first, last)| (i128::from(last) - i128::from(first) + 1) as u128).product()
     }
@@ -37,18 +37,18 @@ impl<const N: usize> CellBox<N> {
 
 /// The feature points of a box of cells, row by row of cells.
 #[derive(Debug)]
-pub(crate) struct Table<const N: usize> {
-    pub(crate) cells: CellBox<N>,
+pub(super) struct Table<const N: usize> {
+    pub(super) cells: CellBox<N>,
     /// Where the points of each cell begin, and where those of the last end.
     starts: Vec<u32>,
     /// The coordinates along each axis, in steps from the lower corner of the box. After the last point there is room
     /// for a whole register.
-    pub(crate) steps: [Vec<i32>; N],
+    pub(super) steps: [Vec<i32>; N],
 }
 
 impl<const N: usize> Table<N> {
     /// An empty table.
-    pub(crate) fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             cells: CellBox { first: [0; N], last: [0; N] },
             starts: Vec::new(),
@@ -58,7 +58,7 @@ impl<const N: usize> Table<N> {
 
     /// Makes the points of `cells`, which are at most 1000 along each axis.
     #[inline(always)]
-    pub(crate) fn fill<S: Simd>(&mut self, simd: S, lattice: &Lattice<N>, cells: CellBox<N>) {
+    pub(super) fn fill<S: Simd>(&mut self, simd: S, lattice: &Lattice<N>, cells: CellBox<N>) {
         self.cells = cells;
         self.starts.clear();
         self.starts.push(0);
@@ -144,13 +144,13 @@ impl<const N: usize> Table<N> {
 
     /// The points of the cells `columns` (along the first axis) of a row of cells, as a range.
     #[inline(always)]
-    pub(crate) fn run(&self, row: usize, columns: Range<usize>) -> Range<usize> {
+    pub(super) fn run(&self, row: usize, columns: Range<usize>) -> Range<usize> {
         let first = row * self.cells.side(0);
         self.starts[first + columns.start] as usize..self.starts[first + columns.end] as usize
     }
 
     /// The cell of a point, and its place among the points of that cell.
-    pub(crate) fn name(&self, point: u32) -> ([i64; N], u32) {
+    pub(super) fn name(&self, point: u32) -> ([i64; N], u32) {
         let cell = self.starts.partition_point(|&start| start <= point) - 1;
         let mut index = cell;
         let cell_at = core::array::from_fn(|axis| {
@@ -165,7 +165,7 @@ impl<const N: usize> Table<N> {
 
 /// How many points each of sixteen cells has.
 #[inline(always)]
-pub(crate) fn counts<S: Simd, const N: usize>(
+pub(super) fn counts<S: Simd, const N: usize>(
     simd: S,
     lattice: &Lattice<N>,
     hashes: CellHashes<S>,
@@ -181,6 +181,6 @@ pub(crate) fn counts<S: Simd, const N: usize>(
 }
 
 /// The low and the high half.
-pub(crate) fn words(coordinate: i64) -> [u32; 2] {
+pub(super) fn words(coordinate: i64) -> [u32; 2] {
     [coordinate as u32, (coordinate >> 32) as u32]
 }
