@@ -3,7 +3,8 @@
 use crate::fixed::Place;
 use crate::render::Picture;
 use crate::sink::{Tone, Values};
-use crate::{Axes, Combination, Plane, Space, Vector, Worley};
+use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError};
+use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
@@ -22,8 +23,8 @@ use glam::DVec2;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Cellular<const N: usize> {
-    worley: Worley<N>,
-    tone: Tone,
+    pub(crate) worley: Worley<N>,
+    pub(crate) tone: Tone,
 }
 
 impl<const N: usize> Worley<N>
@@ -44,11 +45,29 @@ impl<const N: usize> Cellular<N>
 where
     Axes: Space<N>,
 {
+    /// The basis that it combines.
+    #[must_use]
+    pub fn worley(&self) -> &Worley<N> {
+        &self.worley
+    }
+
     /// The value at a position. NaN if the position has no place, see [`Worley::sample`].
     #[must_use]
     pub fn value(&self, position: impl Into<Vector<N>>) -> f32 {
         let place = Place::new(position.into().into());
         place.map_or(f32::NAN, |place| self.tone.at(&self.worley, place))
+    }
+
+    /// The gradient of the value at a position, per cell: the sum of the gradients of the distances.
+    ///
+    /// On the borders between cells it jumps. All NaN if the position has no place.
+    #[must_use]
+    pub fn gradient(&self, position: impl Into<Vector<N>>) -> Vector<N> {
+        let place = Place::new(position.into().into());
+        let gradient = place.map_or([f32::NAN; N], |place| {
+            self.tone.gradient(&self.worley, place)
+        });
+        Vector::<N>::from(gradient.map(f64::from))
     }
 
     /// The values at the pixel centers of a window of a plane, into memory of its size.
@@ -73,8 +92,34 @@ where
             plane,
             window,
             frequency: 1.0,
-            values: Values { tone: self.tone, weight: None },
+            values: Values {
+                tone: self.tone,
+                weight: None,
+            },
         }
+    }
+
+    /// The range of the values, but for one in a thousand at either end: measured at `n` random positions.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::WorleyErrorKind::Range) if `n` is below 1000.
+    pub fn measure_range(&self, seed: Seed, n: u32) -> Result<[f32; 2], WorleyError> {
+        measure_range(seed, n, |position: [f64; N]| {
+            self.value(Vector::<N>::from(position))
+        })
+    }
+
+    /// The same texture with its values mapped so that `range` becomes 0 to 1. Values beyond it are not clamped.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::WorleyErrorKind::Range) if the range is not finite, or empty.
+    pub fn with_range(self, range: [f32; 2]) -> Result<Self, WorleyError> {
+        Ok(Self {
+            tone: self.tone.with_range(range)?,
+            ..self
+        })
     }
 }
 
@@ -86,4 +131,28 @@ impl Field for Cellular<2> {
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         self.render_plane(&Plane::default(), window, out)
     }
+}
+
+/// The range of some values, but for one in a thousand at either end.
+pub(crate) fn measure_range<const N: usize>(
+    seed: Seed,
+    n: u32,
+    value: impl Fn([f64; N]) -> f32,
+) -> Result<[f32; 2], WorleyError> {
+    /// Positions lie within so many cells: many, and where `f64` is still finer than a step.
+    const EXTENT: f64 = (1 << 20) as f64;
+    WorleyError::check(
+        n >= 1000,
+        "number of positions",
+        f64::from(n),
+        "at least 1000",
+    )?;
+    let position = |index: u32| {
+        let hash = CellHash::new(seed, [i64::from(index)]);
+        core::array::from_fn(|axis| EXTENT * unit_f64(hash.at(axis as u32)))
+    };
+    let mut values: Vec<_> = (0..n).map(|index| value(position(index))).collect();
+    values.sort_by(f32::total_cmp);
+    let left_out = (n / 1000) as usize;
+    Ok([values[left_out], values[values.len() - 1 - left_out]])
 }

@@ -49,7 +49,10 @@ pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
     let steps = ((coordinate - floor) * f64::from(STEPS)) as i32;
     // Just below a whole number the difference can be rounded up to a whole cell.
     let carry = steps >> STEP_BITS;
-    Some((floor as i64 + i64::from(carry), steps - (carry << STEP_BITS)))
+    Some((
+        floor as i64 + i64::from(carry),
+        steps - (carry << STEP_BITS),
+    ))
 }
 
 /// A number of steps as cells, rounded to `f32` once.

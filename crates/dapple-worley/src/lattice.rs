@@ -30,11 +30,16 @@ pub(crate) struct Lattice<const N: usize> {
 impl<const N: usize> Lattice<N> {
     pub(crate) fn new(seed: Seed, scatter: Scatter, counts: PoissonCounts) -> Self {
         Self {
-            root: CellHash::new(seed.child("feature points", 0), []),
+            root: Self::root(seed),
             counts,
             jitter: scatter.jitter(),
             period: [0; N],
         }
+    }
+
+    /// The hash that every cell's begins with.
+    pub(crate) fn root(seed: Seed) -> CellHash {
+        CellHash::new(seed.child("feature points", 0), [])
     }
 
     /// The coordinate of the cell that a cell repeats, along one axis.
@@ -49,7 +54,9 @@ impl<const N: usize> Lattice<N> {
     #[inline]
     pub(crate) fn hash(&self, cell: [i64; N]) -> CellHash {
         let axes = (0..N).rev();
-        axes.fold(self.root, |hash, axis| hash.axis(self.wrap(axis, cell[axis])))
+        axes.fold(self.root, |hash, axis| {
+            hash.axis(self.wrap(axis, cell[axis]))
+        })
     }
 
     /// How many points the cell with this hash has.

@@ -108,7 +108,9 @@ where
     /// upright, for then the other part of the position adds zero.
     fn line(&self, axis: usize, len: u32, position: impl Fn(u32) -> DVec2) -> Line {
         let coordinate = |index| self.plane.coordinate(axis, position(index)) * self.frequency;
-        let mut places: Vec<_> = (0..len).map_while(|index| split(coordinate(index))).collect();
+        let mut places: Vec<_> = (0..len)
+            .map_while(|index| split(coordinate(index)))
+            .collect();
         let is_finite = places.len() == len as usize;
         places.resize(len as usize, (0, 0));
         Line { places, is_finite }

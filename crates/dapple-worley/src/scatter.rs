@@ -79,7 +79,12 @@ impl Scatter {
             Self::Poisson { density } => (density, CLAMPED),
             Self::Unclamped { density } => (density, 0..=u32::MAX),
             Self::Jittered { jitter } => {
-                WorleyError::check((0.0..=1.0).contains(&jitter), "jitter", jitter, "from 0 to 1")?;
+                WorleyError::check(
+                    (0.0..=1.0).contains(&jitter),
+                    "jitter",
+                    jitter,
+                    "from 0 to 1",
+                )?;
                 (1.0, 1..=1)
             }
         };

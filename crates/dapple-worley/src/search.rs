@@ -90,7 +90,11 @@ impl<Q: Source<N>, M: Norm, const N: usize, const K: usize> Search<'_, Q, M, N, 
             }
             // The next cell, the first axis fastest; inside of the ring, straight to its other side.
             let inside = shift[1..].iter().all(|part| part.abs() < ring);
-            shift[0] += if inside && shift[0] == -ring { 2 * ring.max(1) } else { 1 };
+            shift[0] += if inside && shift[0] == -ring {
+                2 * ring.max(1)
+            } else {
+                1
+            };
             let mut axis = 0;
             while shift[axis] > ring {
                 shift[axis] = -ring;
@@ -116,7 +120,11 @@ impl<Q: Source<N>, M: Norm, const N: usize, const K: usize> Search<'_, Q, M, N, 
             }
             let key = self.norm.key(vector);
             if key <= self.hits[K - 1].key {
-                self.insert(Hit { key, vector, name: Some(name) });
+                self.insert(Hit {
+                    key,
+                    vector,
+                    name: Some(name),
+                });
             }
         });
     }
@@ -170,7 +178,9 @@ impl<Q: Source<N>, M: Norm, const N: usize, const K: usize> Search<'_, Q, M, N, 
         for steps in self.place.steps {
             let inside = i64::from(steps);
             let width = ring * i64::from(STEPS);
-            nearest = nearest.min(inside + width).min(i64::from(STEPS) - inside + width);
+            nearest = nearest
+                .min(inside + width)
+                .min(i64::from(STEPS) - inside + width);
         }
         self.norm.key_along_one_axis(cells(nearest))
     }

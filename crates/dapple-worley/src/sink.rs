@@ -2,7 +2,7 @@
 
 use crate::fixed::Place;
 use crate::metric::Norm;
-use crate::{Axes, Combination, Space, Worley};
+use crate::{Axes, Combination, Space, Worley, WorleyError};
 use fearless_simd::{f32x16, prelude::*};
 
 /// A combination, scaled and shifted: `shift + scale · (C1·F1 + …)`.
@@ -23,6 +23,23 @@ impl Tone {
         }
     }
 
+    /// The same with its values mapped so that `range` becomes 0 to 1.
+    pub(crate) fn with_range(self, [low, high]: [f32; 2]) -> Result<Self, WorleyError> {
+        let extent = high - low;
+        WorleyError::check(
+            extent > 0.0 && extent.is_finite() && extent.recip().is_finite(),
+            "extent of the range",
+            f64::from(extent),
+            "finite and above 0",
+        )?;
+        let map = |value: f32| (value - low) / extent;
+        Ok(Self {
+            scale: self.scale / extent,
+            shift: map(self.shift),
+            ..self
+        })
+    }
+
     /// At a place.
     pub(crate) fn at<const N: usize>(&self, worley: &Worley<N>, place: Place<N>) -> f32
     where
@@ -36,8 +53,26 @@ impl Tone {
         }
     }
 
+    /// The gradient at a place.
+    pub(crate) fn gradient<const N: usize>(&self, worley: &Worley<N>, place: Place<N>) -> [f32; N]
+    where
+        Axes: Space<N>,
+    {
+        let mut sum = [0.0; N];
+        let hits = worley.hits::<4>(place);
+        for (hit, coefficient) in hits.iter().zip(self.combination.coefficients()) {
+            if coefficient != 0.0 {
+                let gradient = worley.metric.gradient(hit.vector);
+                for axis in 0..N {
+                    sum[axis] += coefficient * gradient[axis];
+                }
+            }
+        }
+        sum.map(|part| part * self.scale)
+    }
+
     /// From distances, at least [`Combination::depth`] of them.
-    fn of(&self, distances: &[f32]) -> f32 {
+    pub(crate) fn of(&self, distances: &[f32]) -> f32 {
         self.shift + self.scale * self.combination.of(distances)
     }
 

@@ -5,7 +5,7 @@ use crate::lattice::Lattice;
 use crate::metric::with_norm;
 use crate::search::{Hit, Source, nearest};
 use crate::{Axes, Metric, Scatter, Space, Vector, WorleyError};
-use dapple_hash::Seed;
+use dapple_hash::{Seed, unit_f32};
 
 /// The greatest n of F_n.
 pub const LIMIT: usize = 4;
@@ -54,6 +54,14 @@ pub struct Feature<V> {
     pub id: u64,
 }
 
+impl<V> Feature<V> {
+    /// A random number in `[0, 1)` that belongs to the feature point: the same all over its Voronoi cell.
+    #[must_use]
+    pub fn cell_value(&self) -> f32 {
+        unit_f32((self.id >> 32) as u32)
+    }
+}
+
 /// A feature point of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellPoint<V> {
@@ -71,12 +79,28 @@ where
     #[must_use]
     pub fn new(seed: Seed) -> Self {
         let scatter = Scatter::default();
-        let counts = scatter.counts().expect("the default density is in its range");
+        let counts = scatter
+            .counts()
+            .expect("the default density is in its range");
         Self {
             seed,
             lattice: Lattice::new(seed, scatter, counts),
             scatter,
             metric: Metric::default(),
+        }
+    }
+
+    /// The same basis with other feature points.
+    #[must_use]
+    pub fn with_seed(&self, seed: Seed) -> Self {
+        let lattice = Lattice {
+            root: Lattice::<N>::root(seed),
+            ..self.lattice.clone()
+        };
+        Self {
+            seed,
+            lattice,
+            ..self.clone()
         }
     }
 
@@ -89,7 +113,10 @@ where
         let counts = scatter.counts()?;
         let period = self.lattice.period;
         Ok(Self {
-            lattice: Lattice { period, ..Lattice::new(self.seed, scatter, counts) },
+            lattice: Lattice {
+                period,
+                ..Lattice::new(self.seed, scatter, counts)
+            },
             scatter,
             ..self
         })
@@ -110,7 +137,10 @@ where
     ///
     /// [`Range`](crate::WorleyErrorKind::Range) if the exponent of [`Metric::Minkowski`] is not from 1 to 10.
     pub fn with_metric(self, metric: Metric) -> Result<Self, WorleyError> {
-        Ok(Self { metric: metric.check()?, ..self })
+        Ok(Self {
+            metric: metric.check()?,
+            ..self
+        })
     }
 
     /// Repeats the feature points after so many cells along each axis; `None` where the axis does not repeat.
@@ -121,10 +151,17 @@ where
     /// # Errors
     ///
     /// [`Range`](crate::WorleyErrorKind::Range) if a period is 0.
-    pub fn with_period(self, period: [Option<u32>; N]) -> Result<Self, WorleyError> {
+    pub fn with_period(&self, period: [Option<u32>; N]) -> Result<Self, WorleyError> {
         WorleyError::check(!period.contains(&Some(0)), "period", 0.0, "at least 1 cell")?;
         let period = period.map(|cells| cells.unwrap_or(0));
-        Ok(Self { lattice: Lattice { period, ..self.lattice }, ..self })
+        let lattice = Lattice {
+            period,
+            ..self.lattice.clone()
+        };
+        Ok(Self {
+            lattice,
+            ..self.clone()
+        })
     }
 
     /// How distances are measured.
@@ -144,15 +181,20 @@ where
     /// Points at the same distance are in the order of their ids. A position with a coordinate that is not finite, or
     /// further out than 2^62, has no place: its distances and vectors are NaN and its ids 0.
     #[must_use]
-    pub fn sample<const K: usize>(&self, position: impl Into<Vector<N>>) -> [Feature<Vector<N>>; K] {
+    pub fn sample<const K: usize>(
+        &self,
+        position: impl Into<Vector<N>>,
+    ) -> [Feature<Vector<N>>; K] {
         const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
         match Place::new(position.into().into()) {
             Some(place) => self.hits(place).map(|hit| self.feature(hit)),
-            None => [Feature {
-                distance: f32::NAN,
-                vector: [f64::NAN; N].into(),
-                id: 0,
-            }; K],
+            None => {
+                [Feature {
+                    distance: f32::NAN,
+                    vector: [f64::NAN; N].into(),
+                    id: 0,
+                }; K]
+            }
         }
     }
 
@@ -162,7 +204,9 @@ where
         let mut points = Vec::new();
         self.lattice.visit(cell, |steps, name| {
             points.push(CellPoint {
-                offset: steps.map(|steps| f64::from(steps) / f64::from(STEPS)).into(),
+                offset: steps
+                    .map(|steps| f64::from(steps) / f64::from(STEPS))
+                    .into(),
                 id: self.lattice.id(name),
             });
         });

@@ -75,9 +75,9 @@ where
                 0 => &self.columns.places[self.range.clone()],
                 _ => &self.rows[axis].places,
             };
-            let steps = places.iter().map(|&(cell, steps)| {
-                ((cell - cells.first[axis]) as i32) * STEPS + steps
-            });
+            let steps = places
+                .iter()
+                .map(|&(cell, steps)| ((cell - cells.first[axis]) as i32) * STEPS + steps);
             let line = &mut memory.lines[axis];
             line.clear();
             line.extend(steps);
@@ -117,8 +117,8 @@ where
             };
         }
         let cells = cells.widened(i64::from(ring));
-        let is_small = cells.n_cells() <= MOST_CELLS
-            && (0..N).all(|axis| cells.side(axis) <= LONGEST_SIDE);
+        let is_small =
+            cells.n_cells() <= MOST_CELLS && (0..N).all(|axis| cells.side(axis) <= LONGEST_SIDE);
         is_small.then_some(cells)
     }
 

@@ -194,7 +194,8 @@ impl<const N: usize> Candidates<N> {
     #[inline(always)]
     fn add_up_rows<S: Simd, M: Norm>(&mut self, simd: S, norm: M, find: &Find<'_, N>) {
         if self.row_terms.len() < self.len * LANES {
-            self.row_terms.resize(self.len.next_power_of_two() * LANES, 0.0);
+            self.row_terms
+                .resize(self.len.next_power_of_two() * LANES, 0.0);
         }
         let mut rows = [f32x16::splat(simd, 0.0); N];
         for axis in 1..N {

@@ -85,7 +85,8 @@ impl Rows<'_> {
             }
             for keys in keys {
                 if row < self.rows.end {
-                    self.values.put(norm, keys, &mut out[row][self.columns.clone()]);
+                    self.values
+                        .put(norm, keys, &mut out[row][self.columns.clone()]);
                     row += 1;
                 }
             }
@@ -135,7 +136,9 @@ fn lesser<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
     if floats_are_faster(a.simd) {
         a.min(b)
     } else {
-        a.bitcast::<u32x16<S>>().min(b.bitcast::<u32x16<S>>()).bitcast()
+        a.bitcast::<u32x16<S>>()
+            .min(b.bitcast::<u32x16<S>>())
+            .bitcast()
     }
 }
 
@@ -144,7 +147,9 @@ fn greater<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
     if floats_are_faster(a.simd) {
         a.max(b)
     } else {
-        a.bitcast::<u32x16<S>>().max(b.bitcast::<u32x16<S>>()).bitcast()
+        a.bitcast::<u32x16<S>>()
+            .max(b.bitcast::<u32x16<S>>())
+            .bitcast()
     }
 }
 

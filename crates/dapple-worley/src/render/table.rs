@@ -31,7 +31,9 @@ impl<const N: usize> CellBox<N> {
     /// How many cells there are.
     pub(super) fn n_cells(&self) -> u128 {
         let sides = self.first.iter().zip(self.last);
-        sides.map(|(&first, last)| (i128::from(last) - i128::from(first) + 1) as u128).product()
+        sides
+            .map(|(&first, last)| (i128::from(last) - i128::from(first) + 1) as u128)
+            .product()
     }
 }
 
@@ -50,7 +52,10 @@ impl<const N: usize> Table<N> {
     /// An empty table.
     pub(super) fn new() -> Self {
         Self {
-            cells: CellBox { first: [0; N], last: [0; N] },
+            cells: CellBox {
+                first: [0; N],
+                last: [0; N],
+            },
             starts: Vec::new(),
             steps: core::array::from_fn(|_| Vec::new()),
         }
@@ -84,7 +89,14 @@ impl<const N: usize> Table<N> {
                 let first = chunk * LANES;
                 corner[0] = (first as i32) << STEP_BITS;
                 let n_cells = (side - first).min(LANES);
-                self.add(simd, lattice, hash, columns, (corner, n_cells), &mut scratch);
+                self.add(
+                    simd,
+                    lattice,
+                    hash,
+                    columns,
+                    (corner, n_cells),
+                    &mut scratch,
+                );
             }
         }
         for steps in &mut self.steps {
@@ -129,7 +141,11 @@ impl<const N: usize> Table<N> {
         let mut end = *self.starts.last().unwrap_or(&0);
         for (lane, &number) in numbers[..n_cells].iter().enumerate() {
             for axis in 0..N {
-                let shift = if axis == 0 { (lane as i32) << STEP_BITS } else { 0 };
+                let shift = if axis == 0 {
+                    (lane as i32) << STEP_BITS
+                } else {
+                    0
+                };
                 let to = &mut self.steps[axis];
                 to.truncate(end as usize);
                 for index in 0..number as usize {

@@ -109,12 +109,7 @@ where
     }
 
     /// Finds the points that matter. All keys below the limit that is returned are right.
-    fn find(
-        &self,
-        neighborhood: &Neighborhood,
-        tile: &TileBox<N>,
-        memory: &mut Memory<N>,
-    ) -> f32 {
+    fn find(&self, neighborhood: &Neighborhood, tile: &TileBox<N>, memory: &mut Memory<N>) -> f32 {
         let block = self.block;
         let metric = block.picture.worley.metric;
         let cells = tile.cells(neighborhood.ring);
@@ -130,9 +125,8 @@ where
         };
         if neighborhood.ring > self.guess.ring {
             let corner = memory.table.cells.first;
-            let [first, last] = cells.map(|cells| {
-                core::array::from_fn(|axis| corner[axis] + i64::from(cells[axis]))
-            });
+            let [first, last] = cells
+                .map(|cells| core::array::from_fn(|axis| corner[axis] + i64::from(cells[axis])));
             let cells = CellBox { first, last };
             let lattice = &block.picture.worley.lattice;
             dispatch!(block.level, simd => memory.wide_table.fill(simd, lattice, cells));

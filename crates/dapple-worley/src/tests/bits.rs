@@ -39,7 +39,10 @@ fn doors_agree<const N: usize>(worley: &Worley<N>, planes: &[Plane<N>]) -> Resul
 where
     Axes: Space<N>,
 {
-    for (combination, plane) in COMBINATIONS.iter().flat_map(|c| planes.iter().map(move |p| (c, p))) {
+    for (combination, plane) in COMBINATIONS
+        .iter()
+        .flat_map(|c| planes.iter().map(move |p| (c, p)))
+    {
         let texture = worley.combine(*combination);
         for window in windows() {
             let mut expected = Raster::filled(window.size, 0.0)?;
@@ -51,7 +54,9 @@ where
             }
             for_every_level(|level| {
                 let mut out = Raster::filled(window.size, -1.0).unwrap();
-                texture.picture(plane, &window).render_at(level, out.view_mut());
+                texture
+                    .picture(plane, &window)
+                    .render_at(level, out.view_mut());
                 let differ = out.pixels().iter().zip(expected.pixels());
                 let differ = differ.filter(|(a, b)| a.to_bits() != b.to_bits()).count();
                 assert_eq!(
@@ -87,7 +92,11 @@ fn render_equals_sample_bit_for_bit_in_the_plane() -> Result<(), WorleyError> {
 #[test]
 fn render_equals_sample_bit_for_bit_in_space() -> Result<(), WorleyError> {
     let seed = Seed(12);
-    let oblique = Plane { origin: random::<3>(seed, 0), u: random::<3>(seed, 1), v: random::<3>(seed, 2) };
+    let oblique = Plane {
+        origin: random::<3>(seed, 0),
+        u: random::<3>(seed, 1),
+        v: random::<3>(seed, 2),
+    };
     let planes = [Plane::slice([0.1, 0.2, -5.3].into()), oblique];
     for metric in METRICS {
         doors_agree::<3>(&Worley::new(seed).with_metric(metric)?, &planes)?;
@@ -102,7 +111,11 @@ fn windows_are_crops_bit_for_bit() -> Result<(), WorleyError> {
     let whole = Window::new(DVec2::new(-3.0, 1e5), DVec2::splat(7.3), [300, 200])?;
     let mut all = Raster::filled(whole.size, 0.0)?;
     texture.render_plane(&Plane::default(), &whole, all.view_mut())?;
-    for (first, size) in [([1, 3], [77, 60]), ([250, 131], [50, 69]), ([299, 199], [1, 1])] {
+    for (first, size) in [
+        ([1, 3], [77, 60]),
+        ([250, 131], [50, 69]),
+        ([299, 199], [1, 1]),
+    ] {
         let part = whole.crop(first.map(i64::from), size)?;
         let mut pixels = Raster::filled(size, 0.0)?;
         texture.render_plane(&Plane::default(), &part, pixels.view_mut())?;

@@ -1,6 +1,6 @@
 //! F1 to F4 beside all points of a wide neighborhood, sorted.
 
-use crate::{Axes, Metric, Scatter, Space, Worley, WorleyError, hash};
+use crate::{Axes, Metric, Scatter, Space, Worley, WorleyError};
 use dapple_hash::{Seed, hash1, unit_f64};
 
 /// All feature points within `reach` cells, as distances and ids, nearest first: in double precision.
@@ -16,13 +16,13 @@ where
     let side = 2 * reach + 1;
     let mut found = Vec::new();
     for index in 0..side.pow(N as u32) {
-        let cell: [i64; N] = core::array::from_fn(|axis| {
-            base[axis] + index / side.pow(axis as u32) % side - reach
-        });
+        let cell: [i64; N] =
+            core::array::from_fn(|axis| base[axis] + index / side.pow(axis as u32) % side - reach);
         for point in worley.cell_points(cell) {
             let offset: [f64; N] = point.offset.into();
             let vector: [f64; N] = core::array::from_fn(|axis| {
-                (position[axis] - base[axis] as f64) - (offset[axis] + (cell[axis] - base[axis]) as f64)
+                (position[axis] - base[axis] as f64)
+                    - (offset[axis] + (cell[axis] - base[axis]) as f64)
             });
             found.push((length(worley.metric(), vector), point.id));
         }
@@ -75,8 +75,10 @@ where
     Axes: Space<N>,
 {
     for (metric, scatter) in METRICS.iter().flat_map(|&m| SCATTERS.map(|s| (m, s))) {
-        let seed = hash::Seed(5);
-        let worley = Worley::<N>::new(seed).with_metric(metric)?.with_scatter(scatter)?;
+        let seed = Seed(5);
+        let worley = Worley::<N>::new(seed)
+            .with_metric(metric)?
+            .with_scatter(scatter)?;
         for index in 0..samples {
             let at = position(seed, index, 1e3);
             let expected = brute_force(&worley, at, reach);
@@ -90,7 +92,12 @@ where
                     n + 1,
                     feature.distance
                 );
-                assert_eq!(feature.id, id, "F{} of {metric:?} {scatter:?} at {at:?}", n + 1);
+                assert_eq!(
+                    feature.id,
+                    id,
+                    "F{} of {metric:?} {scatter:?} at {at:?}",
+                    n + 1
+                );
             }
         }
     }

@@ -1,0 +1,275 @@
+//! Fractal sums: the same texture at several scales, on top of each other.
+//!
+//! Worley sums `G_n(x) = Σ 2^-i F_n(2^i x)` for `i` from 0 to 5, of F_n and of their combinations ("A Cellular Texture
+//! Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). His octaves are literally one field,
+//! which shows where they agree: at the origin all have the same center. A seed for each octave avoids that.
+//!
+//! With a period, octave `i` repeats after `lacunarity^i` times as many of its own cells, so that the sum repeats with
+//! the period of the first octave and no octave more often.
+
+use crate::cellular::measure_range;
+use crate::fixed::Place;
+use crate::render::Picture;
+use crate::sink::{Tone, Values};
+use crate::{Axes, Cellular, Plane, Space, Vector, Worley, WorleyError};
+use dapple_hash::Seed;
+use dapple_raster::{Field, RasterError, RasterViewMut, Window};
+use glam::DVec2;
+
+/// How many octaves a fractal sum has, and how they differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default)
+)]
+pub struct Octaves {
+    /// How many: from 1 to 32; 6 by default.
+    pub count: u32,
+    /// How much finer each is than the one before: from 1 to 16; 2 by default.
+    pub lacunarity: f64,
+    /// How much lower each is than the one before: from -1 to 1; ½ by default.
+    pub gain: f64,
+    /// Whether the octaves are one field.
+    pub seeds: OctaveSeeds,
+}
+
+/// Whether the octaves of a fractal sum are one field.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum OctaveSeeds {
+    /// All octaves are literally the same field, as in the paper.
+    #[default]
+    Same,
+    /// Every octave has feature points of its own.
+    Own,
+}
+
+impl Default for Octaves {
+    /// The paper's: six octaves, each twice as fine and half as high.
+    fn default() -> Self {
+        Self {
+            count: 6,
+            lacunarity: 2.0,
+            gain: 0.5,
+            seeds: OctaveSeeds::Same,
+        }
+    }
+}
+
+/// A fractal sum of a scalar texture.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_worley::{Combination, Octaves, Worley3, hash::Seed};
+///
+/// let crumpled = Worley3::new(Seed(7)).combine(Combination::F1).fractal(Octaves::default())?;
+/// assert!(crumpled.value([0.5, 0.25, 3.0]) > 0.0);
+/// # Ok::<(), dapple_worley::WorleyError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Fractal<const N: usize> {
+    octaves: Vec<Octave<N>>,
+    /// Of the first octave and of the others alike; the sum is mapped last.
+    tone: Tone,
+    range: Tone,
+}
+
+#[derive(Clone, Debug)]
+struct Octave<const N: usize> {
+    worley: Worley<N>,
+    frequency: f64,
+    weight: f32,
+}
+
+impl<const N: usize> Cellular<N>
+where
+    Axes: Space<N>,
+{
+    /// The sum of this texture at several scales.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::WorleyErrorKind::Range) if one of the octaves' numbers is out of its range, if the basis has a
+    /// period and the lacunarity is not a whole number, or if a period gets longer than 2^32 - 1 cells.
+    pub fn fractal(&self, octaves: Octaves) -> Result<Fractal<N>, WorleyError> {
+        let Octaves {
+            count,
+            lacunarity,
+            gain,
+            seeds,
+        } = octaves;
+        let has_period = self.worley.lattice.period.iter().any(|&period| period > 0);
+        let check = WorleyError::check;
+        check(
+            (1..=32).contains(&count),
+            "number of octaves",
+            f64::from(count),
+            "from 1 to 32",
+        )?;
+        check(
+            (1.0..=16.0).contains(&lacunarity),
+            "lacunarity",
+            lacunarity,
+            "from 1 to 16",
+        )?;
+        check((-1.0..=1.0).contains(&gain), "gain", gain, "from -1 to 1")?;
+        check(
+            !has_period || lacunarity.fract() == 0.0,
+            "lacunarity",
+            lacunarity,
+            "a whole number if there is a period",
+        )?;
+        let mut sum = Vec::new();
+        let (mut frequency, mut weight) = (1.0, 1.0);
+        for index in 0..count {
+            let mut worley = match seeds {
+                OctaveSeeds::Same => self.worley.clone(),
+                OctaveSeeds::Own => self
+                    .worley
+                    .with_seed(self.worley.seed.child("octave", u64::from(index))),
+            };
+            for period in &mut worley.lattice.period {
+                let cells = f64::from(*period) * frequency;
+                check(
+                    cells <= f64::from(u32::MAX),
+                    "period of an octave",
+                    cells,
+                    "below 2^32",
+                )?;
+                *period = cells as u32;
+            }
+            sum.push(Octave {
+                worley,
+                frequency,
+                weight: weight as f32,
+            });
+            frequency *= lacunarity;
+            weight *= gain;
+        }
+        Ok(Fractal {
+            octaves: sum,
+            tone: self.tone,
+            range: Tone::plain(crate::Combination::F1),
+        })
+    }
+}
+
+impl<const N: usize> Fractal<N>
+where
+    Axes: Space<N>,
+{
+    /// The value at a position. NaN if the position, or that of an octave, has no place, see [`Worley::sample`].
+    #[must_use]
+    pub fn value(&self, position: impl Into<Vector<N>>) -> f32 {
+        let position: [f64; N] = position.into().into();
+        let mut sum = 0.0;
+        for octave in &self.octaves {
+            let Some(place) = octave.place(position) else {
+                return f32::NAN;
+            };
+            sum += self.tone.at(&octave.worley, place) * octave.weight;
+        }
+        self.range.of(&[sum])
+    }
+
+    /// The gradient of the value at a position, per cell of the first octave. All NaN where the value is.
+    #[must_use]
+    pub fn gradient(&self, position: impl Into<Vector<N>>) -> Vector<N> {
+        let position: [f64; N] = position.into().into();
+        let mut sum = [0.0; N];
+        for octave in &self.octaves {
+            let Some(place) = octave.place(position) else {
+                return Vector::<N>::from([f64::NAN; N]);
+            };
+            let gradient = self.tone.gradient(&octave.worley, place);
+            let slope = f64::from(octave.weight * self.range.scale) * octave.frequency;
+            for axis in 0..N {
+                sum[axis] += f64::from(gradient[axis]) * slope;
+            }
+        }
+        Vector::<N>::from(sum)
+    }
+
+    /// The values at the pixel centers of a window of a plane, into memory of its size.
+    ///
+    /// # Errors
+    ///
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if `out` has another size than the window.
+    pub fn render_plane(
+        &self,
+        plane: &Plane<N>,
+        window: &Window,
+        mut out: RasterViewMut<'_, f32>,
+    ) -> Result<(), RasterError> {
+        window.check_size(out.size())?;
+        out.fill(0.0);
+        for octave in &self.octaves {
+            let picture = Picture {
+                worley: &octave.worley,
+                plane,
+                window,
+                frequency: octave.frequency,
+                values: Values {
+                    tone: self.tone,
+                    weight: Some(octave.weight),
+                },
+            };
+            picture.render(out.reborrow());
+        }
+        for row in out.rows_mut() {
+            for value in row {
+                *value = if value.is_nan() {
+                    f32::NAN
+                } else {
+                    self.range.of(&[*value])
+                };
+            }
+        }
+        Ok(())
+    }
+
+    /// The range of the values, but for one in a thousand at either end: measured at `n` random positions.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::WorleyErrorKind::Range) if `n` is below 1000.
+    pub fn measure_range(&self, seed: Seed, n: u32) -> Result<[f32; 2], WorleyError> {
+        measure_range(seed, n, |position: [f64; N]| {
+            self.value(Vector::<N>::from(position))
+        })
+    }
+
+    /// The same texture with its values mapped so that `range` becomes 0 to 1. Values beyond it are not clamped.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::WorleyErrorKind::Range) if the range is not finite, or empty.
+    pub fn with_range(self, range: [f32; 2]) -> Result<Self, WorleyError> {
+        Ok(Self {
+            range: self.range.with_range(range)?,
+            ..self
+        })
+    }
+}
+
+impl Field for Fractal<2> {
+    fn sample(&self, position: DVec2) -> f32 {
+        self.value(position)
+    }
+
+    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        self.render_plane(&Plane::default(), window, out)
+    }
+}
+
+impl<const N: usize> Octave<N> {
+    fn place(&self, position: [f64; N]) -> Option<Place<N>> {
+        Place::new(position.map(|part| part * self.frequency))
+    }
+}

@@ -1,0 +1,154 @@
+//! Cross-sections of bumps: raised spots and inset channels.
+//!
+//! Worley makes "raised spots or inset channels" of F1 and of F2 − F1 ("A Cellular Texture Basis Function", SIGGRAPH
+//! 1996, <https://doi.org/10.1145/237170.237267>), as is usual with noise. A profile turns such a value into a height;
+//! its slope times the gradient of the value is the gradient of the height, which is what bends a normal (James F.
+//! Blinn, "Simulation of Wrinkled Surfaces", SIGGRAPH 1978, <https://doi.org/10.1145/965139.507101>).
+//! Both profiles are smooth, so that their normals have no creases of their own.
+
+use crate::{WorleyError, WorleyErrorKind};
+
+/// A cross-section: how high a bump is where a texture has a value.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_worley::{Combination, Profile, Worley3, hash::Seed};
+///
+/// let cracks = Worley3::new(Seed(7)).combine(Combination::F2_MINUS_F1);
+/// let channels = Profile::channels(0.1)?;
+/// let position = [0.5, 0.25, 3.0];
+/// let height = channels.height(cracks.value(position));
+/// let slope = f64::from(channels.slope(cracks.value(position)));
+/// let gradient = cracks.gradient(position) * slope;
+/// assert!((0.0..=1.0).contains(&height) && gradient.is_finite());
+/// # Ok::<(), dapple_worley::WorleyError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum Profile {
+    /// A dome, 1 high where the value is 0, and 0 from `radius` on: `(1 − (value / radius)²)²`. Of F1, a raised spot
+    /// about every feature point.
+    Spots {
+        /// Half of the width of a spot, in the units of the value: above 0.
+        radius: f32,
+    },
+    /// A channel, 0 high where the value is 0, and 1 from `width` on: `3 t² − 2 t³` with `t = value / width`. Of
+    /// F2 − F1, channels between raised stones; of F1, round pits.
+    Channels {
+        /// Half of the width of a channel, in the units of the value: above 0.
+        width: f32,
+    },
+}
+
+impl Profile {
+    /// Raised spots with this radius.
+    ///
+    /// # Errors
+    ///
+    /// [`WorleyErrorKind::Range`] if the radius is not finite and above 0.
+    pub fn spots(radius: f32) -> Result<Self, WorleyError> {
+        check("radius of the spots", radius)?;
+        Ok(Self::Spots { radius })
+    }
+
+    /// Inset channels with this half width.
+    ///
+    /// # Errors
+    ///
+    /// [`WorleyErrorKind::Range`] if the width is not finite and above 0.
+    pub fn channels(width: f32) -> Result<Self, WorleyError> {
+        check("width of the channels", width)?;
+        Ok(Self::Channels { width })
+    }
+
+    /// The height where the texture has a value: from 0 to 1.
+    #[must_use]
+    pub fn height(self, value: f32) -> f32 {
+        match self {
+            Self::Spots { radius } => {
+                let t = (value / radius).clamp(-1.0, 1.0);
+                (1.0 - t * t) * (1.0 - t * t)
+            }
+            Self::Channels { width } => {
+                let t = (value / width).clamp(0.0, 1.0);
+                t * t * (3.0 - 2.0 * t)
+            }
+        }
+    }
+
+    /// How fast the height changes with the value.
+    #[must_use]
+    pub fn slope(self, value: f32) -> f32 {
+        match self {
+            Self::Spots { radius } => {
+                let t = (value / radius).clamp(-1.0, 1.0);
+                -4.0 * t * (1.0 - t * t) / radius
+            }
+            Self::Channels { width } => {
+                let t = (value / width).clamp(0.0, 1.0);
+                6.0 * t * (1.0 - t) / width
+            }
+        }
+    }
+}
+
+fn check(what: &'static str, value: f32) -> Result<(), WorleyError> {
+    if value > 0.0 && value.is_finite() && value.recip().is_finite() {
+        return Ok(());
+    }
+    Err(WorleyError::new(WorleyErrorKind::Range {
+        what,
+        value: f64::from(value),
+        range: "finite and above 0",
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Profile;
+
+    #[test]
+    fn profiles_go_from_end_to_end_and_their_slopes_are_their_derivatives() {
+        let [spots, channels] = [
+            Profile::spots(0.25).unwrap(),
+            Profile::channels(0.25).unwrap(),
+        ];
+        assert_eq!(
+            [spots.height(0.0), spots.height(0.25), spots.height(7.0)],
+            [1.0, 0.0, 0.0]
+        );
+        let heights = [
+            channels.height(0.0),
+            channels.height(0.25),
+            channels.height(7.0),
+        ];
+        assert_eq!(heights, [0.0, 1.0, 1.0]);
+        for profile in [spots, channels] {
+            for value in (0..50).map(|step| step as f32 / 100.0) {
+                let h = 1e-3;
+                let difference =
+                    (profile.height(value + h) - profile.height(value - h)) / (2.0 * h);
+                // Second differences of a profile reach 48 per unit, and the step is 1e-3.
+                assert!(
+                    (difference - profile.slope(value)).abs() < 0.06,
+                    "{profile:?} at {value}: {difference} for {}",
+                    profile.slope(value)
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn profiles_without_width_are_refused() {
+        for bad in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e-45] {
+            assert!(Profile::spots(bad).is_err(), "{bad}");
+            assert!(Profile::channels(bad).is_err(), "{bad}");
+        }
+    }
+}
