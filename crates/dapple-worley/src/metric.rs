@@ -115,6 +115,16 @@ pub(crate) trait Norm: Copy + Send + Sync {
         key
     }
 
+    /// The keys of sixteen vectors.
+    #[inline(always)]
+    fn keys<S: Simd, const N: usize>(self, differences: [f32x16<S>; N]) -> f32x16<S> {
+        let mut key = self.terms(differences[N - 1]);
+        for axis in (0..N - 1).rev() {
+            key = self.joins(self.terms(differences[axis]), key);
+        }
+        key
+    }
+
     /// The key of a vector of this length along one axis.
     #[inline(always)]
     fn key_along_one_axis(self, length: f32) -> f32 {

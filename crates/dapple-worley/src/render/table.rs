@@ -126,7 +126,7 @@ impl<const N: usize> Table<N> {
             u32x16::from_slice(simd, &low),
             u32x16::from_slice(simd, &high),
         );
-        let counts = counts(simd, lattice, hashes);
+        let counts = lattice.counts_of(simd, hashes);
         let mut numbers = [0; LANES];
         counts.store_slice(&mut numbers);
         let most = numbers[..n_cells].iter().copied().fold(0, u32::max);
@@ -177,23 +177,6 @@ impl<const N: usize> Table<N> {
         });
         (cell_at, point - self.starts[cell])
     }
-}
-
-/// How many points each of sixteen cells has.
-#[inline(always)]
-pub(super) fn counts<S: Simd, const N: usize>(
-    simd: S,
-    lattice: &Lattice<N>,
-    hashes: CellHashes<S>,
-) -> u32x16<S> {
-    let [bits, _] = hashes.at(u32x16::splat(simd, 0));
-    let mut counts = u32x16::splat(simd, lattice.counts.least());
-    let one = u32x16::splat(simd, 1);
-    for &threshold in lattice.counts.thresholds() {
-        let more = bits.simd_ge(threshold);
-        counts = more.select(counts + one, counts);
-    }
-    counts
 }
 
 /// The low and the high half.

@@ -1,6 +1,6 @@
 //! Equal bits: windows, doors, SIMD levels and threads.
 
-use super::oracle::{METRICS, SCATTERS};
+use super::oracle::{METRICS, SCATTERS, position};
 use crate::simd::for_every_level;
 use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::{Seed, hash1, unit_f64};
@@ -103,6 +103,55 @@ fn render_equals_sample_bit_for_bit_in_space() -> Result<(), WorleyError> {
     }
     let planes = [Plane::slice([0.1, 0.2, -5.3, 1e4].into())];
     doors_agree::<4>(&Worley::new(seed).with_density(1.0)?, &planes)
+}
+
+fn many_equal_single_ones<const N: usize, const K: usize>(
+    worley: &Worley<N>,
+    spread: f64,
+) -> Result<(), WorleyError>
+where
+    Axes: Space<N>,
+{
+    let mut positions: Vec<Vector<N>> = (0..333)
+        .map(|index| Vector::<N>::from(position(Seed(8), index, spread)))
+        .collect();
+    positions[37] = Vector::<N>::from([f64::NAN; N]);
+    positions[99] = Vector::<N>::from([4e18; N]);
+    let expected: Vec<_> = positions.iter().map(|&at| worley.sample::<K>(at)).collect();
+    for_every_level(|level| {
+        let mut found = vec![worley.sample::<K>([0.5; N]); positions.len()];
+        worley.sample_many_at(level, &positions, &mut found).unwrap();
+        for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {
+            let same = found.iter().zip(expected).all(|(a, b)| {
+                a == b && a.distance.to_bits() == b.distance.to_bits() || b.distance.is_nan()
+            });
+            assert!(
+                same && (index != 37 || found[0].distance.is_nan()),
+                "{:?} {:?} {level:?} at {:?}: {found:?} for {expected:?}",
+                worley.metric, worley.scatter, positions[index]
+            );
+        }
+    });
+    Ok(())
+}
+
+#[test]
+fn many_positions_equal_single_ones_bit_for_bit() -> Result<(), WorleyError> {
+    for scatter in SCATTERS {
+        for metric in METRICS {
+            let spread = if scatter == SCATTERS[4] { 1e12 } else { 40.0 };
+            let plane = Worley::<2>::new(Seed(4)).with_scatter(scatter)?.with_metric(metric)?;
+            many_equal_single_ones::<2, 4>(&plane, spread)?;
+            many_equal_single_ones::<2, 1>(&plane.with_period([Some(5), None])?, spread)?;
+        }
+        let space = Worley::<3>::new(Seed(4)).with_scatter(scatter)?;
+        many_equal_single_ones::<3, 2>(&space.with_period([None, Some(3), Some(1)])?, spread_of(scatter))?;
+    }
+    many_equal_single_ones::<4, 3>(&Worley::<4>::new(Seed(4)), 1e3)
+}
+
+fn spread_of(scatter: crate::Scatter) -> f64 {
+    if scatter == SCATTERS[0] { 1e9 } else { 10.0 }
 }
 
 #[test]
