@@ -3,7 +3,7 @@
 //! The arithmetic is that of [`mix`](crate::mix), written once more for registers; a test compares the two.
 
 use crate::CellHash;
-use crate::mix::{M0, M1, M2, M3};
+use crate::mix::{M0, M1, M2, M3, N0, N1};
 use fearless_simd::{prelude::*, u32x16};
 
 /// Sixteen [`CellHash`]es, one in each lane.
@@ -37,6 +37,15 @@ impl<S: Simd> CellHashes<S> {
     }
 }
 
+/// [`mix32`](crate::mix32) in every lane.
+#[inline(always)]
+#[must_use]
+pub fn mix32_lanes<S: Simd>(mut bits: u32x16<S>) -> u32x16<S> {
+    bits = (bits ^ (bits >> 16)) * N0;
+    bits = (bits ^ (bits >> 15)) * N1;
+    bits ^ (bits >> 16)
+}
+
 #[inline(always)]
 fn absorb<S: Simd>([mut a, mut b]: [u32x16<S>; 2], word: u32x16<S>) -> [u32x16<S>; 2] {
     a = (a ^ word) * M0;
@@ -60,8 +69,8 @@ fn finish<S: Simd>([mut a, mut b]: [u32x16<S>; 2]) -> [u32x16<S>; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::CellHashes;
-    use crate::{CellHash, Seed, hash1};
+    use super::{CellHashes, mix32_lanes};
+    use crate::{CellHash, Seed, hash1, mix32};
     use fearless_simd::{Level, dispatch, prelude::*, u32x16};
 
     #[test]
@@ -73,12 +82,16 @@ mod tests {
         let lanes = dispatch!(Level::new(), simd => high_and_low(simd, hash, &cells));
         for (lane, cell) in cells.into_iter().enumerate() {
             let expected = CellHash::new(Seed(9), cell).at(lane as u32);
-            assert_eq!(lanes[lane], expected, "lane {lane}");
+            assert_eq!(
+                lanes[lane],
+                (expected, mix32(expected as u32)),
+                "lane {lane}"
+            );
         }
     }
 
     #[inline(always)]
-    fn high_and_low<S: Simd>(simd: S, row: CellHash, cells: &[[i64; 3]; 16]) -> [u64; 16] {
+    fn high_and_low<S: Simd>(simd: S, row: CellHash, cells: &[[i64; 3]; 16]) -> [(u64, u32); 16] {
         let mut words = [[0; 16]; 5];
         for (lane, cell) in cells.iter().enumerate() {
             words[0][lane] = cell[0] as u32;
@@ -90,6 +103,12 @@ mod tests {
         let [x, x_high, y, y_high, index] = words.map(|word| u32x16::from_slice(simd, &word));
         let hashes = CellHashes::splat(simd, row).axis(y, y_high).axis(x, x_high);
         let [high, low] = hashes.at(index);
-        core::array::from_fn(|lane| u64::from(high[lane]) << 32 | u64::from(low[lane]))
+        let mixed = mix32_lanes(low);
+        core::array::from_fn(|lane| {
+            (
+                u64::from(high[lane]) << 32 | u64::from(low[lane]),
+                mixed[lane],
+            )
+        })
     }
 }

@@ -34,7 +34,8 @@ mod unit;
 
 pub use cell::{CellHash, hash1, hash2, hash3, hash4};
 #[cfg(feature = "simd")]
-pub use lanes::CellHashes;
+pub use lanes::{CellHashes, mix32_lanes};
+pub use mix::mix32;
 pub use poisson::{PoissonCounts, PoissonError, PoissonErrorKind};
 pub use rand_core;
 pub use rand_pcg::Pcg32;

@@ -84,6 +84,20 @@ impl PoissonCounts {
             })
     }
 
+    /// The count of the smallest bits.
+    #[must_use]
+    #[inline]
+    pub fn least(&self) -> u32 {
+        self.least
+    }
+
+    /// The bits from which on the count is one more than the smallest, two more, and so on.
+    #[must_use]
+    #[inline]
+    pub fn thresholds(&self) -> &[u32] {
+        &self.thresholds
+    }
+
     /// The smallest and the largest count that [`count`](Self::count) gives.
     #[must_use]
     pub fn range(&self) -> core::ops::RangeInclusive<u32> {

@@ -15,7 +15,7 @@ pub(crate) const STEPS: i32 = 1 << STEP_BITS;
 pub(crate) const STEP: f32 = 1.0 / STEPS as f32;
 
 /// Coordinates past this have no cell: neighbors of a cell must be whole numbers too.
-const FARTHEST: f64 = (1_u64 << 62) as f64;
+pub(crate) const FARTHEST: f64 = (1_u64 << 62) as f64;
 
 /// A position: the cell that it is in, and the steps from the cell's lower corner, `0..STEPS`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,16 +1,18 @@
 //! The feature points of each cell, made from one hash of the cell; nothing is stored.
 //!
-//! Counter 0 of a cell's hash draws how many points it has, counter `1 + i` the position of point `i`, and counter
-//! `2^31 + i` its id. With a period, a cell has the hash of the cell that it repeats.
+//! Counter 0 of a cell's hash gives two words. The first draws how many points there are; from both, the position of
+//! each point is drawn by adding a constant for every point and mixing. Counter `2^31 + i` gives the id of point `i`.
+//! With a period, a cell has the hash of the cell that it repeats.
 
 use crate::fixed::{STEP_BITS, STEPS};
 use crate::scatter::{JITTER_PARTS, Scatter};
 use crate::search::{Name, Source};
 use core::ops::{Add, BitAnd, BitOr, Mul, Shl, Shr};
-use dapple_hash::{CellHash, PoissonCounts, Seed};
+use dapple_hash::{CellHash, CellHashes, PoissonCounts, Seed, mix32, mix32_lanes};
+use fearless_simd::{prelude::*, u32x16};
 
-/// The counter of the position of point 0.
-pub(crate) const POSITIONS: u32 = 1;
+/// What is added to the two words of a cell for each of its points: odd, so that no sum comes twice.
+pub(crate) const STRIDES: [u32; 2] = [0x9E37_79B9, 0xC2B2_AE3D];
 
 /// The counter of the id of point 0.
 pub(crate) const IDS: u32 = 1 << 31;
@@ -59,17 +61,14 @@ impl<const N: usize> Lattice<N> {
         })
     }
 
-    /// How many points the cell with this hash has.
+    /// Where in its cell a point lies, from the words of the cell.
     #[inline]
-    pub(crate) fn count(&self, hash: CellHash) -> u32 {
-        self.counts.count((hash.at(0) >> 32) as u32)
-    }
-
-    /// Where in its cell a point lies.
-    #[inline]
-    pub(crate) fn steps(&self, hash: CellHash, index: u32) -> [i32; N] {
-        let bits = hash.at(POSITIONS + index);
-        steps([(bits >> 32) as u32, bits as u32], self.jitter).map(u32::cast_signed)
+    fn steps(&self, words: [u32; 2], index: u32) -> [i32; N] {
+        let word = |which: usize| {
+            let stride = STRIDES[which].wrapping_mul(index + 1);
+            mix32(words[which].wrapping_add(stride))
+        };
+        steps([word(0), word(1)], self.jitter).map(u32::cast_signed)
     }
 }
 
@@ -77,14 +76,55 @@ impl<const N: usize> Source<N> for Lattice<N> {
     #[inline]
     fn visit(&self, cell: [i64; N], mut each: impl FnMut([i32; N], Name)) {
         let hash = self.hash(cell);
-        for index in 0..self.count(hash) {
-            each(self.steps(hash, index), Name { hash, index });
+        let bits = hash.at(0);
+        let words = [(bits >> 32) as u32, bits as u32];
+        for index in 0..self.counts.count(words[0]) {
+            each(self.steps(words, index), Name { hash, index });
         }
     }
 
     #[inline]
     fn id(&self, name: Name) -> u64 {
         name.hash.at(IDS + name.index)
+    }
+}
+
+/// Sixteen cells side by side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SixteenCells<S: Simd> {
+    words: [u32x16<S>; 2],
+    /// How many points each has.
+    pub(crate) counts: u32x16<S>,
+}
+
+impl<S: Simd> SixteenCells<S> {
+    #[inline(always)]
+    pub(crate) fn new<const N: usize>(
+        simd: S,
+        lattice: &Lattice<N>,
+        hashes: CellHashes<S>,
+    ) -> Self {
+        let words = hashes.at(u32x16::splat(simd, 0));
+        let mut counts = u32x16::splat(simd, lattice.counts.least());
+        let one = u32x16::splat(simd, 1);
+        for &threshold in lattice.counts.thresholds() {
+            counts = words[0].simd_ge(threshold).select(counts + one, counts);
+        }
+        Self { words, counts }
+    }
+
+    /// The steps of one point of each cell, from the lower corner of the cell.
+    #[inline(always)]
+    pub(crate) fn steps<const N: usize>(&self, index: u32x16<S>, jitter: u32) -> [u32x16<S>; N] {
+        let next = index + 1;
+        let [a, b] = [next * STRIDES[0], next * STRIDES[1]];
+        steps(
+            [
+                mix32_lanes(self.words[0] + a),
+                mix32_lanes(self.words[1] + b),
+            ],
+            jitter,
+        )
     }
 }
 

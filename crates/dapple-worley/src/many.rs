@@ -2,16 +2,23 @@
 //!
 //! Every lane visits its own cell and the neighbors of that, the near ones first: along each axis, first the cell
 //! itself, then the neighbor on the nearer side, then the other. A neighbor that is too far away for all lanes is left
-//! out. A lane for which neighbors were not enough, or in which two distances are equal, is searched again on its own.
+//! out.
+//!
+//! While searching, the low bits of a key hold which point it belongs to, so that one minimum and one maximum sort both
+//! at once. The order of two points whose keys agree in the other bits is not known then. A lane that has such points,
+//! or for which neighbors are not enough, does not hold, and is searched again on its own.
 
-use crate::fixed::{Place, STEP, STEPS};
-use crate::lattice::{IDS, Lattice, POSITIONS, steps};
+use crate::fixed::{STEP, STEPS, split};
+use crate::lattice::{IDS, Lattice, SixteenCells};
 use crate::metric::Norm;
 use dapple_hash::CellHashes;
-use fearless_simd::{f32x16, i32x16, mask32x16, prelude::*, u32x16};
+use fearless_simd::{f32x16, f64x8, i32x16, prelude::*, u32x16, u64x8};
 
 /// The positions of a register.
 pub(crate) const LANES: usize = 16;
+
+/// The low and the high word of sixteen whole numbers.
+type Words<S> = [u32x16<S>; 2];
 
 /// Sixteen places, axis by axis.
 pub(crate) struct Places<S: Simd, const N: usize> {
@@ -19,58 +26,63 @@ pub(crate) struct Places<S: Simd, const N: usize> {
     steps: [i32x16<S>; N],
     /// For each axis, which neighbor is nearer: -1 or 1.
     nearer: [i32x16<S>; N],
-    /// For each axis, the low and the high words of the own cell, the nearer and the other neighbor.
-    words: [[[u32x16<S>; 2]; 3]; N],
+    /// For each axis, the own cell, the nearer and the other neighbor.
+    cells: [[Words<S>; 3]; N],
 }
 
 /// The nearest points of sixteen places.
 pub(crate) struct Nearest<S: Simd, const K: usize> {
-    /// Their keys, smallest first.
-    pub(crate) keys: [f32x16<S>; K],
-    /// Which points they are: see [`code`].
+    /// Which points they are, nearest first: see [`INDEX_SHIFT`].
     codes: [u32x16<S>; K],
     /// The lanes that hold, as bits.
     pub(crate) holds: u64,
 }
 
 /// One of the nearest points of sixteen places.
-pub(crate) struct Points<const N: usize> {
-    pub(crate) vector: [[f32; LANES]; N],
-    pub(crate) id: [[u32; LANES]; 2],
+pub(crate) struct Points<S: Simd, const N: usize> {
+    /// The ways from the points to the places, in cells.
+    pub(crate) vectors: [f32x16<S>; N],
+    /// The low and the high words of their ids.
+    pub(crate) ids: Words<S>,
 }
 
+/// The key of no point: the largest number. (Infinity with a code in its low bits would not be a number.)
+const NOTHING: u32 = f32::MAX.to_bits();
+
+/// `f64` has whole numbers only between this and twice this, and their difference from this is in the low bits.
+const WHOLE: f64 = (3_u64 << 51) as f64;
+
 impl<S: Simd, const N: usize> Places<S, N> {
+    /// The places of sixteen positions, axis by axis; those that have none get any, and are not told apart.
     #[inline(always)]
-    pub(crate) fn new(simd: S, lattice: &Lattice<N>, places: &[Place<N>; LANES]) -> Self {
+    pub(crate) fn new(simd: S, lattice: &Lattice<N>, positions: &[[f64; LANES]; N]) -> Self {
         let zero = u32x16::splat(simd, 0);
-        let mut result = Self {
+        let mut places = Self {
             steps: [i32x16::splat(simd, 0); N],
             nearer: [i32x16::splat(simd, 1); N],
-            words: [[[zero; 2]; 3]; N],
+            cells: [[[zero; 2]; 3]; N],
         };
         for axis in 0..N {
-            let mut steps = [0; LANES];
-            let mut nearer = [0; LANES];
-            let mut words = [[[0; LANES]; 2]; 3];
-            for (lane, place) in places.iter().enumerate() {
-                steps[lane] = place.steps[axis];
-                nearer[lane] = if place.steps[axis] < STEPS / 2 { -1 } else { 1 };
-                for (words, shift) in words.iter_mut().zip([0, nearer[lane], -nearer[lane]]) {
-                    let cell = lattice.wrap(axis, place.cell[axis] + i64::from(shift));
-                    words[0][lane] = cell as u32;
-                    words[1][lane] = (cell >> 32) as u32;
-                }
+            let (cell, steps) = split_lanes(simd, &positions[axis]);
+            let is_low = steps.simd_lt(STEPS / 2);
+            let [one, minus_one] = [1, -1].map(|shift| i32x16::splat(simd, shift));
+            let nearer = is_low.select(minus_one, one);
+            places.steps[axis] = steps;
+            places.nearer[axis] = nearer;
+            let [below, above] = [previous(cell), next(cell)];
+            let [mut near, mut far] = [cell; 2];
+            for half in 0..2 {
+                near[half] = is_low.select(below[half], above[half]);
+                far[half] = is_low.select(above[half], below[half]);
             }
-            result.steps[axis] = i32x16::from_slice(simd, &steps);
-            result.nearer[axis] = i32x16::from_slice(simd, &nearer);
-            for digit in 0..3 {
-                for half in 0..2 {
-                    result.words[axis][digit][half] =
-                        u32x16::from_slice(simd, &words[digit][half]);
+            places.cells[axis] = [cell, near, far];
+            if lattice.period[axis] > 0 {
+                for cell in &mut places.cells[axis] {
+                    *cell = wrap(lattice, axis, *cell);
                 }
             }
         }
-        result
+        places
     }
 
     /// The `K` nearest points.
@@ -81,10 +93,10 @@ impl<S: Simd, const N: usize> Places<S, N> {
         norm: M,
         lattice: &Lattice<N>,
     ) -> Nearest<S, K> {
-        let infinite = f32x16::splat(simd, f32::INFINITY);
-        let mut keys = [infinite; K];
-        let mut codes = [u32x16::splat(simd, 0); K];
-        let mut ties = mask32x16::splat(simd, false);
+        let mut best = [u32x16::splat(simd, NOTHING); K];
+        let mut next = u32x16::splat(simd, NOTHING);
+        let index_bits = u32::BITS - lattice.counts.range().end().leading_zeros();
+        let code_mask = (1 << (2 * N as u32 + index_bits)) - 1;
         let gaps = self.gaps(simd, norm);
         let rows = self.rows(simd, lattice);
         for &cell in cells_by_distance::<N>() {
@@ -93,47 +105,66 @@ impl<S: Simd, const N: usize> Places<S, N> {
             for axis in (0..N - 1).rev() {
                 gap = norm.joins(gaps[axis][digit(cell, axis)], gap);
             }
-            let matters = gap.simd_le(keys[K - 1] * M::LOOSE);
+            let reach = (best[K - 1] | code_mask).bitcast::<f32x16<S>>();
+            let matters = gap.simd_le(reach);
             if matters.all_false() {
                 continue;
             }
-            let [low, high] = self.words[0][digit(cell, 0)];
+            let [low, high] = self.cells[0][digit(cell, 0)];
             let hashes = rows[row_index::<N>(cell)].axis(low, high);
-            let counts = lattice.counts_of(simd, hashes);
-            let counts = matters.select(counts, u32x16::splat(simd, 0));
+            let cells = SixteenCells::new(simd, lattice, hashes);
+            let counts = matters.select(cells.counts, u32x16::splat(simd, 0));
             let origins = self.origins(simd, cell);
             for index in 0..counts.reduce_max() {
                 let index_lanes = u32x16::splat(simd, index);
-                let bits = hashes.at(u32x16::splat(simd, POSITIONS + index));
-                let key = norm.keys(vector(&origins, bits, lattice.jitter));
-                let key = counts.simd_gt(index_lanes).select(key, infinite);
-                let code = u32x16::splat(simd, code(cell, index));
-                ties = ties | insert(&mut keys, &mut codes, key, code);
+                let points: [_; N] = cells.steps(index_lanes, lattice.jitter);
+                let mut vector = [gap; N];
+                for axis in 0..N {
+                    let ahead = origins[axis] - points[axis].bitcast::<i32x16<S>>();
+                    vector[axis] = ahead.to_float();
+                }
+                let key = norm.keys(vector).bitcast::<u32x16<S>>();
+                let coded = (key & !code_mask) | (cell << index_bits | index);
+                let is_there = counts.simd_gt(index_lanes);
+                let mut coded = is_there.select(coded, u32x16::splat(simd, NOTHING));
+                for best in &mut best {
+                    let larger = best.max(coded);
+                    *best = best.min(coded);
+                    coded = larger;
+                }
+                next = next.min(coded);
             }
         }
-        let is_right = (keys[K - 1] * M::LOOSE).simd_lt(self.border(simd, norm));
+        let is_last = (best[K - 1] | code_mask).bitcast::<f32x16<S>>();
+        let mut holds = is_last.simd_lt(self.border(simd, norm));
+        for rank in 0..K {
+            let after = if rank + 1 < K { best[rank + 1] } else { next };
+            holds = holds & (best[rank] | code_mask).simd_lt(after | code_mask);
+        }
+        for code in &mut best {
+            let index = *code & ((1 << index_bits) - 1);
+            *code = (*code & code_mask) >> index_bits | index << INDEX_SHIFT;
+        }
         Nearest {
-            keys,
-            codes,
-            holds: is_right.to_bitmask() & !ties.to_bitmask(),
+            codes: best,
+            holds: holds.to_bitmask(),
         }
     }
 
-    /// For each axis, the terms of the distances to the own cell, the nearer and the other neighbor.
+    /// For each axis, the terms of the distances to the own cell, the nearer and the other neighbor, in steps.
     #[inline(always)]
     fn gaps<M: Norm>(&self, simd: S, norm: M) -> [[f32x16<S>; 3]; N] {
-        let zero = norm.terms(f32x16::splat(simd, 0.0));
-        let mut gaps = [[zero; 3]; N];
+        let mut gaps = [[f32x16::splat(simd, 0.0); 3]; N];
         for axis in 0..N {
             let below = self.steps[axis];
             let above = i32x16::splat(simd, STEPS) - below;
-            gaps[axis][1] = norm.terms(cells(below.min(above)));
-            gaps[axis][2] = norm.terms(cells(below.max(above)));
+            gaps[axis][1] = norm.terms(below.min(above).to_float());
+            gaps[axis][2] = norm.terms(below.max(above).to_float());
         }
         gaps
     }
 
-    /// Beyond the neighbors, keys are no smaller than this.
+    /// Beyond the neighbors, keys are no smaller than this, in steps.
     #[inline(always)]
     fn border<M: Norm>(&self, simd: S, norm: M) -> f32x16<S> {
         let mut nearest = i32x16::splat(simd, STEPS);
@@ -141,7 +172,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
             let above = i32x16::splat(simd, STEPS) - self.steps[axis];
             nearest = nearest.min(self.steps[axis]).min(above);
         }
-        norm.terms(cells(nearest + STEPS))
+        norm.terms((nearest + STEPS).to_float())
     }
 
     /// The hashes of the rows of cells: of all axes but the first.
@@ -151,7 +182,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
         let mut n_rows = 1;
         for axis in (1..N).rev() {
             for digit in (0..3).rev() {
-                let [low, high] = self.words[axis][digit];
+                let [low, high] = self.cells[axis][digit];
                 for row in 0..n_rows {
                     rows[digit * n_rows + row] = rows[row].axis(low, high);
                 }
@@ -166,16 +197,17 @@ impl<S: Simd, const N: usize> Places<S, N> {
     fn origins(&self, simd: S, cell: u32) -> [i32x16<S>; N] {
         let mut origins = self.steps;
         for axis in 0..N {
+            let shift = self.nearer[axis] * i32x16::splat(simd, STEPS);
             match digit(cell, axis) {
-                1 => origins[axis] -= self.nearer[axis] * i32x16::splat(simd, STEPS),
-                2 => origins[axis] += self.nearer[axis] * i32x16::splat(simd, STEPS),
+                1 => origins[axis] -= shift,
+                2 => origins[axis] += shift,
                 _ => {}
             }
         }
         origins
     }
 
-    /// The ways from the points of a rank to the places, and their ids.
+    /// The points of a rank.
     #[inline(always)]
     pub(crate) fn points<const K: usize>(
         &self,
@@ -183,14 +215,14 @@ impl<S: Simd, const N: usize> Places<S, N> {
         lattice: &Lattice<N>,
         nearest: &Nearest<S, K>,
         rank: usize,
-    ) -> Points<N> {
+    ) -> Points<S, N> {
         let code = nearest.codes[rank];
         let mut hashes = CellHashes::splat(simd, lattice.root);
         let mut origins = self.steps;
         for axis in (0..N).rev() {
             let digit = (code >> (2 * axis as u32)) & 3;
             let [is_near, is_far] = [1, 2].map(|which| digit.simd_eq(which));
-            let [own, near, far] = self.words[axis];
+            let [own, near, far] = self.cells[axis];
             let low = is_near.select(near[0], is_far.select(far[0], own[0]));
             let high = is_near.select(near[1], is_far.select(far[1], own[1]));
             hashes = hashes.axis(low, high);
@@ -199,48 +231,97 @@ impl<S: Simd, const N: usize> Places<S, N> {
             origins[axis] -= is_near.select(shift, is_far.select(zero - shift, zero));
         }
         let index = code >> INDEX_SHIFT;
-        let bits = hashes.at(index + POSITIONS);
-        let ways = vector(&origins, bits, lattice.jitter);
-        let mut points = Points {
-            vector: [[0.0; LANES]; N],
-            id: [[0; LANES]; 2],
-        };
+        let points: [_; N] = SixteenCells::new(simd, lattice, hashes).steps(index, lattice.jitter);
+        let mut vectors = [f32x16::splat(simd, 0.0); N];
         for axis in 0..N {
-            ways[axis].store_slice(&mut points.vector[axis]);
+            let ahead = origins[axis] - points[axis].bitcast::<i32x16<S>>();
+            vectors[axis] = ahead.to_float::<f32x16<S>>() * STEP;
         }
         let [high, low] = hashes.at(index + IDS);
-        low.store_slice(&mut points.id[0]);
-        high.store_slice(&mut points.id[1]);
-        points
+        Points {
+            vectors,
+            ids: [low, high],
+        }
     }
 }
 
-impl<const N: usize> Lattice<N> {
-    /// How many points each of sixteen cells has.
-    #[inline(always)]
-    pub(crate) fn counts_of<S: Simd>(&self, simd: S, hashes: CellHashes<S>) -> u32x16<S> {
-        let mut counts = u32x16::splat(simd, self.counts.least());
-        if self.counts.thresholds().is_empty() {
-            return counts;
-        }
-        let [bits, _] = hashes.at(u32x16::splat(simd, 0));
-        let one = u32x16::splat(simd, 1);
-        for &threshold in self.counts.thresholds() {
-            counts = bits.simd_ge(threshold).select(counts + one, counts);
-        }
-        counts
-    }
-}
-
-/// Where the index of a point begins in its code.
-const INDEX_SHIFT: u32 = 8;
-
-/// What a point is known by among the neighbors: two bits for each axis, 0 for the own cell, 1 for the nearer neighbor,
-/// 2 for the other; and its index in its cell.
+/// The cells of sixteen coordinates, and the steps from their lower edges: as [`split`].
 #[inline(always)]
-fn code(cell: u32, index: u32) -> u32 {
-    cell | index << INDEX_SHIFT
+fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>) {
+    let halves = [&coordinates[..8], &coordinates[8..]].map(|half| f64x8::from_slice(simd, half));
+    let is_near = |half: f64x8<S>| half.abs().simd_lt(WHOLE / 4.0).all_true();
+    if !(is_near(halves[0]) && is_near(halves[1])) {
+        return split_each(simd, coordinates);
+    }
+    let mut cells = [u32x16::splat(simd, 0); 2];
+    let mut steps = halves;
+    for half in 0..2 {
+        let floor = halves[half].floor();
+        steps[half] = ((halves[half] - floor) * f64::from(STEPS)).floor();
+        let whole = (floor + WHOLE).bitcast::<u64x8<S>>() - WHOLE.to_bits();
+        cells[half] = whole.bitcast();
+    }
+    let [a, b] = cells;
+    let steps: i32x16<S> = steps[0].narrow(steps[1]).to_int();
+    // Just below a whole number the difference can be rounded up to a whole cell.
+    let carries = steps.simd_eq(STEPS);
+    let cell = [a.unzip_low(b), a.unzip_high(b)];
+    let [low, high] = next(cell);
+    let cell = [carries.select(low, cell[0]), carries.select(high, cell[1])];
+    (cell, carries.select(i32x16::splat(simd, 0), steps))
 }
+
+/// The same one by one, for coordinates that are very large, or not finite.
+#[inline(never)]
+fn split_each<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>) {
+    let mut words = [[0; LANES]; 2];
+    let mut steps = [0; LANES];
+    for (lane, &coordinate) in coordinates.iter().enumerate() {
+        let (cell, within) = split(coordinate).unwrap_or((0, 0));
+        (words[0][lane], words[1][lane]) = (cell as u32, (cell >> 32) as u32);
+        steps[lane] = within;
+    }
+    let [low, high] = words;
+    let words = [
+        u32x16::from_slice(simd, &low),
+        u32x16::from_slice(simd, &high),
+    ];
+    (words, i32x16::from_slice(simd, &steps))
+}
+
+/// The next cells.
+#[inline(always)]
+fn next<S: Simd>([low, high]: Words<S>) -> Words<S> {
+    let next = low + 1;
+    let carries = next.simd_eq(0);
+    [next, carries.select(high + 1, high)]
+}
+
+/// The cells before.
+#[inline(always)]
+fn previous<S: Simd>([low, high]: Words<S>) -> Words<S> {
+    let borrows = low.simd_eq(0);
+    [low - 1, borrows.select(high - 1, high)]
+}
+
+/// The cells that cells repeat.
+#[inline(never)]
+fn wrap<S: Simd, const N: usize>(
+    lattice: &Lattice<N>,
+    axis: usize,
+    [mut low, mut high]: Words<S>,
+) -> Words<S> {
+    for lane in 0..LANES {
+        let cell = i64::from(high[lane].cast_signed()) << 32 | i64::from(low[lane]);
+        let cell = lattice.wrap(axis, cell);
+        (low[lane], high[lane]) = (cell as u32, (cell >> 32) as u32);
+    }
+    [low, high]
+}
+
+/// Where the index of a point begins in its code; below are two bits for each axis, 0 for the own cell, 1 for the
+/// nearer neighbor, 2 for the other.
+const INDEX_SHIFT: u32 = 8;
 
 /// Which neighbor it is along an axis.
 #[inline(always)]
@@ -290,50 +371,4 @@ const fn sorted_cells<const LEN: usize>(n_axes: u32) -> [u8; LEN] {
         wanted += 1;
     }
     cells
-}
-
-/// Steps as cells. Differences within the neighbors are below 8 cells, so nothing is rounded.
-#[inline(always)]
-fn cells<S: Simd>(steps: i32x16<S>) -> f32x16<S> {
-    steps.to_float::<f32x16<S>>() * STEP
-}
-
-/// The ways from points to places, in cells.
-#[inline(always)]
-fn vector<S: Simd, const N: usize>(
-    origins: &[i32x16<S>; N],
-    bits: [u32x16<S>; 2],
-    jitter: u32,
-) -> [f32x16<S>; N] {
-    let points: [u32x16<S>; N] = steps(bits, jitter);
-    let mut vector = [cells(origins[0]); N];
-    for axis in 0..N {
-        vector[axis] = cells(origins[axis] - points[axis].bitcast::<i32x16<S>>());
-    }
-    vector
-}
-
-/// Takes in one more point, and tells which lanes had one at the same distance.
-#[inline(always)]
-fn insert<S: Simd, const K: usize>(
-    keys: &mut [f32x16<S>; K],
-    codes: &mut [u32x16<S>; K],
-    key: f32x16<S>,
-    code: u32x16<S>,
-) -> mask32x16<S> {
-    let simd = key.simd;
-    let mut is_tie = mask32x16::splat(simd, false);
-    let mut is_nearer = [is_tie; K];
-    for rank in 0..K {
-        is_nearer[rank] = key.simd_lt(keys[rank]);
-        is_tie = is_tie | key.simd_eq(keys[rank]);
-    }
-    for rank in (1..K).rev() {
-        let [moves, enters] = [is_nearer[rank - 1], is_nearer[rank]];
-        keys[rank] = moves.select(keys[rank - 1], enters.select(key, keys[rank]));
-        codes[rank] = moves.select(codes[rank - 1], enters.select(code, codes[rank]));
-    }
-    keys[0] = is_nearer[0].select(key, keys[0]);
-    codes[0] = is_nearer[0].select(code, codes[0]);
-    is_tie & key.simd_lt(f32::INFINITY)
 }

@@ -1,9 +1,9 @@
 //! The door for many scattered positions, such as the shading points of a renderer.
 
-use crate::fixed::Place;
+use crate::fixed::FARTHEST;
 use crate::many::{LANES, Nearest, Places};
-use crate::metric::{Norm, with_norm};
-use crate::{Axes, Feature, LIMIT, Space, Vector, Worley, WorleyError, simd};
+use crate::metric::{Chebyshev, Euclidean, Manhattan, Norm};
+use crate::{Axes, Feature, LIMIT, Metric, Space, Vector, Worley, WorleyError, simd};
 use fearless_simd::{Level, dispatch, prelude::*};
 
 impl<const N: usize> Worley<N>
@@ -48,11 +48,14 @@ where
         WorleyError::check_length(features.len(), positions.len())?;
         let chunks = positions.chunks(LANES).zip(features.chunks_mut(LANES));
         for (positions, features) in chunks {
-            let (places, has_place) = places(positions);
-            let holds = with_norm!(self.metric, norm => dispatch!(level, simd => {
-                self.sixteen(simd, norm, &places, features)
-            }));
-            let mut again = u64::MAX >> (64 - positions.len()) & !(holds & has_place);
+            let holds = match self.metric {
+                // A lane at a time it would be, in any case.
+                Metric::Minkowski(_) => 0,
+                Metric::Euclidean => self.sixteen(level, Euclidean, positions, features),
+                Metric::Manhattan => self.sixteen(level, Manhattan, positions, features),
+                Metric::Chebyshev => self.sixteen(level, Chebyshev, positions, features),
+            };
+            let mut again = u64::MAX >> (64 - positions.len()) & !holds;
             while again != 0 {
                 let lane = again.trailing_zeros() as usize;
                 features[lane] = self.sample(positions[lane]);
@@ -63,53 +66,62 @@ where
     }
 
     /// Up to sixteen positions; tells for which of them it holds.
+    fn sixteen<M: Norm, const K: usize>(
+        &self,
+        level: Level,
+        norm: M,
+        positions: &[Vector<N>],
+        features: &mut [[Feature<Vector<N>>; K]],
+    ) -> u64 {
+        let mut coordinates = [[0.0; LANES]; N];
+        let mut is_finite = 0;
+        for (lane, &position) in positions.iter().enumerate() {
+            let position: [f64; N] = position.into();
+            let mut has_place = true;
+            for axis in 0..N {
+                coordinates[axis][lane] = position[axis];
+                has_place &= position[axis].abs() <= FARTHEST;
+            }
+            is_finite |= u64::from(has_place) << lane;
+        }
+        is_finite & dispatch!(level, simd => self.fill(simd, norm, &coordinates, features))
+    }
+
     #[inline(always)]
-    fn sixteen<S: Simd, M: Norm, const K: usize>(
+    fn fill<S: Simd, M: Norm, const K: usize>(
         &self,
         simd: S,
         norm: M,
-        places: &[Place<N>; LANES],
+        coordinates: &[[f64; LANES]; N],
         features: &mut [[Feature<Vector<N>>; K]],
     ) -> u64 {
-        let places = Places::new(simd, &self.lattice, places);
+        let places = Places::new(simd, &self.lattice, coordinates);
         let nearest: Nearest<S, K> = places.nearest(simd, norm, &self.lattice);
         for rank in 0..K {
-            let mut distances = [0.0; LANES];
-            norm.distances(nearest.keys[rank]).store_slice(&mut distances);
             let points = places.points(simd, &self.lattice, &nearest, rank);
+            let mut distances = [0.0; LANES];
+            norm.distances(norm.keys(points.vectors))
+                .store_slice(&mut distances);
+            let mut vectors = [[0.0; LANES]; N];
+            for axis in 0..N {
+                points.vectors[axis].store_slice(&mut vectors[axis]);
+            }
+            let mut ids = [[0; LANES]; 2];
+            for half in 0..2 {
+                points.ids[half].store_slice(&mut ids[half]);
+            }
             for (lane, features) in features.iter_mut().enumerate() {
                 let mut vector = [0.0; N];
                 for axis in 0..N {
-                    vector[axis] = f64::from(points.vector[axis][lane]);
+                    vector[axis] = f64::from(vectors[axis][lane]);
                 }
-                let [low, high] = [points.id[0][lane], points.id[1][lane]];
                 features[rank] = Feature {
                     distance: distances[lane],
                     vector: vector.into(),
-                    id: u64::from(high) << 32 | u64::from(low),
+                    id: u64::from(ids[1][lane]) << 32 | u64::from(ids[0][lane]),
                 };
             }
         }
         nearest.holds
     }
-}
-
-/// The places of up to sixteen positions, and which of them there are.
-fn places<const N: usize>(positions: &[Vector<N>]) -> ([Place<N>; LANES], u64)
-where
-    Axes: Space<N>,
-{
-    let nowhere = Place {
-        cell: [0; N],
-        steps: [0; N],
-    };
-    let mut places = [nowhere; LANES];
-    let mut has_place = 0;
-    for (lane, &position) in positions.iter().enumerate() {
-        if let Some(place) = Place::new(position.into()) {
-            places[lane] = place;
-            has_place |= 1 << lane;
-        }
-    }
-    (places, has_place)
 }

@@ -1,7 +1,7 @@
 //! The feature points of a box of cells, made once and then looked up.
 
 use crate::fixed::STEP_BITS;
-use crate::lattice::{Lattice, POSITIONS, steps};
+use crate::lattice::{Lattice, SixteenCells};
 use crate::render::LANES;
 use core::ops::Range;
 use dapple_hash::{CellHash, CellHashes};
@@ -126,13 +126,12 @@ impl<const N: usize> Table<N> {
             u32x16::from_slice(simd, &low),
             u32x16::from_slice(simd, &high),
         );
-        let counts = lattice.counts_of(simd, hashes);
+        let cells = SixteenCells::new(simd, lattice, hashes);
         let mut numbers = [0; LANES];
-        counts.store_slice(&mut numbers);
+        cells.counts.store_slice(&mut numbers);
         let most = numbers[..n_cells].iter().copied().fold(0, u32::max);
         for index in 0..most {
-            let bits = hashes.at(u32x16::splat(simd, POSITIONS + index));
-            let steps: [u32x16<S>; N] = steps(bits, lattice.jitter);
+            let steps: [u32x16<S>; N] = cells.steps(u32x16::splat(simd, index), lattice.jitter);
             for axis in 0..N {
                 let at = (index as usize * N + axis) * LANES;
                 steps[axis].store_slice(&mut scratch[at..at + LANES]);

@@ -120,7 +120,9 @@ where
     let expected: Vec<_> = positions.iter().map(|&at| worley.sample::<K>(at)).collect();
     for_every_level(|level| {
         let mut found = vec![worley.sample::<K>([0.5; N]); positions.len()];
-        worley.sample_many_at(level, &positions, &mut found).unwrap();
+        worley
+            .sample_many_at(level, &positions, &mut found)
+            .unwrap();
         for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {
             let same = found.iter().zip(expected).all(|(a, b)| {
                 a == b && a.distance.to_bits() == b.distance.to_bits() || b.distance.is_nan()
@@ -128,7 +130,9 @@ where
             assert!(
                 same && (index != 37 || found[0].distance.is_nan()),
                 "{:?} {:?} {level:?} at {:?}: {found:?} for {expected:?}",
-                worley.metric, worley.scatter, positions[index]
+                worley.metric,
+                worley.scatter,
+                positions[index]
             );
         }
     });
@@ -140,12 +144,17 @@ fn many_positions_equal_single_ones_bit_for_bit() -> Result<(), WorleyError> {
     for scatter in SCATTERS {
         for metric in METRICS {
             let spread = if scatter == SCATTERS[4] { 1e12 } else { 40.0 };
-            let plane = Worley::<2>::new(Seed(4)).with_scatter(scatter)?.with_metric(metric)?;
+            let plane = Worley::<2>::new(Seed(4))
+                .with_scatter(scatter)?
+                .with_metric(metric)?;
             many_equal_single_ones::<2, 4>(&plane, spread)?;
             many_equal_single_ones::<2, 1>(&plane.with_period([Some(5), None])?, spread)?;
         }
         let space = Worley::<3>::new(Seed(4)).with_scatter(scatter)?;
-        many_equal_single_ones::<3, 2>(&space.with_period([None, Some(3), Some(1)])?, spread_of(scatter))?;
+        many_equal_single_ones::<3, 2>(
+            &space.with_period([None, Some(3), Some(1)])?,
+            spread_of(scatter),
+        )?;
     }
     many_equal_single_ones::<4, 3>(&Worley::<4>::new(Seed(4)), 1e3)
 }
