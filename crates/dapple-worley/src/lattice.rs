@@ -61,6 +61,11 @@ impl<const N: usize> Lattice<N> {
         })
     }
 
+    /// Where in its cell a point lies, from the hash of the cell.
+    pub(crate) fn point(&self, hash: CellHash, index: u32) -> [i32; N] {
+        self.steps(words(hash), index)
+    }
+
     /// Where in its cell a point lies, from the words of the cell.
     #[inline]
     fn steps(&self, words: [u32; 2], index: u32) -> [i32; N] {
@@ -76,8 +81,7 @@ impl<const N: usize> Source<N> for Lattice<N> {
     #[inline]
     fn visit(&self, cell: [i64; N], mut each: impl FnMut([i32; N], Name)) {
         let hash = self.hash(cell);
-        let bits = hash.at(0);
-        let words = [(bits >> 32) as u32, bits as u32];
+        let words = words(hash);
         for index in 0..self.counts.count(words[0]) {
             each(self.steps(words, index), Name { hash, index });
         }
@@ -87,6 +91,13 @@ impl<const N: usize> Source<N> for Lattice<N> {
     fn id(&self, name: Name) -> u64 {
         name.hash.at(IDS + name.index)
     }
+}
+
+/// The two words of a cell.
+#[inline]
+fn words(hash: CellHash) -> [u32; 2] {
+    let bits = hash.at(0);
+    [(bits >> 32) as u32, bits as u32]
 }
 
 /// Sixteen cells side by side.

@@ -10,6 +10,7 @@ mod fractal;
 mod lattice;
 mod many;
 mod metric;
+mod one;
 mod plane;
 mod profile;
 mod radial;

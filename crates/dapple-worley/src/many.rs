@@ -47,7 +47,7 @@ pub(crate) struct Points<S: Simd, const N: usize> {
 }
 
 /// The key of no point: the largest number. (Infinity with a code in its low bits would not be a number.)
-const NOTHING: u32 = f32::MAX.to_bits();
+pub(crate) const NOTHING: u32 = f32::MAX.to_bits();
 
 /// `f64` has whole numbers only between this and twice this, and their difference from this is in the low bits.
 const WHOLE: f64 = (3_u64 << 51) as f64;
@@ -325,7 +325,7 @@ const INDEX_SHIFT: u32 = 8;
 
 /// Which neighbor it is along an axis.
 #[inline(always)]
-fn digit(cell: u32, axis: usize) -> usize {
+pub(crate) fn digit(cell: u32, axis: usize) -> usize {
     (cell >> (2 * axis) & 3) as usize
 }
 
@@ -336,7 +336,7 @@ fn row_index<const N: usize>(cell: u32) -> usize {
 }
 
 /// The own cell and its neighbors, those that are nearer on average first.
-fn cells_by_distance<const N: usize>() -> &'static [u8] {
+pub(crate) fn cells_by_distance<const N: usize>() -> &'static [u8] {
     const TWO: [u8; 9] = sorted_cells(2);
     const THREE: [u8; 27] = sorted_cells(3);
     const FOUR: [u8; 81] = sorted_cells(4);

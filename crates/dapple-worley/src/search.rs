@@ -42,6 +42,36 @@ pub(crate) struct Hit<const N: usize> {
     pub(crate) name: Option<Name>,
 }
 
+impl<const N: usize> Hit<N> {
+    /// Nothing, infinitely far away.
+    pub(crate) const NONE: Self = Self {
+        key: f32::INFINITY,
+        vector: [f32::INFINITY; N],
+        name: None,
+    };
+}
+
+/// What a place sees of a point in the cell that is `shift` cells from its own.
+#[inline(always)]
+pub(crate) fn hit<M: Norm, const N: usize>(
+    norm: M,
+    place: &Place<N>,
+    shift: [i64; N],
+    steps: [i32; N],
+    name: Name,
+) -> Hit<N> {
+    let mut vector = [0.0; N];
+    for axis in 0..N {
+        let ahead = i64::from(place.steps[axis]) - i64::from(steps[axis]);
+        vector[axis] = cells(ahead - shift[axis] * i64::from(STEPS));
+    }
+    Hit {
+        key: norm.key(vector),
+        vector,
+        name: Some(name),
+    }
+}
+
 /// No search goes further than this many cells. The least density makes a void of that size less likely than 2^-200
 /// even in two dimensions.
 const LAST_RING: i64 = 96;
@@ -56,11 +86,7 @@ pub(crate) fn nearest<Q: Source<N>, M: Norm, const N: usize, const K: usize>(
         source,
         norm,
         place,
-        hits: [Hit {
-            key: f32::INFINITY,
-            vector: [f32::INFINITY; N],
-            name: None,
-        }; K],
+        hits: [Hit::NONE; K],
     };
     for ring in 0..=LAST_RING {
         search.ring(ring);
@@ -113,18 +139,9 @@ impl<Q: Source<N>, M: Norm, const N: usize, const K: usize> Search<'_, Q, M, N, 
         let (place, source) = (self.place, self.source);
         let cell = core::array::from_fn(|axis| place.cell[axis] + shift[axis]);
         source.visit(cell, |steps, name| {
-            let mut vector = [0.0; N];
-            for axis in 0..N {
-                let ahead = i64::from(place.steps[axis]) - i64::from(steps[axis]);
-                vector[axis] = cells(ahead - shift[axis] * i64::from(STEPS));
-            }
-            let key = self.norm.key(vector);
-            if key <= self.hits[K - 1].key {
-                self.insert(Hit {
-                    key,
-                    vector,
-                    name: Some(name),
-                });
+            let hit = hit(self.norm, &place, shift, steps, name);
+            if hit.key <= self.hits[K - 1].key {
+                self.insert(hit);
             }
         });
     }
@@ -174,14 +191,15 @@ impl<Q: Source<N>, M: Norm, const N: usize, const K: usize> Search<'_, Q, M, N, 
 
     /// No point beyond the rings visited has a smaller key.
     fn border(&self, ring: i64) -> f32 {
-        let mut nearest = i64::MAX;
-        for steps in self.place.steps {
-            let inside = i64::from(steps);
-            let width = ring * i64::from(STEPS);
-            nearest = nearest
-                .min(inside + width)
-                .min(i64::from(STEPS) - inside + width);
-        }
-        self.norm.key_along_one_axis(cells(nearest))
+        self.norm
+            .key_along_one_axis(cells(border(&self.place, ring)))
     }
+}
+
+/// The steps from a place to what lies beyond the `ring` rings about its cell.
+#[inline(always)]
+pub(crate) fn border<const N: usize>(place: &Place<N>, ring: i64) -> i64 {
+    let sides = place.steps.map(|steps| steps.min(STEPS - steps));
+    let nearest = sides.into_iter().fold(STEPS, i32::min);
+    i64::from(nearest) + ring * i64::from(STEPS)
 }

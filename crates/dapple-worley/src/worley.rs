@@ -2,10 +2,12 @@
 
 use crate::fixed::{Place, STEP, STEPS};
 use crate::lattice::Lattice;
-use crate::metric::with_norm;
+use crate::metric::{Chebyshev, Euclidean, Manhattan, Minkowski, Norm, with_norm};
+use crate::one::nearest_of_neighbors;
 use crate::search::{Hit, Source, nearest};
-use crate::{Axes, Metric, Scatter, Space, Vector, WorleyError};
+use crate::{Axes, Metric, Scatter, Space, Vector, WorleyError, simd};
 use dapple_hash::{Seed, unit_f32};
+use fearless_simd::{Level, dispatch};
 
 /// The greatest n of F_n.
 pub const LIMIT: usize = 4;
@@ -215,18 +217,37 @@ where
 
     /// The nearest points of a place.
     pub(crate) fn hits<const K: usize>(&self, place: Place<N>) -> [Hit<N>; K] {
-        with_norm!(self.metric, norm => nearest(&self.lattice, norm, place))
+        self.hits_at(simd::level(), place)
+    }
+
+    /// As [`hits`](Self::hits), at a given SIMD level.
+    pub(crate) fn hits_at<const K: usize>(&self, level: Level, place: Place<N>) -> [Hit<N>; K] {
+        match self.metric {
+            Metric::Euclidean => self.hits_by(level, Euclidean, place),
+            Metric::Manhattan => self.hits_by(level, Manhattan, place),
+            Metric::Chebyshev => self.hits_by(level, Chebyshev, place),
+            Metric::Minkowski(p) => nearest(&self.lattice, Minkowski(p), place),
+        }
+    }
+
+    fn hits_by<M: Norm, const K: usize>(
+        &self,
+        level: Level,
+        norm: M,
+        place: Place<N>,
+    ) -> [Hit<N>; K] {
+        let lattice = &self.lattice;
+        let hits = dispatch!(level, simd => nearest_of_neighbors(simd, norm, lattice, &place));
+        hits.unwrap_or_else(|| nearest(lattice, norm, place))
     }
 
     /// The distances of a place.
     pub(crate) fn distances<const K: usize>(&self, place: Place<N>) -> [f32; K] {
-        use crate::metric::Norm as _;
         let hits = self.hits::<K>(place);
         with_norm!(self.metric, norm => hits.map(|hit| norm.distance(hit.key)))
     }
 
     pub(crate) fn feature(&self, hit: Hit<N>) -> Feature<Vector<N>> {
-        use crate::metric::Norm as _;
         Feature {
             distance: with_norm!(self.metric, norm => norm.distance(hit.key)),
             vector: hit.vector.map(f64::from).into(),

@@ -1,6 +1,9 @@
 //! Equal bits: windows, doors, SIMD levels and threads.
 
 use super::oracle::{METRICS, SCATTERS, position};
+use crate::fixed::Place;
+use crate::metric::with_norm;
+use crate::search::nearest;
 use crate::simd::for_every_level;
 use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::{Seed, hash1, unit_f64};
@@ -157,6 +160,44 @@ fn many_positions_equal_single_ones_bit_for_bit() -> Result<(), WorleyError> {
         )?;
     }
     many_equal_single_ones::<4, 3>(&Worley::<4>::new(Seed(4)), 1e3)
+}
+
+#[test]
+fn neighbors_side_by_side_equal_the_search_by_rings() -> Result<(), WorleyError> {
+    fn check<const N: usize>(worley: &Worley<N>, n: i64)
+    where
+        Axes: Space<N>,
+    {
+        for index in 0..n {
+            let place = Place::new(position::<N>(Seed(21), index, 1e4)).unwrap();
+            let expected: [_; 4] =
+                with_norm!(worley.metric, norm => nearest(&worley.lattice, norm, place));
+            for_every_level(|level| {
+                let found = worley.hits_at::<4>(level, place);
+                for (found, expected) in found.iter().zip(&expected) {
+                    assert_eq!(
+                        found.key.to_bits(),
+                        expected.key.to_bits(),
+                        "{level:?} {place:?}"
+                    );
+                    assert_eq!(found.vector, expected.vector, "{level:?} {place:?}");
+                }
+            });
+        }
+    }
+    for metric in METRICS {
+        for scatter in SCATTERS {
+            check(
+                &Worley::<2>::new(Seed(6))
+                    .with_scatter(scatter)?
+                    .with_metric(metric)?,
+                400,
+            );
+        }
+        check(&Worley::<3>::new(Seed(6)).with_metric(metric)?, 200);
+        check(&Worley::<4>::new(Seed(6)).with_metric(metric)?, 30);
+    }
+    Ok(())
 }
 
 fn spread_of(scatter: crate::Scatter) -> f64 {
