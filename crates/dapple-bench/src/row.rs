@@ -32,7 +32,7 @@ impl Must {
 /// What a row sets side by side.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Case {
-    /// The group, which is also a filter: `pups`, `points` or `graph`.
+    /// The group, which is also a filter: one of [`GROUPS`].
     pub(crate) group: &'static str,
     /// The job.
     pub(crate) case: &'static str,
@@ -87,7 +87,7 @@ impl Case {
 }
 
 /// The groups, in the order of the table.
-pub(crate) const GROUPS: [&str; 3] = ["pups", "points", "graph"];
+pub(crate) const GROUPS: [&str; 4] = ["pups", "points", "graph", "worley"];
 
 /// The unit of a time.
 #[derive(Clone, Copy, Debug, PartialEq)]

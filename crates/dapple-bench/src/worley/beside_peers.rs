@@ -1,0 +1,178 @@
+//! Rasters of ours beside the grids of other crates.
+
+use super::{F1, F2_MINUS_F1, F2_MINUS_F1_IN_SPACE, Grid, PLANE, SPACE};
+use crate::harness::{Bench, Done, Side};
+use crate::peers::noise;
+use crate::row::{Case, Must, Unit};
+use anyhow::{Result, ensure};
+use dapple_worley::{Axes, Space};
+use std::ops::RangeInclusive;
+
+const F1_64: Case = Case {
+    group: "worley",
+    case: "2-D, 64 px per cell, F1",
+    peer: "simdnoise cellular_2d",
+    unit: Unit::NsPerPixel,
+    must: Must::Faster(11.0),
+    note: "the peer has one feature point per cell, ours three on average, and its distances are squared",
+};
+
+const F2_MINUS_F1_64: Case = Case {
+    case: "2-D, 64 px per cell, F2 − F1",
+    peer: "simdnoise cellular2_2d",
+    must: Must::Faster(8.0),
+    ..F1_64
+};
+
+const F2_MINUS_F1_16: Case = Case {
+    case: "2-D, 16 px per cell, F2 − F1",
+    must: Must::Faster(4.0),
+    ..F2_MINUS_F1_64
+};
+
+const F2_MINUS_F1_4: Case = Case {
+    case: "2-D, 4 px per cell, F2 − F1",
+    must: Must::Faster(1.7),
+    ..F2_MINUS_F1_64
+};
+
+const SPACE_64: Case = Case {
+    case: "3-D, 64 px per cell, F2 − F1",
+    peer: "simdnoise cellular2_3d",
+    must: Must::Faster(25.0),
+    note: "as in the plane; the peer looks at 18 of the 27 places next to a position, see `src/peers/noise.rs`",
+    ..F2_MINUS_F1_64
+};
+
+const SPACE_32: Case = Case {
+    case: "3-D, 32 px per cell, F2 − F1",
+    must: Must::Faster(18.0),
+    ..SPACE_64
+};
+
+const SPACE_4: Case = Case {
+    case: "3-D, 4 px per cell, F2 − F1",
+    must: Must::Faster(2.3),
+    ..SPACE_64
+};
+
+const BESIDE_SIMPLEX: Case = Case {
+    peer: "simdnoise simplex, one octave",
+    must: Must::CostAtMost(0.3),
+    note: "the fastest grid of one octave of Perlin or simplex noise that was found; 64 px per cell on both sides",
+    ..F2_MINUS_F1_64
+};
+
+const BESIDE_SIMPLEX_IN_SPACE: Case = Case {
+    case: SPACE_64.case,
+    must: Must::CostAtMost(0.5),
+    ..BESIDE_SIMPLEX
+};
+
+/// Turns of a row.
+const TURNS: u32 = 25;
+
+pub(super) fn run(bench: &mut Bench) -> Result<()> {
+    let plane = |known, px_per_cell| Grid::new(known, PLANE, px_per_cell);
+    let space = |px_per_cell| Grid::new(F2_MINUS_F1_IN_SPACE, SPACE, px_per_cell);
+    row(bench, &F1_64, &plane(F1, 64)?, &CELLULAR_F1)?;
+    row(bench, &F2_MINUS_F1_64, &plane(F2_MINUS_F1, 64)?, &CELLULAR)?;
+    row(bench, &F2_MINUS_F1_16, &plane(F2_MINUS_F1, 16)?, &CELLULAR)?;
+    row(bench, &F2_MINUS_F1_4, &plane(F2_MINUS_F1, 4)?, &CELLULAR)?;
+    row(bench, &SPACE_64, &space(64)?, &CELLULAR_IN_SPACE)?;
+    row(bench, &SPACE_32, &space(32)?, &CELLULAR_IN_SPACE)?;
+    row(bench, &SPACE_4, &space(4)?, &CELLULAR_IN_SPACE)?;
+    row(bench, &BESIDE_SIMPLEX, &plane(F2_MINUS_F1, 64)?, &SIMPLEX)?;
+    row(
+        bench,
+        &BESIDE_SIMPLEX_IN_SPACE,
+        &space(64)?,
+        &SIMPLEX_IN_SPACE,
+    )
+}
+
+/// A peer's grids with `N` axes.
+struct Peer<const N: usize> {
+    /// Makes the grid of so many pixels, with so many cells per pixel.
+    make: fn([usize; N], f32) -> noise::Grid,
+    /// Where its values lie.
+    range: RangeInclusive<f32>,
+    /// How far apart they are, at least.
+    spread: f32,
+}
+
+/// A position is less than 0.45 + 0.71 from its nearest feature point.
+const CELLULAR_F1: Peer<2> = Peer {
+    make: noise::simdnoise_f1,
+    range: 0.0..=1.4,
+    spread: 0.5,
+};
+
+/// The second nearest is less than 0.45 + 1.12 away; a difference may be rounded to the other side of zero.
+const CELLULAR: Peer<2> = Peer {
+    make: noise::simdnoise_f1_minus_f2,
+    range: -2.5..=1e-5,
+    spread: 0.5,
+};
+
+const CELLULAR_IN_SPACE: Peer<3> = Peer {
+    make: noise::simdnoise_f1_minus_f2_in_space,
+    range: -2.5..=1e-5,
+    spread: 0.5,
+};
+
+/// `simdnoise` does not scale it to [−1, 1].
+const SIMPLEX: Peer<2> = Peer {
+    make: noise::simdnoise_simplex,
+    range: -0.04..=0.04,
+    spread: 0.03,
+};
+
+const SIMPLEX_IN_SPACE: Peer<3> = Peer {
+    make: noise::simdnoise_simplex_in_space,
+    range: -0.04..=0.04,
+    spread: 0.03,
+};
+
+fn row<const N: usize>(bench: &mut Bench, case: &Case, grid: &Grid<N>, peer: &Peer<N>) -> Result<()>
+where
+    Axes: Space<N>,
+{
+    let (size, frequency) = (
+        grid.size.map(|side| side as usize),
+        1.0 / grid.px_per_cell as f32,
+    );
+    let theirs = Side::new((Vec::new(), 0.0, 0.0), |made: &mut noise::Grid| {
+        *made = (peer.make)(size, frequency);
+    })
+    .prepared(|made| made.0 = Vec::new());
+    // About as much time for our runs of a turn as for the one of the peer.
+    let times = match case.must {
+        Must::Faster(bar) => bar,
+        Must::CostAtMost(bar) => 1.0 / bar,
+    };
+    let ours = grid.side()?.times(times.ceil() as u32);
+    bench.beside(
+        case,
+        TURNS,
+        ours,
+        theirs,
+        |image, (values, least, largest)| {
+            grid.confirm(image)?;
+            let bad = values.iter().position(|value| !peer.range.contains(value));
+            ensure!(
+                bad.is_none(),
+                "the value {bad:?} of the peer is not in {:?}",
+                peer.range
+            );
+            ensure!(
+                largest - least >= peer.spread,
+                "the peer's grid is flat: {least} to {largest}"
+            );
+            Ok(Done {
+                ours: grid.n_pixels(),
+                theirs: values.len(),
+            })
+        },
+    )
+}

@@ -1,0 +1,154 @@
+//! Scattered positions of ours beside the fastest function of other crates for one position.
+//!
+//! The positions lie anywhere in 1000×1000 or 1000×1000×1000 cells, in random order, so that no two in a row share a
+//! cell; both sides have the same, the peer in single precision.
+
+use crate::harness::{Bench, Done, Side};
+use crate::peers::noise;
+use crate::row::{Case, Must, Unit};
+use crate::sets::SEED;
+use anyhow::{Result, ensure};
+use dapple_hash::{hash1, unit_f64};
+use dapple_worley::{Axes, Feature, Scatter, Space, Vector, Worley};
+
+const F1_AND_F2: Case = Case {
+    group: "worley",
+    case: "2-D, scattered positions, F1 and F2 with vectors and ids",
+    peer: "noise-functions CellDistance, F1 alone",
+    unit: Unit::NsPerPosition,
+    must: Must::CostAtMost(2.0),
+    note: "positions anywhere in 1000 cells along each axis, in random order; the peer has one feature point per cell, \
+           ours three on average",
+};
+
+const F1_AND_F2_IN_SPACE: Case = Case {
+    case: "3-D, scattered positions, F1 and F2 with vectors and ids",
+    ..F1_AND_F2
+};
+
+const JITTERED: Case = Case {
+    case: "2-D, scattered positions, one jittered point per cell, F1",
+    must: Must::Faster(1.2),
+    note: "positions anywhere in 1000 cells along each axis, in random order; both sides have one feature point per cell",
+    ..F1_AND_F2
+};
+
+const JITTERED_IN_SPACE: Case = Case {
+    case: "3-D, scattered positions, one jittered point per cell, F1",
+    ..JITTERED
+};
+
+/// How many positions are asked for in one run.
+const N_POSITIONS: usize = 1 << 16;
+
+/// Cells along each axis.
+const N_CELLS: f64 = 1000.0;
+
+/// Turns of a row.
+const TURNS: u32 = 41;
+
+pub(super) fn run(bench: &mut Bench) -> Result<()> {
+    let (plane, space) = (noise::noise_functions_f1_2, noise::noise_functions_f1_3);
+    // The means of F1: known for three points per cell, and measured for one, with a plain loop over the neighbors.
+    poisson::<2>(bench, &F1_AND_F2, 0.282, plane)?;
+    poisson::<3>(bench, &F1_AND_F2_IN_SPACE, 0.381, space)?;
+    jittered::<2>(bench, &JITTERED, 0.430, plane)?;
+    jittered::<3>(bench, &JITTERED_IN_SPACE, 0.519, space)
+}
+
+/// Fills the values of a peer.
+type Fill<const N: usize> = fn(&[[f32; N]], &mut [f32]);
+
+fn poisson<const N: usize>(bench: &mut Bench, case: &Case, mean: f64, fill: Fill<N>) -> Result<()>
+where
+    Axes: Space<N>,
+{
+    row::<N, 2>(bench, case, &Worley::new(SEED), mean, fill)
+}
+
+fn jittered<const N: usize>(bench: &mut Bench, case: &Case, mean: f64, fill: Fill<N>) -> Result<()>
+where
+    Axes: Space<N>,
+{
+    let worley = Worley::new(SEED).with_scatter(Scatter::Jittered { jitter: 1.0 })?;
+    row::<N, 1>(bench, case, &worley, mean, fill)
+}
+
+fn row<const N: usize, const K: usize>(
+    bench: &mut Bench,
+    case: &Case,
+    worley: &Worley<N>,
+    mean: f64,
+    fill: Fill<N>,
+) -> Result<()>
+where
+    Axes: Space<N>,
+{
+    let positions: Vec<[f64; N]> = positions();
+    let their_positions: Vec<[f32; N]> = positions
+        .iter()
+        .map(|at| at.map(|coordinate| coordinate as f32))
+        .collect();
+    let positions: Vec<Vector<N>> = positions.into_iter().map(Vector::<N>::from).collect();
+    let none = [worley.sample::<1>([f64::NAN; N])[0]; K];
+    let ours = Side::new(vec![none; N_POSITIONS], |features: &mut Vec<_>| {
+        worley
+            .sample_many::<K>(&positions, features)
+            .expect("there is room for the features of each position");
+    });
+    let theirs = Side::new(vec![0.0; N_POSITIONS], |values: &mut Vec<f32>| {
+        fill(&their_positions, values);
+    });
+    bench.beside(case, TURNS, ours, theirs, |features, values| {
+        confirm(worley, mean, &positions, features)?;
+        // F1 up to 1.5, mapped from [0, 1] to [−1, 1].
+        ensure!(
+            values.iter().all(|value| (-1.0..=2.0).contains(value)),
+            "a value of the peer is not in its range"
+        );
+        ensure!(
+            values.iter().any(|&value| value < -0.5) && values.iter().any(|&value| value > 0.2),
+            "the peer's values are flat"
+        );
+        Ok(Done::both(N_POSITIONS))
+    })
+}
+
+/// Positions anywhere in a cube of [`N_CELLS`].
+fn positions<const N: usize>() -> Vec<[f64; N]> {
+    let seed = SEED.child("bench scattered positions", 0);
+    let unit = |index, axis| unit_f64(hash1(seed, [index], axis));
+    (0..N_POSITIONS as i64)
+        .map(|index| std::array::from_fn(|axis| N_CELLS * unit(index, axis as u32)))
+        .collect()
+}
+
+/// Checks the features of all positions beside those of one position, and the mean of F1.
+fn confirm<const N: usize, const K: usize>(
+    worley: &Worley<N>,
+    mean: f64,
+    positions: &[Vector<N>],
+    features: &[[Feature<Vector<N>>; K]],
+) -> Result<()>
+where
+    Axes: Space<N>,
+{
+    for (&position, found) in positions.iter().zip(features).step_by(61) {
+        let expected = worley.sample::<K>(position);
+        ensure!(
+            *found == expected,
+            "{found:?} at {position:?}, and {expected:?} asked alone"
+        );
+    }
+    let sum: f64 = features
+        .iter()
+        .map(|found| f64::from(found[0].distance))
+        .sum();
+    let found = sum / features.len() as f64;
+    // A hundredth is six deviations of the mean of so many positions.
+    ensure!(
+        (found / mean - 1.0).abs() <= 0.01,
+        "a mean F1 of {found} is not known, {mean} is"
+    );
+    Ok(())
+}
