@@ -109,7 +109,6 @@ impl Bench {
     }
 
     /// Whether the filters select one of some cases, so that what they share is worth preparing.
-    #[cfg(feature = "peers")]
     pub(crate) fn wants_any(&self, cases: &[Case]) -> bool {
         cases.iter().any(|case| self.wants(case))
     }
@@ -154,6 +153,11 @@ impl Bench {
             each(&mut their_times, done.theirs),
         ));
         Ok(())
+    }
+
+    /// Keeps the row of a case that was measured in other processes, from the seconds for one unit of work.
+    pub(crate) fn measured(&mut self, case: &Case, ours: f64, theirs: f64) {
+        self.keep(case.row(ours, theirs));
     }
 
     /// Keeps a row and tells of it.

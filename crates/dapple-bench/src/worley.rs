@@ -10,8 +10,10 @@
 mod alone;
 #[cfg(feature = "peers")]
 mod beside_peers;
+mod digest;
 #[cfg(feature = "peers")]
 mod scattered;
+mod two_builds;
 
 use crate::harness::{Bench, Side};
 use crate::sets::SEED;
@@ -27,7 +29,8 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
         beside_peers::run(bench)?;
         scattered::run(bench)?;
     }
-    alone::run(bench)
+    alone::run(bench)?;
+    two_builds::run(bench)
 }
 
 /// The pixels of a raster of the plane.
