@@ -129,6 +129,13 @@ impl<'a, T> RasterViewMut<'a, T> {
             .map(move |row| &mut row[..width])
     }
 
+    /// The rows from top to bottom, borrowed for as long as the view.
+    pub fn into_rows(self) -> impl Iterator<Item = &'a mut [T]> {
+        let [width, height] = self.size.map(|side| side as usize);
+        let rows = self.data.chunks_mut(self.stride).take(height);
+        rows.map(move |row| &mut row[..width])
+    }
+
     /// The same pixels, borrowed for a shorter time.
     #[must_use]
     pub fn reborrow(&mut self) -> RasterViewMut<'_, T> {

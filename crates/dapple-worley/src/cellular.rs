@@ -1,7 +1,7 @@
 //! Scalar textures of the basis: a combination at every position.
 
 use crate::fixed::Place;
-use crate::render::Picture;
+use crate::render::{Output, Picture};
 use crate::sink::{Tone, Values};
 use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::{CellHash, Seed, unit_f64};
@@ -65,7 +65,7 @@ where
     pub fn gradient(&self, position: impl Into<Vector<N>>) -> Vector<N> {
         let place = Place::new(position.into().into());
         let gradient = place.map_or([f32::NAN; N], |place| {
-            self.tone.gradient(&self.worley, place)
+            self.tone.gradient_at(&self.worley, place)
         });
         Vector::<N>::from(gradient.map(f64::from))
     }
@@ -82,21 +82,22 @@ where
         out: RasterViewMut<'_, f32>,
     ) -> Result<(), RasterError> {
         window.check_size(out.size())?;
-        self.picture(plane, window).render(out);
+        let picture = self.worley.feature_picture(plane, window);
+        picture.render(self.outputs(&picture, out));
         Ok(())
     }
 
-    pub(crate) fn picture<'a>(&'a self, plane: &'a Plane<N>, window: &'a Window) -> Picture<'a, N> {
-        Picture {
-            worley: &self.worley,
-            plane,
-            window,
-            frequency: 1.0,
-            values: Values {
-                tone: self.tone,
-                weight: None,
-            },
-        }
+    pub(crate) fn outputs<'v>(
+        &self,
+        picture: &Picture<'_, N>,
+        out: RasterViewMut<'v, f32>,
+    ) -> Vec<Output<'v, N>> {
+        let values = Values {
+            tone: self.tone,
+            weight: None,
+        };
+        let bands = picture.bands(Some(out));
+        bands.map(|rows| Output::Values(values, rows)).collect()
     }
 
     /// The range of the values, but for one in a thousand at either end: measured at `n` random positions.

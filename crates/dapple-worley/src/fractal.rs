@@ -9,7 +9,7 @@
 
 use crate::cellular::measure_range;
 use crate::fixed::Place;
-use crate::render::Picture;
+use crate::render::{Output, Picture};
 use crate::sink::{Tone, Values};
 use crate::{Axes, Cellular, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
@@ -187,7 +187,7 @@ where
             let Some(place) = octave.place(position) else {
                 return Vector::<N>::from([f64::NAN; N]);
             };
-            let gradient = self.tone.gradient(&octave.worley, place);
+            let gradient = self.tone.gradient_at(&octave.worley, place);
             let slope = f64::from(octave.weight * self.range.scale) * octave.frequency;
             for axis in 0..N {
                 sum[axis] += f64::from(gradient[axis]) * slope;
@@ -215,12 +215,13 @@ where
                 plane,
                 window,
                 frequency: octave.frequency,
-                values: Values {
-                    tone: self.tone,
-                    weight: Some(octave.weight),
-                },
             };
-            picture.render(out.reborrow());
+            let values = Values {
+                tone: self.tone,
+                weight: Some(octave.weight),
+            };
+            let bands = picture.bands(Some(out.reborrow()));
+            picture.render(bands.map(|rows| Output::Values(values, rows)).collect());
         }
         for row in out.rows_mut() {
             for value in row {

@@ -5,6 +5,7 @@
 mod cellular;
 mod combination;
 mod error;
+mod features;
 mod fixed;
 mod fractal;
 mod lattice;
@@ -28,6 +29,7 @@ pub use combination::Combination;
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
 pub use error::{WorleyError, WorleyErrorKind};
+pub use features::FeatureView;
 pub use fractal::{Fractal, OctaveSeeds, Octaves};
 pub use metric::Metric;
 pub use plane::Plane;

@@ -13,9 +13,11 @@ mod cull;
 mod kernel;
 mod table;
 mod tile;
+mod track;
 
+use crate::features::FeatureRows;
 use crate::fixed::{Place, split};
-use crate::sink::Values;
+use crate::sink::{Tone, Values};
 use crate::{Axes, Plane, Space, Worley, simd};
 use block::{Block, Memory};
 use dapple_raster::{RasterViewMut, Window};
@@ -31,7 +33,7 @@ const BAND_ROWS: usize = 64;
 /// The most columns of a block.
 const BLOCK_COLUMNS: usize = 256;
 
-/// A window of a plane through the basis, and what is to be put into its pixels.
+/// A window of a plane through the basis.
 pub(crate) struct Picture<'a, const N: usize>
 where
     Axes: Space<N>,
@@ -41,37 +43,81 @@ where
     pub(crate) window: &'a Window,
     /// What positions are multiplied by.
     pub(crate) frequency: f64,
-    pub(crate) values: Values,
+}
+
+/// The rows of a band, and what is to be put into them.
+pub(crate) enum Output<'a, const N: usize> {
+    /// Values of a texture.
+    Values(Values, Vec<&'a mut [f32]>),
+    /// The nearest points, as many as there are members.
+    Features(Vec<FeatureRows<'a, N>>),
+    /// Gradients of a texture.
+    Gradients(Tone, Vec<&'a mut [[f32; N]]>),
+}
+
+impl<const N: usize> Output<'_, N> {
+    /// The greatest n of F_n that is needed.
+    fn depth(&self) -> usize {
+        match self {
+            Self::Values(Values { tone, .. }, _) | Self::Gradients(tone, _) => {
+                tone.combination.depth()
+            }
+            Self::Features(features) => features.len(),
+        }
+    }
+
+    /// Whether ids are needed.
+    fn wants_ids(&self) -> bool {
+        match self {
+            Self::Features(features) => features.iter().any(|rows| !rows.id.is_empty()),
+            _ => false,
+        }
+    }
 }
 
 impl<const N: usize> Picture<'_, N>
 where
     Axes: Space<N>,
 {
-    /// Fills the pixels, on all cores where the feature `rayon` is on. `out` has the size of the window.
-    pub(crate) fn render(&self, out: RasterViewMut<'_, f32>) {
-        self.render_at(simd::level(), out);
+    /// How many bands the window has.
+    pub(crate) fn n_bands(&self) -> usize {
+        self.window.size[1].div_ceil(BAND_ROWS as u32) as usize
+    }
+
+    /// The rows of each band of a view; no bands, if there is no view.
+    pub(crate) fn bands<'v, T>(
+        &self,
+        view: Option<RasterViewMut<'v, T>>,
+    ) -> impl Iterator<Item = Vec<&'v mut [T]>> {
+        let bands = view
+            .into_iter()
+            .flat_map(|view| view.bands(BAND_ROWS as u32));
+        bands.map(|band| band.into_rows().collect())
+    }
+
+    /// Fills the bands of the window, on all cores where the feature `rayon` is on.
+    pub(crate) fn render(&self, bands: Vec<Output<'_, N>>) {
+        self.render_at(simd::level(), bands);
     }
 
     /// As [`render`](Self::render), at a given SIMD level.
-    pub(crate) fn render_at(&self, level: Level, out: RasterViewMut<'_, f32>) {
+    pub(crate) fn render_at(&self, level: Level, bands: Vec<Output<'_, N>>) {
         let columns = self.line(0, self.window.size[0], |column| {
             DVec2::new(self.window.column_x(column), 0.0)
         });
-        let bands = out.bands(BAND_ROWS as u32).enumerate();
-        let render = |memory: &mut Memory<N>, (band, mut out): (usize, RasterViewMut<'_, f32>)| {
-            let mut rows: Vec<_> = out.rows_mut().collect();
-            self.band(level, &columns, band * BAND_ROWS, &mut rows, memory);
+        let render = |memory: &mut Memory<N>, (band, mut out): (usize, Output<'_, N>)| {
+            self.band(level, &columns, band * BAND_ROWS, &mut out, memory);
         };
         #[cfg(feature = "rayon")]
         {
             use rayon::prelude::*;
-            let bands: Vec<_> = bands.collect();
-            bands.into_par_iter().for_each_init(Memory::new, render);
+            let bands = bands.into_par_iter().enumerate();
+            bands.for_each_init(Memory::new, render);
         }
         #[cfg(not(feature = "rayon"))]
         {
             let mut memory = Memory::new();
+            let bands = bands.into_iter().enumerate();
             bands.for_each(|band| render(&mut memory, band));
         }
     }
@@ -82,11 +128,12 @@ where
         level: Level,
         columns: &Line,
         first: usize,
-        out: &mut [&mut [f32]],
+        out: &mut Output<'_, N>,
         memory: &mut Memory<N>,
     ) {
+        let n_rows = BAND_ROWS.min(self.window.size[1] as usize - first);
         let rows: [Line; N] = core::array::from_fn(|axis| {
-            self.line(axis, out.len() as u32, |row| {
+            self.line(axis, n_rows as u32, |row| {
                 DVec2::new(0.0, self.window.row_y(first as u32 + row))
             })
         });
@@ -97,6 +144,7 @@ where
                 level,
                 columns,
                 rows: &rows,
+                n_rows,
                 first,
                 range: start..end,
             };

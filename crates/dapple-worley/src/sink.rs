@@ -53,24 +53,6 @@ impl Tone {
         }
     }
 
-    /// The gradient at a place.
-    pub(crate) fn gradient<const N: usize>(&self, worley: &Worley<N>, place: Place<N>) -> [f32; N]
-    where
-        Axes: Space<N>,
-    {
-        let mut sum = [0.0; N];
-        let hits = worley.hits::<4>(place);
-        for (hit, coefficient) in hits.iter().zip(self.combination.coefficients()) {
-            if coefficient != 0.0 {
-                let gradient = worley.metric.gradient(hit.vector);
-                for axis in 0..N {
-                    sum[axis] += coefficient * gradient[axis];
-                }
-            }
-        }
-        sum.map(|part| part * self.scale)
-    }
-
     /// From distances, at least [`Combination::depth`] of them.
     pub(crate) fn of(&self, distances: &[f32]) -> f32 {
         self.shift + self.scale * self.combination.of(distances)

@@ -3,9 +3,9 @@
 use super::cull::Candidates;
 use super::table::{CellBox, Table};
 use super::tile::{Guess, Tile};
-use super::{LANES, Line, Picture};
+use super::{LANES, Line, Output, Picture};
 use crate::fixed::{STEP, STEPS};
-use crate::{Axes, Space};
+use crate::{Axes, Feature, LIMIT, Space};
 use core::ops::Range;
 use fearless_simd::{Level, dispatch};
 
@@ -28,6 +28,7 @@ where
     pub(super) columns: &'a Line,
     /// The rows of the band, along every axis.
     pub(super) rows: &'a [Line; N],
+    pub(super) n_rows: usize,
     /// The first row of the band, in the window.
     pub(super) first: usize,
     /// The columns of the block, in the window.
@@ -61,14 +62,16 @@ where
     Axes: Space<N>,
 {
     /// Fills the pixels of the block; `out` has the rows of the band.
-    pub(super) fn render(&self, out: &mut [&mut [f32]], memory: &mut Memory<N>) {
+    pub(super) fn render(&self, out: &mut Output<'_, N>, memory: &mut Memory<N>) {
         let lattice = &self.picture.worley.lattice;
-        let depth = self.picture.values.tone.combination.depth();
+        let depth = out.depth();
         let guess = Guess::new(lattice, depth);
-        let Some(cells) = self.cells(out.len(), guess.ring) else {
-            self.one_by_one(0..out.len(), self.range.clone(), out);
+        let Some(cells) = self.cells(guess.ring) else {
+            self.one_by_one(0..self.n_rows, self.range.clone(), out);
             return;
         };
+        memory.table.wants_ids = out.wants_ids();
+        memory.wide_table.wants_ids = out.wants_ids();
         dispatch!(self.level, simd => memory.table.fill(simd, lattice, cells));
         for axis in 0..N {
             let places = match axis {
@@ -85,8 +88,8 @@ where
             line.resize(line.len() + LANES, last);
         }
         let height = self.tile_height(&memory.lines[0]);
-        for row in (0..out.len()).step_by(height) {
-            let rows = row..out.len().min(row + height);
+        for row in (0..self.n_rows).step_by(height) {
+            let rows = row..self.n_rows.min(row + height);
             for column in (0..self.range.len()).step_by(LANES) {
                 let tile = Tile {
                     block: self,
@@ -101,7 +104,7 @@ where
     }
 
     /// The cells that the block needs, if it can be filled from a table.
-    fn cells(&self, n_rows: usize, ring: i32) -> Option<CellBox<N>> {
+    fn cells(&self, ring: i32) -> Option<CellBox<N>> {
         let is_finite = self.columns.is_finite && self.rows.iter().all(|rows| rows.is_finite);
         if !is_finite || !self.picture.plane.is_upright() {
             return None;
@@ -113,7 +116,7 @@ where
         for axis in 0..N {
             [cells.first[axis], cells.last[axis]] = match axis {
                 0 => self.columns.cells(self.range.clone()),
-                _ => self.rows[axis].cells(0..n_rows),
+                _ => self.rows[axis].cells(0..self.n_rows),
             };
         }
         let cells = cells.widened(i64::from(ring));
@@ -137,13 +140,35 @@ where
         &self,
         rows: Range<usize>,
         columns: Range<usize>,
-        out: &mut [&mut [f32]],
+        out: &mut Output<'_, N>,
     ) {
-        let Picture { worley, values, .. } = self.picture;
         for row in rows {
             for column in columns.clone() {
-                let place = self.picture.place(column, self.first + row);
-                values.put_one(worley, place, &mut out[row][column]);
+                self.one([column, row], out);
+            }
+        }
+    }
+
+    /// Fills one pixel: a column of the window, a row of the band.
+    pub(super) fn one(&self, [column, row]: [usize; 2], out: &mut Output<'_, N>) {
+        let worley = self.picture.worley;
+        let place = self.picture.place(column, self.first + row);
+        match out {
+            Output::Values(values, rows) => values.put_one(worley, place, &mut rows[row][column]),
+            Output::Gradients(tone, rows) => {
+                let gradient = place.map(|place| tone.gradient_at(worley, place));
+                rows[row][column] = gradient.unwrap_or([f32::NAN; N]);
+            }
+            Output::Features(features) => {
+                let hits = place.map(|place| worley.hits::<LIMIT>(place));
+                for (rank, features) in features.iter_mut().enumerate() {
+                    let (distance, vector, id) =
+                        hits.map_or((f32::NAN, [f32::NAN; N], 0), |hits| {
+                            let Feature { distance, id, .. } = worley.feature(hits[rank]);
+                            (distance, hits[rank].vector, id)
+                        });
+                    features.put([column, row], distance, vector, id);
+                }
             }
         }
     }

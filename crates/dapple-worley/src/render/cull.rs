@@ -58,12 +58,16 @@ pub(super) struct Candidates<const N: usize> {
     len: usize,
     /// Their coordinates along each axis, in cells from the lower corner of the tile.
     coordinates: [Vec<f32>; N],
+    /// Their ids, if the table has them.
+    ids: Vec<u64>,
     /// See [`Shortlist::row_terms`].
     row_terms: Vec<f32>,
     /// All points looked at, in registers that are not always full.
     slots: [Vec<f32>; N],
     /// The smallest key that the point of a slot has in the tile; infinite if there is none.
     near: Vec<f32>,
+    /// The point of the first lane of each register.
+    firsts: Vec<u32>,
 }
 
 impl<const N: usize> Candidates<N> {
@@ -71,10 +75,28 @@ impl<const N: usize> Candidates<N> {
         Self {
             len: 0,
             coordinates: core::array::from_fn(|_| Vec::new()),
+            ids: Vec::new(),
             row_terms: Vec::new(),
             slots: core::array::from_fn(|_| Vec::new()),
             near: Vec::new(),
+            firsts: Vec::new(),
         }
+    }
+
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Their coordinates along an axis, in cells from the lower corner of the tile, padded to a whole register.
+    #[inline(always)]
+    pub(super) fn coordinates(&self, axis: usize) -> &[f32] {
+        &self.coordinates[axis][..self.len.next_multiple_of(LANES).max(LANES)]
+    }
+
+    /// Their ids, if they were asked for, padded to a whole register.
+    pub(super) fn ids(&self) -> &[u64] {
+        &self.ids
     }
 
     /// What the inner loop needs of them.
@@ -121,7 +143,7 @@ impl<const N: usize> Candidates<N> {
             Some(guess) => guess,
             None => smallest_but(find.depth - 1, far),
         };
-        self.keep(simd, n_slots, bound * M::LOOSE);
+        self.keep(simd, find.table, n_slots, bound * M::LOOSE);
         self.add_up_rows(simd, norm, find);
     }
 
@@ -131,6 +153,7 @@ impl<const N: usize> Candidates<N> {
         if self.near.len() <= slot * LANES {
             let len = (slot + 1) * LANES * 2;
             self.near.resize(len, 0.0);
+            self.firsts.resize(len, 0);
             for axis in 0..N {
                 self.slots[axis].resize(len, 0.0);
                 self.coordinates[axis].resize(len + LANES, 0.0);
@@ -165,6 +188,7 @@ impl<const N: usize> Candidates<N> {
                 (norm.joins(near, near_key), norm.joins(far, far_key))
             };
         }
+        self.firsts[slot] = start as u32;
         let is_there = mask32x16::from_bitmask(simd, u64::MAX >> (64 - lanes));
         let near_key = is_there.select(near_key, infinite);
         near_key.store_slice(&mut self.near[at..at + LANES]);
@@ -173,10 +197,11 @@ impl<const N: usize> Candidates<N> {
 
     /// Keeps the points of the first `n_slots` registers whose smallest key is at most `bound`.
     #[inline(always)]
-    fn keep<S: Simd>(&mut self, simd: S, n_slots: usize, bound: f32) {
+    fn keep<S: Simd>(&mut self, simd: S, table: &Table<N>, n_slots: usize, bound: f32) {
         // An infinite bound keeps what is there, and only that.
         let bound = bound.min(f32::MAX);
         let mut len = 0;
+        self.ids.clear();
         for slot in 0..n_slots {
             let at = slot * LANES;
             let matters = f32x16::from_slice(simd, &self.near[at..at + LANES]).simd_le(bound);
@@ -185,9 +210,18 @@ impl<const N: usize> Candidates<N> {
                 let kept = &mut self.coordinates[axis][len..len + LANES];
                 ahead.compress(matters).store_slice(kept);
             }
-            len += matters.to_bitmask().count_ones() as usize;
+            let mut matters = matters.to_bitmask();
+            len += matters.count_ones() as usize;
+            while table.wants_ids && matters != 0 {
+                let point = self.firsts[slot] + matters.trailing_zeros();
+                self.ids.push(table.ids[point as usize]);
+                matters &= matters - 1;
+            }
         }
         self.len = len;
+        if table.wants_ids {
+            self.ids.resize(len.next_multiple_of(LANES).max(LANES), 0);
+        }
     }
 
     /// Joins the terms of all axes but the first, for each candidate and each row.

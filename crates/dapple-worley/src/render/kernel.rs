@@ -132,7 +132,7 @@ fn insert<S: Simd, const K: usize>(best: &mut [f32x16<S>; K], key: f32x16<S>) {
 
 /// Floats of at least zero are in the order of their bits, and most processors compare whole numbers faster.
 #[inline(always)]
-fn lesser<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
+pub(super) fn lesser<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
     if floats_are_faster(a.simd) {
         a.min(b)
     } else {
@@ -143,7 +143,7 @@ fn lesser<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
 }
 
 #[inline(always)]
-fn greater<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
+pub(super) fn greater<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
     if floats_are_faster(a.simd) {
         a.max(b)
     } else {

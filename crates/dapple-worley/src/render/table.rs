@@ -1,7 +1,7 @@
 //! The feature points of a box of cells, made once and then looked up.
 
 use crate::fixed::STEP_BITS;
-use crate::lattice::{Lattice, SixteenCells};
+use crate::lattice::{IDS, Lattice, SixteenCells};
 use crate::render::LANES;
 use core::ops::Range;
 use dapple_hash::{CellHash, CellHashes};
@@ -46,6 +46,10 @@ pub(super) struct Table<const N: usize> {
     /// The coordinates along each axis, in steps from the lower corner of the box. After the last point there is room
     /// for a whole register.
     pub(super) steps: [Vec<i32>; N],
+    /// Whether ids are wanted.
+    pub(super) wants_ids: bool,
+    /// What the points are known by, if that is wanted.
+    pub(super) ids: Vec<u64>,
 }
 
 impl<const N: usize> Table<N> {
@@ -58,6 +62,8 @@ impl<const N: usize> Table<N> {
             },
             starts: Vec::new(),
             steps: core::array::from_fn(|_| Vec::new()),
+            wants_ids: false,
+            ids: Vec::new(),
         }
     }
 
@@ -67,6 +73,7 @@ impl<const N: usize> Table<N> {
         self.cells = cells;
         self.starts.clear();
         self.starts.push(0);
+        self.ids.clear();
         let side = cells.side(0);
         let columns: Vec<[u32; 2]> = (0..side.next_multiple_of(LANES) as i64)
             .map(|column| words(lattice.wrap(0, cells.first[0] + column)))
@@ -155,6 +162,33 @@ impl<const N: usize> Table<N> {
             end += number;
             self.starts.push(end);
         }
+        if self.wants_ids {
+            self.add_ids(simd, hashes, &numbers[..n_cells]);
+        }
+    }
+
+    /// Adds the ids of the points of up to sixteen cells with these numbers of points.
+    #[inline(always)]
+    fn add_ids<S: Simd>(&mut self, simd: S, hashes: CellHashes<S>, numbers: &[u32]) {
+        let most = numbers.iter().copied().fold(0, u32::max);
+        let mut end = self.ids.len();
+        let starts: Vec<usize> = numbers
+            .iter()
+            .map(|&number| {
+                end += number as usize;
+                end - number as usize
+            })
+            .collect();
+        self.ids.resize(end, 0);
+        for index in 0..most {
+            let [high, low] = hashes.at(u32x16::splat(simd, IDS + index));
+            for (lane, &number) in numbers.iter().enumerate() {
+                if index < number {
+                    self.ids[starts[lane] + index as usize] =
+                        u64::from(high[lane]) << 32 | u64::from(low[lane]);
+                }
+            }
+        }
     }
 
     /// The points of the cells `columns` (along the first axis) of a row of cells, as a range.
@@ -162,19 +196,6 @@ impl<const N: usize> Table<N> {
     pub(super) fn run(&self, row: usize, columns: Range<usize>) -> Range<usize> {
         let first = row * self.cells.side(0);
         self.starts[first + columns.start] as usize..self.starts[first + columns.end] as usize
-    }
-
-    /// The cell of a point, and its place among the points of that cell.
-    pub(super) fn name(&self, point: u32) -> ([i64; N], u32) {
-        let cell = self.starts.partition_point(|&start| start <= point) - 1;
-        let mut index = cell;
-        let cell_at = core::array::from_fn(|axis| {
-            let side = self.cells.side(axis);
-            let along = index % side;
-            index /= side;
-            self.cells.first[axis] + along as i64
-        });
-        (cell_at, point - self.starts[cell])
     }
 }
 

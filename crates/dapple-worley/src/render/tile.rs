@@ -1,14 +1,15 @@
 //! A tile: up to 16 × 16 pixels, and how far away the points are that they need.
 
-use super::LANES;
 use super::block::{Block, Memory};
 use super::cull::{Find, TileBox};
 use super::kernel::Rows;
 use super::table::CellBox;
+use super::track::{Found, TrackedRows};
+use super::{LANES, Output};
 use crate::fixed::{STEP, STEP_BITS, STEPS};
 use crate::lattice::Lattice;
-use crate::metric::{Norm as _, with_norm};
-use crate::{Axes, Space};
+use crate::metric::{Chebyshev, Euclidean, Manhattan, Norm, with_norm};
+use crate::{Axes, Metric, Space};
 use core::ops::Range;
 use fearless_simd::dispatch;
 
@@ -60,7 +61,7 @@ where
     Axes: Space<N>,
 {
     /// Fills the pixels; `out` has the rows of the band.
-    pub(super) fn render(&self, out: &mut [&mut [f32]], memory: &mut Memory<N>) {
+    pub(super) fn render(&self, out: &mut Output<'_, N>, memory: &mut Memory<N>) {
         let picture = self.block.picture;
         let left = self.block.range.start + self.column;
         let columns = left..self.block.range.end.min(left + LANES);
@@ -73,23 +74,99 @@ where
         let mut row = self.rows.start;
         while neighborhood.fits(&tile) {
             let limit = self.find(&neighborhood, &tile, memory);
-            let rows = Rows {
-                rows: row..self.rows.end,
-                first: self.rows.start,
-                columns: columns.clone(),
-                steps: &memory.lines[0][self.column..],
-                low: tile.low[0],
-                shortlist: memory.candidates.shortlist(),
-                limit,
-                values: &picture.values,
+            let rest = row..self.rows.end;
+            row = match out {
+                Output::Values(values, out) => {
+                    let rows = Rows {
+                        rows: rest,
+                        first: self.rows.start,
+                        columns: columns.clone(),
+                        steps: &memory.lines[0][self.column..],
+                        low: tile.low[0],
+                        shortlist: memory.candidates.shortlist(),
+                        limit,
+                        values,
+                    };
+                    rows.fill(self.block.level, picture.worley.metric, self.depth, out)
+                }
+                _ => {
+                    let rows = TrackedRows {
+                        rows: rest,
+                        columns: columns.clone(),
+                        first_column: self.column,
+                        lines: &memory.lines,
+                        low: tile.low,
+                        first_row: self.rows.start,
+                        candidates: &memory.candidates,
+                        limit,
+                    };
+                    self.track(&rows, out)
+                }
             };
-            row = rows.fill(self.block.level, picture.worley.metric, self.depth, out);
             if row == self.rows.end {
                 return;
             }
             neighborhood.grow();
         }
         self.block.one_by_one(row..self.rows.end, columns, out);
+    }
+
+    /// Fills pixels that show which points are the nearest.
+    fn track(&self, rows: &TrackedRows<'_, N>, out: &mut Output<'_, N>) -> usize {
+        match self.block.picture.worley.metric {
+            Metric::Euclidean => self.track_by(rows, Euclidean, out),
+            Metric::Manhattan => self.track_by(rows, Manhattan, out),
+            Metric::Chebyshev => self.track_by(rows, Chebyshev, out),
+            // Powers take so long that nothing is gained side by side.
+            Metric::Minkowski(_) => {
+                let columns = rows.columns.clone();
+                self.block.one_by_one(rows.rows.clone(), columns, out);
+                rows.rows.end
+            }
+        }
+    }
+
+    fn track_by<M: Norm>(
+        &self,
+        rows: &TrackedRows<'_, N>,
+        norm: M,
+        out: &mut Output<'_, N>,
+    ) -> usize {
+        if self.depth <= 2 {
+            self.track_depth::<M, 2>(rows, norm, out)
+        } else {
+            self.track_depth::<M, 4>(rows, norm, out)
+        }
+    }
+
+    fn track_depth<M: Norm, const K: usize>(
+        &self,
+        rows: &TrackedRows<'_, N>,
+        norm: M,
+        out: &mut Output<'_, N>,
+    ) -> usize {
+        let mut put = |found: &Found<N, K>| self.put(found, out);
+        dispatch!(self.block.level, simd => rows.fill::<_, M, K>(simd, norm, &mut put))
+    }
+
+    /// Puts what was found in a row.
+    fn put<const K: usize>(&self, found: &Found<N, K>, out: &mut Output<'_, N>) {
+        let metric = self.block.picture.worley.metric;
+        match out {
+            Output::Features(features) => found.put(features),
+            Output::Gradients(tone, rows) => {
+                let out = &mut rows[found.row][found.columns.clone()];
+                for (lane, out) in out.iter_mut().enumerate() {
+                    *out = tone.gradient(metric, &found.vectors.map(|vectors| vectors[lane]));
+                }
+            }
+            Output::Values(..) => {}
+        }
+        for (lane, column) in found.columns.clone().enumerate() {
+            if found.unknown >> lane & 1 == 1 {
+                self.block.one([column, found.row], out);
+            }
+        }
     }
 
     /// Where the pixels lie.

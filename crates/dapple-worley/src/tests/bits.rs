@@ -5,7 +5,7 @@ use crate::fixed::Place;
 use crate::metric::with_norm;
 use crate::search::nearest;
 use crate::simd::for_every_level;
-use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError};
+use crate::{Axes, Combination, FeatureView, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
@@ -57,9 +57,8 @@ where
             }
             for_every_level(|level| {
                 let mut out = Raster::filled(window.size, -1.0).unwrap();
-                texture
-                    .picture(plane, &window)
-                    .render_at(level, out.view_mut());
+                let picture = worley.feature_picture(plane, &window);
+                picture.render_at(level, texture.outputs(&picture, out.view_mut()));
                 let differ = out.pixels().iter().zip(expected.pixels());
                 let differ = differ.filter(|(a, b)| a.to_bits() != b.to_bits()).count();
                 assert_eq!(
@@ -106,6 +105,85 @@ fn render_equals_sample_bit_for_bit_in_space() -> Result<(), WorleyError> {
     }
     let planes = [Plane::slice([0.1, 0.2, -5.3, 1e4].into())];
     doors_agree::<4>(&Worley::new(seed).with_density(1.0)?, &planes)
+}
+
+fn features_agree<const N: usize>(worley: &Worley<N>, plane: &Plane<N>) -> Result<(), WorleyError>
+where
+    Axes: Space<N>,
+{
+    let texture = worley.combine(Combination::new([0.5, -1.0, 0.0, 0.25]));
+    for window in windows() {
+        let mut distances = [(); 2].map(|()| Raster::filled(window.size, -1.0).unwrap());
+        let mut vectors = Raster::filled(window.size, [0.0; N])?;
+        let mut ids = [(); 4].map(|()| Raster::filled(window.size, 1).unwrap());
+        let mut gradients = Raster::filled(window.size, [0.0; N])?;
+        let mut views = [(); 4].map(|()| FeatureView::default());
+        for (view, ids) in views.iter_mut().zip(&mut ids) {
+            view.id = Some(ids.view_mut());
+        }
+        let [first, last] = &mut distances;
+        views[0].distance = Some(first.view_mut());
+        views[3].distance = Some(last.view_mut());
+        views[1].vector = Some(vectors.view_mut());
+        worley.render_features(plane, &window, views)?;
+        texture.render_gradient(plane, &window, gradients.view_mut())?;
+        for row in 0..window.size[1] {
+            for column in 0..window.size[0] {
+                let at = plane.position(window.position(column, row));
+                let expected = worley.sample::<4>(at);
+                let pixel = column as usize;
+                let found =
+                    [&distances[0], &distances[1]].map(|raster| raster.row(row)[pixel].to_bits());
+                let wanted = [&expected[0], &expected[3]].map(|feature| feature.distance.to_bits());
+                assert_eq!(
+                    found, wanted,
+                    "{:?} {window:?} {pixel} {row}",
+                    worley.metric
+                );
+                let found = [0, 1, 2, 3].map(|rank: usize| ids[rank].row(row)[pixel]);
+                assert_eq!(
+                    found,
+                    expected.map(|feature| feature.id),
+                    "{window:?} {pixel} {row}"
+                );
+                let bits = |vector: Vector<N>| -> [u64; N] { vector.into().map(f64::to_bits) };
+                let vector = Vector::<N>::from(vectors.row(row)[pixel].map(f64::from));
+                assert_eq!(
+                    bits(vector),
+                    bits(expected[1].vector),
+                    "{window:?} {pixel} {row}"
+                );
+                let gradient = Vector::<N>::from(gradients.row(row)[pixel].map(f64::from));
+                assert_eq!(
+                    bits(gradient),
+                    bits(texture.gradient(at)),
+                    "{window:?} {pixel} {row}"
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn rendered_features_and_gradients_are_those_of_samples() -> Result<(), WorleyError> {
+    for metric in METRICS {
+        features_agree::<2>(
+            &Worley::new(Seed(2)).with_metric(metric)?,
+            &Plane::default(),
+        )?;
+    }
+    let periodic = Worley::new(Seed(2)).with_period([Some(2), Some(1)])?;
+    features_agree::<2>(&periodic, &Plane::default())?;
+    features_agree::<2>(
+        &Worley::new(Seed(2)).with_scatter(SCATTERS[3])?,
+        &Plane::default(),
+    )?;
+    features_agree::<3>(&Worley::new(Seed(2)), &Plane::slice([0.0, 0.0, 0.7].into()))?;
+    features_agree::<4>(
+        &Worley::new(Seed(2)),
+        &Plane::slice([0.0, 0.0, 0.7, -3.0].into()),
+    )
 }
 
 fn many_equal_single_ones<const N: usize, const K: usize>(

@@ -1,0 +1,201 @@
+//! Pictures of the nearest feature points: distances, vectors, ids; and of gradients.
+
+use crate::render::{Output, Picture};
+use crate::search::Hit;
+use crate::sink::Tone;
+use crate::{Axes, Cellular, LIMIT, Plane, Space, Worley};
+use dapple_raster::{RasterError, RasterViewMut, Window};
+
+/// Where to put what a picture shows of one of the nearest feature points; what is `None` is not made.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_worley::{FeatureView, Plane, Worley2, hash::Seed, raster::{Raster, Window, glam::DVec2}};
+///
+/// let worley = Worley2::new(Seed(7));
+/// let window = Window::new(DVec2::ZERO, DVec2::splat(4.0), [64, 64])?;
+/// let mut ids = Raster::filled(window.size, 0)?;
+/// let nearest = FeatureView { id: Some(ids.view_mut()), ..FeatureView::default() };
+/// worley.render_features(&Plane::default(), &window, [nearest])?;
+/// assert_eq!(ids.row(3)[5], worley.sample::<1>(window.position(5, 3))[0].id);
+/// # Ok::<(), dapple_worley::raster::RasterError>(())
+/// ```
+#[derive(Debug)]
+pub struct FeatureView<'a, const N: usize> {
+    /// Distances, in cells.
+    pub distance: Option<RasterViewMut<'a, f32>>,
+    /// The ways from the feature points to the pixels, in cells.
+    pub vector: Option<RasterViewMut<'a, [f32; N]>>,
+    /// What the feature points are known by.
+    pub id: Option<RasterViewMut<'a, u64>>,
+}
+
+impl<const N: usize> Default for FeatureView<'_, N> {
+    /// Nothing is made.
+    fn default() -> Self {
+        Self {
+            distance: None,
+            vector: None,
+            id: None,
+        }
+    }
+}
+
+/// The rows of a band, for one of the nearest points; empty where nothing is wanted.
+#[derive(Debug, Default)]
+pub(crate) struct FeatureRows<'a, const N: usize> {
+    pub(crate) distance: Vec<&'a mut [f32]>,
+    pub(crate) vector: Vec<&'a mut [[f32; N]]>,
+    pub(crate) id: Vec<&'a mut [u64]>,
+}
+
+impl<const N: usize> FeatureRows<'_, N> {
+    /// Puts one pixel.
+    pub(crate) fn put(
+        &mut self,
+        [column, row]: [usize; 2],
+        distance: f32,
+        vector: [f32; N],
+        id: u64,
+    ) {
+        if let Some(out) = self.distance.get_mut(row) {
+            out[column] = distance;
+        }
+        if let Some(out) = self.vector.get_mut(row) {
+            out[column] = vector;
+        }
+        if let Some(out) = self.id.get_mut(row) {
+            out[column] = id;
+        }
+    }
+}
+
+impl<const N: usize> Worley<N>
+where
+    Axes: Space<N>,
+{
+    /// The `K` nearest feature points at the pixel centers of a window of a plane, into memory of its size: what
+    /// [`sample`](Self::sample) gives there, bit for bit. `K` is from 1 to 4, and the nearest comes first.
+    ///
+    /// # Errors
+    ///
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window.
+    pub fn render_features<const K: usize>(
+        &self,
+        plane: &Plane<N>,
+        window: &Window,
+        mut views: [FeatureView<'_, N>; K],
+    ) -> Result<(), RasterError> {
+        const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
+        for view in &views {
+            let sizes = [
+                view.distance.as_ref().map(RasterViewMut::size),
+                view.vector.as_ref().map(RasterViewMut::size),
+                view.id.as_ref().map(RasterViewMut::size),
+            ];
+            for size in sizes.into_iter().flatten() {
+                window.check_size(size)?;
+            }
+        }
+        let picture = self.feature_picture(plane, window);
+        let n_bands = picture.n_bands();
+        let mut bands: Vec<Vec<FeatureRows<'_, N>>> = Vec::new();
+        bands.resize_with(n_bands, Vec::new);
+        for view in &mut views {
+            let mut distance = picture.bands(view.distance.take());
+            let mut vector = picture.bands(view.vector.take());
+            let mut id = picture.bands(view.id.take());
+            for band in &mut bands {
+                band.push(FeatureRows {
+                    distance: distance.next().unwrap_or_default(),
+                    vector: vector.next().unwrap_or_default(),
+                    id: id.next().unwrap_or_default(),
+                });
+            }
+        }
+        picture.render(bands.into_iter().map(Output::Features).collect());
+        Ok(())
+    }
+
+    pub(crate) fn feature_picture<'a>(
+        &'a self,
+        plane: &'a Plane<N>,
+        window: &'a Window,
+    ) -> Picture<'a, N> {
+        Picture {
+            worley: self,
+            plane,
+            window,
+            frequency: 1.0,
+        }
+    }
+}
+
+impl<const N: usize> Cellular<N>
+where
+    Axes: Space<N>,
+{
+    /// The gradients at the pixel centers of a window of a plane, into memory of its size: what
+    /// [`gradient`](Self::gradient) gives there, bit for bit.
+    ///
+    /// # Errors
+    ///
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if `out` has another size than the window.
+    pub fn render_gradient(
+        &self,
+        plane: &Plane<N>,
+        window: &Window,
+        out: RasterViewMut<'_, [f32; N]>,
+    ) -> Result<(), RasterError> {
+        window.check_size(out.size())?;
+        let picture = self.worley.feature_picture(plane, window);
+        let bands = picture.bands(Some(out));
+        picture.render(
+            bands
+                .map(|rows| Output::Gradients(self.tone, rows))
+                .collect(),
+        );
+        Ok(())
+    }
+}
+
+impl Tone {
+    /// The gradient, from the ways from the nearest points.
+    pub(crate) fn gradient<const N: usize>(
+        &self,
+        metric: crate::Metric,
+        vectors: &[[f32; N]],
+    ) -> [f32; N] {
+        let mut sum = [0.0; N];
+        for (&vector, coefficient) in vectors.iter().zip(self.combination.coefficients()) {
+            if coefficient != 0.0 {
+                let gradient = metric.gradient(vector);
+                for axis in 0..N {
+                    sum[axis] += coefficient * gradient[axis];
+                }
+            }
+        }
+        sum.map(|part| part * self.scale)
+    }
+
+    /// The gradient at a place.
+    pub(crate) fn gradient_at<const N: usize>(
+        &self,
+        worley: &Worley<N>,
+        place: crate::fixed::Place<N>,
+    ) -> [f32; N]
+    where
+        Axes: Space<N>,
+    {
+        fn vectors<const N: usize, const K: usize>(hits: [Hit<N>; K]) -> [[f32; N]; K] {
+            hits.map(|hit| hit.vector)
+        }
+        match self.combination.depth() {
+            1 => self.gradient(worley.metric, &vectors(worley.hits::<1>(place))),
+            2 => self.gradient(worley.metric, &vectors(worley.hits::<2>(place))),
+            3 => self.gradient(worley.metric, &vectors(worley.hits::<3>(place))),
+            _ => self.gradient(worley.metric, &vectors(worley.hits::<4>(place))),
+        }
+    }
+}
