@@ -4,9 +4,13 @@
 //! that wraps is drawn wherever the window shows it.
 
 mod label;
+mod sheet;
+mod shrink;
 mod stencil;
 
 pub use label::{graph_grays, label_color, label_gray};
+pub use sheet::sheet;
+pub use shrink::shrink;
 
 use dapple_graph::Graph;
 use dapple_points::{Domain, PointSet};

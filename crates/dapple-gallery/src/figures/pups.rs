@@ -24,9 +24,10 @@ mod fig_extra_weights;
 mod flower;
 mod weight;
 
+use crate::draw::shrink;
 use crate::{Panel, Paper};
 use dapple_points::Domain;
-use dapple_raster::{Field, Raster, RasterError, Window};
+use dapple_raster::{Field, RasterError, Window};
 
 /// The paper, with its figures in its own order.
 pub(super) const PAPER: Paper = Paper {
@@ -71,13 +72,7 @@ fn picture_of_labels(
 ) -> Result<Panel, RasterError> {
     const SIDE: u32 = 4;
     let fine = texture.to_raster(&square(size.saturating_mul(SIDE))?)?;
-    let pixel = |column: u32, row: u32| {
-        let rows = row * SIDE..(row + 1) * SIDE;
-        let columns = (column * SIDE) as usize..((column + 1) * SIDE) as usize;
-        let samples = rows.flat_map(|row| &fine.row(row)[columns.clone()]);
-        samples.sum::<f32>() / (SIDE * SIDE) as f32
-    };
-    Ok(Panel::gray(label, Raster::from_fn([size; 2], pixel)?))
+    Ok(Panel::gray(label, shrink(&fine, SIDE)?))
 }
 
 /// The pixels of the paper's square.
