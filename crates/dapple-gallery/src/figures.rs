@@ -2,11 +2,12 @@
 
 mod house;
 mod pups;
+mod worley;
 
 use crate::{Figure, Paper};
 
 /// The papers, in the order of the page.
-pub const PAPERS: &[Paper] = &[pups::PAPER, house::PAPER];
+pub const PAPERS: &[Paper] = &[worley::PAPER, pups::PAPER, house::PAPER];
 
 /// All figures, in the order of the page.
 pub fn figures() -> impl Iterator<Item = &'static Figure> {

@@ -1,0 +1,111 @@
+//! The figures of "A Cellular Texture Basis Function".
+
+mod fig_01;
+mod fig_02;
+mod fig_03;
+mod fig_04;
+mod fig_06;
+mod fig_07;
+mod fig_extra_ids;
+mod fig_extra_metrics;
+mod fig_extra_radial;
+mod hull;
+
+use crate::{Panel, Paper};
+use dapple_color::{ColorRamp, LinearRgb, NormalOptions, NormalY, normal_map};
+use dapple_points::Domain;
+use dapple_preview::{Scene, Supersampling};
+use dapple_pups::{OctavesOptions, Spacing, hash::Seed, octaves};
+use dapple_raster::{Field, Raster, Window, Wrap};
+use dapple_worley::{Cellular, Combination, Plane};
+use glam::{DVec2, DVec3};
+
+/// The paper, with its figures in its own order.
+pub(super) const PAPER: Paper = Paper {
+    key: "worley",
+    title: "A Cellular Texture Basis Function",
+    reference: "Steven Worley, SIGGRAPH 1996",
+    figures: &[
+        fig_01::FIGURE,
+        fig_02::FIGURE,
+        fig_03::FIGURE,
+        fig_04::FIGURE,
+        fig_06::FIGURE,
+        fig_07::FIGURE,
+        fig_extra_radial::FIGURE,
+        fig_extra_metrics::FIGURE,
+        fig_extra_ids::FIGURE,
+    ],
+};
+
+/// How many positions the range of a texture is measured at: the paper's "several thousand".
+const N_POSITIONS: u32 = 8000;
+
+/// `F3 − F1`.
+const F3_MINUS_F1: Combination = Combination::new([-1.0, 0.0, 1.0, 0.0]);
+
+/// The slice `z = 0.5` through a texture in space, `cells` cells wide, with the texture's range as 0 to 1.
+fn slice(texture: Cellular<3>, cells: f64, size: [u32; 2]) -> anyhow::Result<Raster<f32>> {
+    let range = texture.measure_range(Seed(1), N_POSITIONS)?;
+    let height = cells * f64::from(size[1]) / f64::from(size[0]);
+    let window = Window::new(DVec2::ZERO, DVec2::new(cells, height), size)?;
+    let mut raster = Raster::filled(size, 0.0)?;
+    let plane = Plane::slice(DVec3::new(0.0, 0.0, 0.5));
+    let texture = texture.with_range(range)?;
+    texture.render_plane(&plane, &window, raster.view_mut())?;
+    Ok(raster)
+}
+
+/// A height as a surface of many colors, lit from the upper left: the height goes through a ramp and bends the normals.
+///
+/// `depth` is how far 0 is below 1, in widths of the picture.
+fn relief(height: &Raster<f32>, ramp: &ColorRamp, depth: f64) -> anyhow::Result<Raster<LinearRgb>> {
+    let [width, rows] = height.size().map(f64::from);
+    let options = NormalOptions {
+        strength: depth,
+        extent: DVec2::new(1.0, rows / width),
+        wrap: [Wrap::Mirror; 2],
+        y: NormalY::OpenGl,
+    };
+    let normals = normal_map(height, &options)?;
+    let toward = DVec3::new(-0.5, 0.6, 0.75).normalize();
+    Ok(height.zip_map(&normals, |&height, normal| {
+        let normal = DVec3::from_array(normal.to_array().map(f64::from));
+        let light = 0.25 + 0.95 * normal.dot(toward).max(0.0);
+        ramp.at(height) * light as f32
+    })?)
+}
+
+/// Fractal noise as a tile that repeats after 1 along both axes, from 0 to 1.
+#[derive(Clone, Debug)]
+struct FractalNoise {
+    tile: Raster<f32>,
+}
+
+impl FractalNoise {
+    /// Octaves of noise, the first with control points that are `spacing` apart.
+    fn new(spacing: f64, seed: Seed) -> anyhow::Result<Self> {
+        let options = OctavesOptions {
+            domain: Domain::torus(DVec2::ZERO, DVec2::ONE),
+            spacing: Spacing::from(spacing),
+            octaves: 5,
+            ..OctavesOptions::default()
+        };
+        let tile = octaves(&options, seed)?.to_raster(&Window::unit([512; 2])?)?;
+        let range = tile.statistics();
+        let scale = 1.0 / (range.max - range.min).max(f32::MIN_POSITIVE);
+        Ok(Self {
+            tile: tile.map(|value| (value - range.min) * scale),
+        })
+    }
+
+    /// The noise at a position of the plane.
+    fn at(&self, position: DVec2) -> f32 {
+        self.tile.sample_bilinear(position, [Wrap::Repeat; 2])
+    }
+}
+
+/// The picture of a scene, three samples along each side of a pixel.
+fn photo(scene: &Scene<'_>, size: [u32; 2]) -> anyhow::Result<Panel> {
+    Ok(Panel::color("", scene.render(size, Supersampling(3))?))
+}

@@ -1,0 +1,76 @@
+//! Flagstones: each cell has a color of its own from the identity of its feature point, F2 − F1 carves the joints between
+//! them as a bump, and fractal noise discolors each stone in its own way.
+
+use super::{FractalNoise, photo};
+use crate::figure::source;
+use crate::{Figure, Panel};
+use dapple_color::{ColorRamp, LinearRgb};
+use dapple_preview::{Camera, Light, Material, Object, Scene, Shadows, Shape, Surface};
+use dapple_worley::{Combination, Octaves, Profile, Worley2, hash::Seed};
+use glam::{DVec2, DVec3};
+
+pub(super) const FIGURE: Figure = Figure {
+    number: "2",
+    parameters: &[
+        ("joints", "F2 − F1 below 0.07"),
+        ("depth of the joints", "0.04"),
+        (
+            "discoloration",
+            "5 octaves of noise, another place for each stone",
+        ),
+        ("grain", "fractal F1"),
+    ],
+    source: source!(),
+    render,
+};
+
+/// How deep the joints are, in cells.
+const DEPTH: f64 = 0.04;
+/// How high the grain of the stones is, in cells.
+const GRAIN: f64 = 0.01;
+
+fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
+    let stones = [
+        "#6b5f53", "#8d7b66", "#a58f72", "#75757a", "#96877c", "#b39b7d", "#7d6a5a", "#5f6468",
+    ];
+    let stones = ColorRamp::from_hex(&stones)?;
+    let joint = LinearRgb::from_srgb([58_u8, 54, 48]);
+    let worley = Worley2::new(Seed(2));
+    let channels = Profile::channels(0.07)?;
+    let grain = Worley2::new(Seed(3))
+        .combine(Combination::F1)
+        .fractal(Octaves {
+            count: 2,
+            ..Octaves::default()
+        })?;
+    let stain = FractalNoise::new(0.2, Seed(4))?;
+
+    let flags = |surface: &Surface| {
+        let at = DVec2::new(surface.position.x, surface.position.z);
+        let [first, second] = worley.sample(at);
+        let border = second.distance - first.distance;
+        let height = channels.height(border);
+        // The gradient of F_n is the unit vector away from its feature point.
+        let across = second.vector.normalize_or_zero() - first.vector.normalize_or_zero();
+        let bump = across * (DEPTH * f64::from(channels.slope(border)))
+            + grain.gradient(at * 4.0) * (4.0 * GRAIN);
+        let shift = DVec2::new(
+            f64::from(first.cell_value()),
+            (first.id & 0xff) as f64 / 256.0,
+        );
+        let shade = 0.2 + 1.5 * stain.at(at * 0.3 + shift * 7.0);
+        let stone = stones.at(first.cell_value()) * shade;
+        Material::matte(joint.lerp(stone, height))
+            .with_bump(DVec3::new(bump.x, 0.0, bump.y))
+            .with_specular(0.06 * height, 20.0)
+    };
+    let camera = Camera::look_at(DVec3::new(0.0, 3.6, 4.2), DVec3::new(0.0, 0.0, 0.0));
+    let scene = Scene::new(camera)
+        .with_object(Object::new(Shape::Plane, flags))
+        .with_light(
+            Light::directional(DVec3::new(-2.0, 1.3, -0.6), LinearRgb::new(1.9, 1.75, 1.5))
+                .with_shadows(Shadows::None),
+        )
+        .with_ambient(LinearRgb::new(0.2, 0.23, 0.3));
+    Ok(vec![photo(&scene, [size, size * 3 / 4])?])
+}
