@@ -1,15 +1,18 @@
 //! The figures of "A Cellular Texture Basis Function".
 
+mod creature;
 mod fig_01;
 mod fig_02;
 mod fig_03;
 mod fig_04;
+mod fig_05;
 mod fig_06;
 mod fig_07;
 mod fig_extra_ids;
 mod fig_extra_metrics;
 mod fig_extra_radial;
 mod hull;
+mod polygonize;
 
 use crate::{Panel, Paper};
 use dapple_color::{ColorRamp, LinearRgb, NormalOptions, NormalY, normal_map};
@@ -30,6 +33,7 @@ pub(super) const PAPER: Paper = Paper {
         fig_02::FIGURE,
         fig_03::FIGURE,
         fig_04::FIGURE,
+        fig_05::FIGURE,
         fig_06::FIGURE,
         fig_07::FIGURE,
         fig_extra_radial::FIGURE,
