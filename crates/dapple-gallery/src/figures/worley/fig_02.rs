@@ -34,6 +34,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         "#6b5f53", "#8d7b66", "#a58f72", "#75757a", "#96877c", "#b39b7d", "#7d6a5a", "#5f6468",
     ];
     let stones = ColorRamp::from_hex(&stones)?;
+    let rust = LinearRgb::from_srgb([104_u8, 66, 38]);
     let joint = LinearRgb::from_srgb([58_u8, 54, 48]);
     let worley = Worley2::new(Seed(2));
     let channels = Profile::channels(0.07)?;
@@ -58,8 +59,9 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
             f64::from(first.cell_value()),
             (first.id & 0xff) as f64 / 256.0,
         );
-        let shade = 0.2 + 1.5 * stain.at(at * 0.3 + shift * 7.0);
-        let stone = stones.at(first.cell_value()) * shade;
+        let stain = stain.at(at * 0.3 + shift * 7.0);
+        let stone = stones.at(first.cell_value()) * (0.25 + 1.4 * stain);
+        let stone = stone.lerp(rust, 0.6 * (1.0 - 2.0 * stain).clamp(0.0, 1.0));
         Material::matte(joint.lerp(stone, height))
             .with_bump(DVec3::new(bump.x, 0.0, bump.y))
             .with_specular(0.06 * height, 20.0)

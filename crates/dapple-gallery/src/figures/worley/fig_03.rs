@@ -17,17 +17,17 @@ pub(super) const FIGURE: Figure = Figure {
     number: "3",
     parameters: &[
         ("metric", "Manhattan"),
-        ("steps", "where F1 is 0.2, 0.35, 0.5 and 0.65"),
-        ("height of a step", "0.015"),
+        ("steps", "where F1 is 0.25, 0.4, 0.55 and 0.7"),
+        ("height of a step", "0.025"),
     ],
     source: source!(),
     render,
 };
 
 /// Where F1 has a step.
-const LEVELS: [f32; 4] = [0.2, 0.35, 0.5, 0.65];
+const LEVELS: [f32; 4] = [0.25, 0.4, 0.55, 0.7];
 /// How many units of the ship a step is high.
-const STEP: f64 = 0.015;
+const STEP: f64 = 0.025;
 /// Cells per unit of the ship.
 const FREQUENCY: f64 = 2.2;
 
@@ -57,7 +57,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
             .with_specular(0.12, 16.0)
     };
     let camera =
-        Camera::look_at(DVec3::new(-5.3, 3.3, -7.2), DVec3::new(-1.15, 0.2, -0.7)).with_fov(0.55);
+        Camera::look_at(DVec3::new(-5.3, 3.3, -7.2), DVec3::new(-0.2, 0.3, -0.7)).with_fov(0.52);
     let scene = Scene::new(camera)
         .with_object(Object::new(Shape::mesh(hull()?), look))
         .with_light(Light::directional(

@@ -58,7 +58,10 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let grains = FractalNoise::new(0.1, Seed(57))?;
     let sand = |surface: &Surface| {
         let at = DVec2::new(surface.position.x, surface.position.z);
-        Material::matte(LinearRgb::new(0.4, 0.32, 0.2) * (0.7 + 0.6 * grains.at(at * 0.25)))
+        // Grains that are finer than a sample of the picture are left out.
+        let samples = surface.footprint / surface.incidence / 0.2;
+        let grain = (grains.at(at * 0.25) - 0.5) / (1.0 + samples * samples) as f32;
+        Material::matte(LinearRgb::new(0.4, 0.32, 0.2) * (1.0 + 0.6 * grain))
     };
     let camera =
         Camera::look_at(DVec3::new(5.4, 2.1, 6.2), DVec3::new(0.68, 0.68, 0.25)).with_fov(0.49);

@@ -51,7 +51,7 @@ const TORI: [(Combination, f64, [&str; 4], f64); 4] = [
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let camera =
-        Camera::look_at(DVec3::new(-1.6, 5.6, 10.5), DVec3::new(-0.68, 0.2, -0.3)).with_fov(0.45);
+        Camera::look_at(DVec3::new(-1.6, 5.6, 10.5), DVec3::new(-0.8, 0.2, -0.3)).with_fov(0.455);
     let floor = |_: &Surface| Material::matte(LinearRgb::gray(0.32));
     let mut scene = Scene::new(camera)
         .with_object(Object::new(Shape::Plane, floor))
