@@ -36,7 +36,7 @@ pub use cell::{CellHash, hash1, hash2, hash3, hash4};
 #[cfg(feature = "simd")]
 pub use lanes::{CellHashes, mix32_lanes};
 pub use mix::mix32;
-pub use poisson::{PoissonCounts, PoissonError, PoissonErrorKind};
+pub use poisson::{PoissonCounts, PoissonError, PoissonErrorKind, poisson_count};
 pub use rand_core;
 pub use rand_pcg::Pcg32;
 pub use seed::Seed;

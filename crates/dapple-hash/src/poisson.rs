@@ -115,6 +115,44 @@ impl PoissonCounts {
     }
 }
 
+/// The count of an unclamped table with this mean, without a table: for means that are used once.
+///
+/// The mean is clamped to what a table accepts; one that is not a number counts as the least.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_hash::{PoissonCounts, poisson_count};
+///
+/// let counts = PoissonCounts::new(3.0, 0..=u32::MAX)?;
+/// assert_eq!(poisson_count(3.0, 0x9E37_79B9), counts.count(0x9E37_79B9));
+/// # Ok::<(), dapple_hash::PoissonError>(())
+/// ```
+#[must_use]
+pub fn poisson_count(mean: f64, bits: u32) -> u32 {
+    let mean = if mean > 0.0 {
+        mean.min(MEAN_LIMIT)
+    } else {
+        f64::MIN_POSITIVE
+    };
+    let mut probability = libm::exp(-mean);
+    let mut cumulative = 0.0;
+    let mut count = 0;
+    loop {
+        cumulative += probability;
+        // The same rounding, and the same ends, as in the table.
+        let threshold = (cumulative * (1_u64 << 32) as f64) as u64;
+        if u64::from(bits) < threshold || threshold > u64::from(u32::MAX) {
+            return count;
+        }
+        probability *= mean / f64::from(count + 1);
+        if f64::from(count) > mean && probability * 4.0 < 1.0 / (1_u64 << 33) as f64 {
+            return count + 1;
+        }
+        count += 1;
+    }
+}
+
 /// Why a table of Poisson counts was refused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoissonError {
@@ -170,7 +208,7 @@ impl core::error::Error for PoissonError {}
 
 #[cfg(test)]
 mod tests {
-    use super::{PoissonCounts, PoissonErrorKind};
+    use super::{PoissonCounts, PoissonErrorKind, poisson_count};
     use crate::{Seed, hash2};
 
     /// The exact probabilities of the counts 0.. with the tails moved to the ends of the range.
@@ -233,6 +271,27 @@ mod tests {
                 counts.range()
             );
         }
+    }
+
+    #[test]
+    fn counts_without_a_table_are_those_of_the_table() {
+        for mean in [1.0 / 64.0, 0.3, 1.0, 3.0, 17.5, 64.0] {
+            let counts = PoissonCounts::new(mean, 0..=u32::MAX).unwrap();
+            let random = (0..20_000).map(|x| (hash2(Seed(2), [x, 0], 0) >> 32) as u32);
+            let ends = [0, 1, u32::MAX - 1, u32::MAX].into_iter();
+            let steps = counts
+                .thresholds()
+                .iter()
+                .flat_map(|&bits| [bits.wrapping_sub(1), bits]);
+            for bits in random.chain(ends).chain(steps) {
+                assert_eq!(
+                    poisson_count(mean, bits),
+                    counts.count(bits),
+                    "{mean}, {bits:#x}"
+                );
+            }
+        }
+        assert_eq!(poisson_count(f64::NAN, 5), 0);
     }
 
     #[test]

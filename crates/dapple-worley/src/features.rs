@@ -188,14 +188,11 @@ impl Tone {
     where
         Axes: Space<N>,
     {
-        fn vectors<const N: usize, const K: usize>(hits: [Hit<N>; K]) -> [[f32; N]; K] {
-            hits.map(|hit| hit.vector)
-        }
-        match self.combination.depth() {
-            1 => self.gradient(worley.metric, &vectors(worley.hits::<1>(place))),
-            2 => self.gradient(worley.metric, &vectors(worley.hits::<2>(place))),
-            3 => self.gradient(worley.metric, &vectors(worley.hits::<3>(place))),
-            _ => self.gradient(worley.metric, &vectors(worley.hits::<4>(place))),
+        let vector = |hit: Hit<N>| hit.vector;
+        if self.combination.depth() <= 2 {
+            self.gradient(worley.metric, &worley.hits::<2>(place).map(vector))
+        } else {
+            self.gradient(worley.metric, &worley.hits::<4>(place).map(vector))
         }
     }
 }

@@ -5,11 +5,13 @@
 //! With a period, a cell has the hash of the cell that it repeats.
 
 use crate::fixed::{STEP_BITS, STEPS};
-use crate::scatter::{JITTER_PARTS, Scatter};
-use crate::search::{Name, Source};
+use crate::scatter::{DENSITIES, JITTER_PARTS, Scatter};
+use crate::search::Name;
+use core::fmt;
 use core::ops::{Add, BitAnd, BitOr, Mul, Shl, Shr};
-use dapple_hash::{CellHash, CellHashes, PoissonCounts, Seed, mix32, mix32_lanes};
+use dapple_hash::{CellHash, CellHashes, PoissonCounts, Seed, mix32, mix32_lanes, poisson_count};
 use fearless_simd::{prelude::*, u32x16};
+use std::sync::Arc;
 
 /// What is added to the two words of a cell for each of its points: odd, so that no sum comes twice.
 pub(crate) const STRIDES: [u32; 2] = [0x9E37_79B9, 0xC2B2_AE3D];
@@ -23,6 +25,8 @@ pub(crate) struct Lattice<const N: usize> {
     /// The hash that every cell's begins with.
     pub(crate) root: CellHash,
     pub(crate) counts: PoissonCounts,
+    /// In place of `counts`, where the density varies.
+    pub(crate) density: Option<Density<N>>,
     /// In parts of [`JITTER_PARTS`].
     pub(crate) jitter: u32,
     /// The cells after which an axis repeats; 0 if it does not.
@@ -34,6 +38,7 @@ impl<const N: usize> Lattice<N> {
         Self {
             root: Self::root(seed),
             counts,
+            density: None,
             jitter: scatter.jitter(),
             period: [0; N],
         }
@@ -75,21 +80,53 @@ impl<const N: usize> Lattice<N> {
         };
         steps([word(0), word(1)], self.jitter).map(u32::cast_signed)
     }
-}
 
-impl<const N: usize> Source<N> for Lattice<N> {
+    /// Calls `each` with the steps from the cell's lower corner and the name of every point of a cell.
     #[inline]
-    fn visit(&self, cell: [i64; N], mut each: impl FnMut([i32; N], Name)) {
+    pub(crate) fn visit(&self, cell: [i64; N], mut each: impl FnMut([i32; N], Name)) {
         let hash = self.hash(cell);
         let words = words(hash);
-        for index in 0..self.counts.count(words[0]) {
+        for index in 0..self.count(cell, words[0]) {
             each(self.steps(words, index), Name { hash, index });
         }
     }
 
+    /// How many points a cell has, from its first word.
     #[inline]
-    fn id(&self, name: Name) -> u64 {
+    pub(crate) fn count(&self, cell: [i64; N], word: u32) -> u32 {
+        match &self.density {
+            None => self.counts.count(word),
+            Some(density) => poisson_count(self.density_at(density, cell), word),
+        }
+    }
+
+    /// The density in the middle of a cell, or of the one that it repeats.
+    pub(crate) fn density_at(&self, density: &Density<N>, cell: [i64; N]) -> f64 {
+        let middle = core::array::from_fn(|axis| self.wrap(axis, cell[axis]) as f64 + 0.5);
+        let density = (density.of)(middle);
+        if density.is_nan() {
+            return *DENSITIES.start();
+        }
+        density.clamp(*DENSITIES.start(), *DENSITIES.end())
+    }
+
+    /// The id of a point.
+    #[inline]
+    pub(crate) fn id(&self, name: Name) -> u64 {
         name.hash.at(IDS + name.index)
+    }
+}
+
+/// A density that varies in space.
+#[derive(Clone)]
+pub(crate) struct Density<const N: usize> {
+    /// Feature points per cell at a position.
+    pub(crate) of: Arc<dyn Fn([f64; N]) -> f64 + Send + Sync>,
+}
+
+impl<const N: usize> fmt::Debug for Density<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Density(..)")
     }
 }
 
@@ -103,8 +140,9 @@ fn words(hash: CellHash) -> [u32; 2] {
 /// Sixteen cells side by side.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SixteenCells<S: Simd> {
-    words: [u32x16<S>; 2],
-    /// How many points each has.
+    /// The two words of each.
+    pub(crate) words: [u32x16<S>; 2],
+    /// How many points each has, with one density.
     pub(crate) counts: u32x16<S>,
 }
 

@@ -19,9 +19,11 @@ mod render;
 mod scatter;
 mod scattered;
 mod search;
+mod set;
 mod simd;
 mod sink;
 mod space;
+mod voronoi;
 mod worley;
 
 pub use cellular::Cellular;
@@ -36,6 +38,7 @@ pub use plane::Plane;
 pub use profile::Profile;
 pub use radial::{Radial, RadialCells};
 pub use scatter::Scatter;
+pub use set::FeatureSet;
 pub use space::{Axes, Space, Vector};
 pub use worley::{CellPoint, Feature, LIMIT, RESOLUTION, Worley, Worley2, Worley3, Worley4};
 

@@ -49,7 +49,8 @@ where
         let chunks = positions.chunks(LANES).zip(features.chunks_mut(LANES));
         for (positions, features) in chunks {
             let holds = match self.metric {
-                // A lane at a time it would be, in any case.
+                // One at a time it would be, in any case.
+                _ if self.lattice.density.is_some() => 0,
                 Metric::Minkowski(_) => 0,
                 Metric::Euclidean => self.sixteen(level, Euclidean, positions, features),
                 Metric::Manhattan => self.sixteen(level, Manhattan, positions, features),

@@ -12,20 +12,12 @@
 //! on the order in which they were found.
 
 use crate::fixed::{Place, STEPS, cells};
+use crate::lattice::Lattice;
 use crate::metric::Norm;
 use core::cmp::Ordering;
 use dapple_hash::CellHash;
 
-/// Where feature points come from.
-pub(crate) trait Source<const N: usize> {
-    /// Calls `each` with the steps from the cell's lower corner and the name of every point of a cell.
-    fn visit(&self, cell: [i64; N], each: impl FnMut([i32; N], Name));
-
-    /// The id of a point.
-    fn id(&self, name: Name) -> u64;
-}
-
-/// What a source knows a point by.
+/// What a lattice knows a point by.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Name {
     pub(crate) hash: CellHash,
@@ -77,42 +69,123 @@ pub(crate) fn hit<M: Norm, const N: usize>(
 const LAST_RING: i64 = 96;
 
 /// The `K` nearest points of a place, nearest first.
-pub(crate) fn nearest<Q: Source<N>, M: Norm, const N: usize, const K: usize>(
-    source: &Q,
+pub(crate) fn nearest<M: Norm, const N: usize, const K: usize>(
+    lattice: &Lattice<N>,
     norm: M,
     place: Place<N>,
 ) -> [Hit<N>; K] {
-    let mut search = Search {
-        source,
+    let mut ranking = Ranking::new();
+    let search = Search {
+        lattice,
         norm,
         place,
-        hits: [Hit::NONE; K],
     };
     for ring in 0..=LAST_RING {
-        search.ring(ring);
-        if search.reach() < search.border(ring) {
+        search.ring(ring, |shift| {
+            if search.gap(shift) <= ranking.reach() * M::LOOSE {
+                search.cell(shift, |hit| ranking.add(hit, |name| lattice.id(name)));
+            }
+        });
+        if ranking.reach() * M::LOOSE < search.border(ring) {
             break;
         }
     }
-    search.hits
+    ranking.hits
 }
 
-/// A search under way.
-struct Search<'a, Q, M, const N: usize, const K: usize> {
-    source: &'a Q,
+/// All points of a place with keys of at most that of `distance`, in no particular order.
+pub(crate) fn within<M: Norm, const N: usize>(
+    lattice: &Lattice<N>,
     norm: M,
     place: Place<N>,
-    hits: [Hit<N>; K],
+    distance: f32,
+) -> Vec<Hit<N>> {
+    let mut hits = Vec::new();
+    let key = norm.key_along_one_axis(distance) * M::LOOSE;
+    let search = Search {
+        lattice,
+        norm,
+        place,
+    };
+    for ring in 0..=LAST_RING {
+        search.ring(ring, |shift| {
+            if search.gap(shift) <= key {
+                search.cell(shift, |hit| {
+                    if hit.key <= key {
+                        hits.push(hit);
+                    }
+                });
+            }
+        });
+        if key < search.border(ring) {
+            break;
+        }
+    }
+    hits
 }
 
-impl<Q: Source<N>, M: Norm, const N: usize, const K: usize> Search<'_, Q, M, N, K> {
-    /// Visits the cells that are `ring` cells away along their furthest axis.
-    fn ring(&mut self, ring: i64) {
+/// The nearest points so far, nearest first.
+pub(crate) struct Ranking<const N: usize, const K: usize> {
+    pub(crate) hits: [Hit<N>; K],
+}
+
+impl<const N: usize, const K: usize> Ranking<N, K> {
+    pub(crate) fn new() -> Self {
+        Self {
+            hits: [Hit::NONE; K],
+        }
+    }
+
+    /// Keys from here on do not matter any more.
+    #[inline]
+    pub(crate) fn reach(&self) -> f32 {
+        self.hits[K - 1].key
+    }
+
+    /// Takes in a point.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, hit: Hit<N>, id: impl Fn(Name) -> u64) {
+        if hit.key <= self.reach() {
+            self.insert(hit, id);
+        }
+    }
+
+    fn insert(&mut self, hit: Hit<N>, id: impl Fn(Name) -> u64) {
+        let mut at = K;
+        while at > 0 && order(&hit, &self.hits[at - 1], &id).is_lt() {
+            at -= 1;
+        }
+        if at < K {
+            self.hits[at..].rotate_right(1);
+            self.hits[at] = hit;
+        }
+    }
+}
+
+/// By key, then by id; repeats of one point, by where they lie.
+pub(crate) fn order<const N: usize>(a: &Hit<N>, b: &Hit<N>, id: impl Fn(Name) -> u64) -> Ordering {
+    a.key.total_cmp(&b.key).then_with(|| {
+        let [a_id, b_id] = [a, b].map(|hit| hit.name.map(&id));
+        let parts = a.vector.iter().zip(&b.vector);
+        a_id.cmp(&b_id)
+            .then(parts.fold(Ordering::Equal, |order, (a, b)| order.then(b.total_cmp(a))))
+    })
+}
+
+/// A search by rings.
+struct Search<'a, M, const N: usize> {
+    lattice: &'a Lattice<N>,
+    norm: M,
+    place: Place<N>,
+}
+
+impl<M: Norm, const N: usize> Search<'_, M, N> {
+    /// Calls `each` with the cells that are `ring` cells away along their furthest axis.
+    fn ring(&self, ring: i64, mut each: impl FnMut([i64; N])) {
         let mut shift = [-ring; N];
         loop {
-            let on_ring = shift.iter().any(|part| part.abs() == ring);
-            if on_ring && self.gap(shift) <= self.reach() {
-                self.cell(shift);
+            if shift.iter().any(|part| part.abs() == ring) {
+                each(shift);
             }
             // The next cell, the first axis fastest; inside of the ring, straight to its other side.
             let inside = shift[1..].iter().all(|part| part.abs() < ring);
@@ -133,44 +206,13 @@ impl<Q: Source<N>, M: Norm, const N: usize, const K: usize> Search<'_, Q, M, N, 
         }
     }
 
-    /// Takes in the points of a cell.
+    /// Calls `each` with the points of a cell.
     #[inline(always)]
-    fn cell(&mut self, shift: [i64; N]) {
-        let (place, source) = (self.place, self.source);
-        let cell = core::array::from_fn(|axis| place.cell[axis] + shift[axis]);
-        source.visit(cell, |steps, name| {
-            let hit = hit(self.norm, &place, shift, steps, name);
-            if hit.key <= self.hits[K - 1].key {
-                self.insert(hit);
-            }
+    fn cell(&self, shift: [i64; N], mut each: impl FnMut(Hit<N>)) {
+        let cell = core::array::from_fn(|axis| self.place.cell[axis] + shift[axis]);
+        self.lattice.visit(cell, |steps, name| {
+            each(hit(self.norm, &self.place, shift, steps, name));
         });
-    }
-
-    fn insert(&mut self, hit: Hit<N>) {
-        let mut at = K;
-        while at > 0 && self.order(&hit, &self.hits[at - 1]).is_lt() {
-            at -= 1;
-        }
-        if at < K {
-            self.hits[at..].rotate_right(1);
-            self.hits[at] = hit;
-        }
-    }
-
-    /// By key, then by id; repeats of one point, by where they lie.
-    fn order(&self, a: &Hit<N>, b: &Hit<N>) -> Ordering {
-        a.key.total_cmp(&b.key).then_with(|| {
-            let [a_id, b_id] = [a, b].map(|hit| hit.name.map(|name| self.source.id(name)));
-            let places = a.vector.iter().zip(&b.vector);
-            a_id.cmp(&b_id)
-                .then(places.fold(Ordering::Equal, |order, (a, b)| order.then(b.total_cmp(a))))
-        })
-    }
-
-    /// A bound for the keys that still matter: that of the last hit, loosened where rounding asks for it.
-    #[inline]
-    fn reach(&self) -> f32 {
-        self.hits[K - 1].key * M::LOOSE
     }
 
     /// No point of a cell has a smaller key.
@@ -191,8 +233,8 @@ impl<Q: Source<N>, M: Norm, const N: usize, const K: usize> Search<'_, Q, M, N, 
 
     /// No point beyond the rings visited has a smaller key.
     fn border(&self, ring: i64) -> f32 {
-        self.norm
-            .key_along_one_axis(cells(border(&self.place, ring)))
+        let border = border(&self.place, ring);
+        self.norm.key_along_one_axis(cells(border))
     }
 }
 

@@ -45,11 +45,10 @@ impl Tone {
     where
         Axes: Space<N>,
     {
-        match self.combination.depth() {
-            1 => self.of(&worley.distances::<1>(place)),
-            2 => self.of(&worley.distances::<2>(place)),
-            3 => self.of(&worley.distances::<3>(place)),
-            _ => self.of(&worley.distances::<4>(place)),
+        if self.combination.depth() <= 2 {
+            self.of(&worley.distances::<2>(place))
+        } else {
+            self.of(&worley.distances::<4>(place))
         }
     }
 

@@ -1,4 +1,4 @@
 //! The basis beside its oracle.
 
 mod bits;
-mod oracle;
+pub(crate) mod oracle;

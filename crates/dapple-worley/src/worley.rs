@@ -1,13 +1,14 @@
 //! The basis: distances to the nearest feature points.
 
 use crate::fixed::{Place, STEP, STEPS};
-use crate::lattice::Lattice;
+use crate::lattice::{Density, Lattice};
 use crate::metric::{Chebyshev, Euclidean, Manhattan, Minkowski, Norm, with_norm};
 use crate::one::nearest_of_neighbors;
-use crate::search::{Hit, Source, nearest};
+use crate::search::{Hit, nearest};
 use crate::{Axes, Metric, Scatter, Space, Vector, WorleyError, simd};
 use dapple_hash::{Seed, unit_f32};
 use fearless_simd::{Level, dispatch};
+use std::sync::Arc;
 
 /// The greatest n of F_n.
 pub const LIMIT: usize = 4;
@@ -133,6 +134,37 @@ where
         self.with_scatter(Scatter::Poisson { density })
     }
 
+    /// Lets the density vary in space: small, dense cells here, large ones there.
+    ///
+    /// `density` is asked at the middle of each cell, and gives the feature points per cell on average; what it gives
+    /// is clamped to 1/64 to 64, and a number that is not one counts as 1/64. The numbers of points are not clamped,
+    /// so the mean is the density itself. The search goes as far as it must; it is slower than with one density.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_worley::{Worley2, hash::Seed, raster::{Ramp, glam::DVec2}};
+    ///
+    /// let ramp = Ramp { from: DVec2::ZERO, to: DVec2::X * 20.0, start: 0.5, end: 8.0 };
+    /// let worley = Worley2::new(Seed(7)).with_varying_density(move |at| ramp.at(at));
+    /// assert!(worley.sample::<1>([30.0, 1.0])[0].distance < 2.0);
+    /// ```
+    #[must_use]
+    pub fn with_varying_density(
+        &self,
+        density: impl Fn(Vector<N>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        let of = Arc::new(move |position: [f64; N]| density(Vector::<N>::from(position)));
+        let lattice = Lattice {
+            density: Some(Density { of }),
+            ..self.lattice.clone()
+        };
+        Self {
+            lattice,
+            ..self.clone()
+        }
+    }
+
     /// Measures distances in another way.
     ///
     /// # Errors
@@ -237,6 +269,9 @@ where
         place: Place<N>,
     ) -> [Hit<N>; K] {
         let lattice = &self.lattice;
+        if lattice.density.is_some() {
+            return nearest(lattice, norm, place);
+        }
         let hits = dispatch!(level, simd => nearest_of_neighbors(simd, norm, lattice, &place));
         hits.unwrap_or_else(|| nearest(lattice, norm, place))
     }

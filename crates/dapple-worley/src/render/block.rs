@@ -65,7 +65,7 @@ where
     pub(super) fn render(&self, out: &mut Output<'_, N>, memory: &mut Memory<N>) {
         let lattice = &self.picture.worley.lattice;
         let depth = out.depth();
-        let guess = Guess::new(lattice, depth);
+        let guess = Guess::new(lattice, self.middle(), depth);
         let Some(cells) = self.cells(guess.ring) else {
             self.one_by_one(0..self.n_rows, self.range.clone(), out);
             return;
@@ -101,6 +101,14 @@ where
                 tile.render(out, memory);
             }
         }
+    }
+
+    /// The cell in the middle.
+    fn middle(&self) -> [i64; N] {
+        core::array::from_fn(|axis| match axis {
+            0 => self.columns.places[self.range.start + self.range.len() / 2].0,
+            _ => self.rows[axis].places[self.n_rows / 2].0,
+        })
     }
 
     /// The cells that the block needs, if it can be filled from a table.

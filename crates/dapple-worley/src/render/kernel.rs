@@ -48,7 +48,6 @@ impl Rows<'_> {
         with_norm!(metric, norm => match depth {
             1 => dispatch!(level, simd => self.fill_with::<_, _, 1>(simd, norm, out)),
             2 => dispatch!(level, simd => self.fill_with::<_, _, 2>(simd, norm, out)),
-            3 => dispatch!(level, simd => self.fill_with::<_, _, 3>(simd, norm, out)),
             _ => dispatch!(level, simd => self.fill_with::<_, _, 4>(simd, norm, out)),
         })
     }

@@ -79,7 +79,7 @@ impl<const N: usize> Table<N> {
             .map(|column| words(lattice.wrap(0, cells.first[0] + column)))
             .collect();
         let n_rows: usize = (1..N).map(|axis| cells.side(axis)).product();
-        let mut scratch = vec![0; (*lattice.counts.range().end() as usize * N + 1) * LANES];
+        let mut scratch = Vec::new();
         for row in 0..n_rows {
             let mut hash = lattice.root;
             let mut corner = [0; N];
@@ -121,7 +121,7 @@ impl<const N: usize> Table<N> {
         row: CellHash,
         columns: &[[u32; 2]],
         (corner, n_cells): ([i32; N], usize),
-        scratch: &mut [u32],
+        scratch: &mut Vec<u32>,
     ) {
         let mut halves = [[0; LANES]; 2];
         for (lane, &[low, high]) in columns.iter().enumerate() {
@@ -135,8 +135,21 @@ impl<const N: usize> Table<N> {
         );
         let cells = SixteenCells::new(simd, lattice, hashes);
         let mut numbers = [0; LANES];
-        cells.counts.store_slice(&mut numbers);
+        match &lattice.density {
+            None => cells.counts.store_slice(&mut numbers),
+            Some(_) => {
+                for (lane, number) in numbers.iter_mut().enumerate() {
+                    let cell = core::array::from_fn(|axis| {
+                        let along = i64::from(corner[axis] >> STEP_BITS);
+                        let lane = if axis == 0 { lane as i64 } else { 0 };
+                        self.cells.first[axis] + along + lane
+                    });
+                    *number = lattice.count(cell, cells.words[0][lane]);
+                }
+            }
+        }
         let most = numbers[..n_cells].iter().copied().fold(0, u32::max);
+        scratch.resize(most as usize * N * LANES, 0);
         for index in 0..most {
             let steps: [u32x16<S>; N] = cells.steps(u32x16::splat(simd, index), lattice.jitter);
             for axis in 0..N {

@@ -29,11 +29,15 @@ pub(super) struct Guess {
 
 impl Guess {
     /// A ball of that size has so many points on average that fewer than `depth` are unlikely: about one in 250.
-    pub(super) fn new<const N: usize>(lattice: &Lattice<N>, depth: usize) -> Self {
+    pub(super) fn new<const N: usize>(lattice: &Lattice<N>, cell: [i64; N], depth: usize) -> Self {
+        let density = match &lattice.density {
+            None => lattice.counts.mean(),
+            Some(density) => lattice.density_at(density, cell),
+        };
         let points = [5.5, 7.8, 9.8, 11.6][depth - 1];
         // The volumes of the Euclidean unit balls, near enough for a guess.
         let ball = [1.0, 2.0, 3.14, 4.19, 4.93][N];
-        let distance = libm::pow(points / (ball * lattice.counts.mean()), 1.0 / N as f64);
+        let distance = libm::pow(points / (ball * density), 1.0 / N as f64);
         Self {
             distance: distance as f32,
             ring: (distance.ceil() as i32).max(1),

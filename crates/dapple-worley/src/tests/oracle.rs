@@ -12,22 +12,37 @@ pub(super) fn brute_force<const N: usize>(
 where
     Axes: Space<N>,
 {
+    let mut found: Vec<_> = vectors(worley, position, reach)
+        .into_iter()
+        .map(|(vector, id)| (length(worley.metric(), vector), id))
+        .collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found
+}
+
+/// The ways from all feature points within `reach` cells, and their ids.
+fn vectors<const N: usize>(
+    worley: &Worley<N>,
+    position: [f64; N],
+    reach: i64,
+) -> Vec<([f64; N], u64)>
+where
+    Axes: Space<N>,
+{
     let base = position.map(|part| part.floor() as i64);
     let side = 2 * reach + 1;
     let mut found = Vec::new();
     for index in 0..side.pow(N as u32) {
-        let cell: [i64; N] =
-            core::array::from_fn(|axis| base[axis] + index / side.pow(axis as u32) % side - reach);
-        for point in worley.cell_points(cell) {
+        let shift: [i64; N] =
+            core::array::from_fn(|axis| index / side.pow(axis as u32) % side - reach);
+        for point in worley.cell_points(core::array::from_fn(|axis| base[axis] + shift[axis])) {
             let offset: [f64; N] = point.offset.into();
-            let vector: [f64; N] = core::array::from_fn(|axis| {
-                (position[axis] - base[axis] as f64)
-                    - (offset[axis] + (cell[axis] - base[axis]) as f64)
+            let vector = core::array::from_fn(|axis| {
+                (position[axis] - base[axis] as f64) - (offset[axis] + shift[axis] as f64)
             });
-            found.push((length(worley.metric(), vector), point.id));
+            found.push((vector, point.id));
         }
     }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
     found
 }
 
@@ -61,8 +76,25 @@ pub(super) const SCATTERS: [Scatter; 6] = [
     Scatter::Jittered { jitter: 0.3 },
 ];
 
+/// As [`brute_force`], in the Euclidean metric, with the ways from the points instead of their ids.
+pub(crate) fn brute_force_vectors<const N: usize>(
+    worley: &Worley<N>,
+    position: [f64; N],
+    reach: i64,
+) -> Vec<(f64, [f64; N])>
+where
+    Axes: Space<N>,
+{
+    let mut found: Vec<_> = vectors(worley, position, reach)
+        .into_iter()
+        .map(|(vector, _)| (length(Metric::Euclidean, vector), vector))
+        .collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found
+}
+
 /// A position in cells, a multiple of 2^-21, so that nothing is rounded.
-pub(super) fn position<const N: usize>(seed: Seed, index: i64, spread: f64) -> [f64; N] {
+pub(crate) fn position<const N: usize>(seed: Seed, index: i64, spread: f64) -> [f64; N] {
     core::array::from_fn(|axis| {
         let unit = unit_f64(hash1(seed.child("position", axis as u64), [index], 0));
         let steps = (unit - 0.5) * spread * f64::from(1 << 21);

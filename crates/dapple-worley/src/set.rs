@@ -1,0 +1,442 @@
+//! A caller's own feature points.
+//!
+//! Worley suggests that "object geometry might be used to disperse pre-computed feature spots" ("A Cellular Texture
+//! Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>), as Turk does. Here F1 to F4 are found over
+//! any list of points, through a grid of bins with about two points each.
+//!
+//! Differences are taken in `f64` and rounded once to `f32`, so that the unit of positions is the caller's own.
+
+use crate::metric::{Norm, with_norm};
+use crate::search::{Hit, Name, Ranking};
+use crate::{Axes, Feature, LIMIT, Metric, Space, Vector, WorleyError};
+use dapple_hash::{CellHash, Seed};
+
+/// The points of a bin, on average.
+const POINTS_PER_BIN: f64 = 2.0;
+
+/// Feature points that the caller has placed.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_worley::{FeatureSet, raster::glam::DVec2};
+///
+/// let spots = FeatureSet::new(&[DVec2::new(1.0, 2.0), DVec2::new(8.0, 2.0)], [Some(10.0), None])?;
+/// let [nearest] = spots.sample([9.5, 2.0]);
+/// assert_eq!((nearest.distance, nearest.id), (1.5, 0));
+/// # Ok::<(), dapple_worley::WorleyError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct FeatureSet<const N: usize> {
+    /// Bin by bin, and within a bin by index.
+    points: Vec<([f64; N], u32)>,
+    /// Where the points of each bin begin, and where those of the last end; the first axis is fastest.
+    starts: Vec<u32>,
+    bins: Bins<N>,
+    metric: Metric,
+}
+
+/// A grid over the points, or over a period.
+#[derive(Clone, Copy, Debug)]
+struct Bins<const N: usize> {
+    origin: [f64; N],
+    /// The size of a bin.
+    size: [f64; N],
+    count: [u32; N],
+    wraps: [bool; N],
+}
+
+impl<const N: usize> FeatureSet<N>
+where
+    Axes: Space<N>,
+{
+    /// The basis over `points`, which repeats after `period` along each axis that has one. The id of a point is its
+    /// index.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::WorleyErrorKind::Range) if a coordinate or a period is not finite, a period is not above 0, or
+    /// there are 2^32 points or more.
+    pub fn new(points: &[Vector<N>], period: [Option<f64>; N]) -> Result<Self, WorleyError> {
+        let check = WorleyError::check;
+        let count = points.len() as f64;
+        check(
+            count < f64::from(u32::MAX),
+            "number of points",
+            count,
+            "below 2^32",
+        )?;
+        let mut places: Vec<[f64; N]> = points.iter().map(|&point| point.into()).collect();
+        for &coordinate in places.iter().flatten() {
+            check(
+                coordinate.is_finite(),
+                "coordinate of a point",
+                coordinate,
+                "finite",
+            )?;
+        }
+        for &period in period.iter().flatten() {
+            check(
+                period > 0.0 && period.is_finite(),
+                "period",
+                period,
+                "finite and above 0",
+            )?;
+        }
+        for place in &mut places {
+            for (coordinate, period) in place.iter_mut().zip(period) {
+                if let Some(period) = period {
+                    *coordinate = wrap(*coordinate, period);
+                }
+            }
+        }
+        let bins = Bins::new(&places, period);
+        let mut order: Vec<(usize, u32)> = Vec::with_capacity(places.len());
+        for (index, place) in (0..).zip(&places) {
+            order.push((
+                bins.index(core::array::from_fn(|axis| bins.bin(axis, place[axis]))),
+                index,
+            ));
+        }
+        order.sort_unstable();
+        let n_bins = bins
+            .count
+            .iter()
+            .map(|&count| count as usize)
+            .product::<usize>();
+        let mut starts = vec![0; n_bins + 1];
+        for &(bin, _) in &order {
+            starts[bin + 1] += 1;
+        }
+        for bin in 0..n_bins {
+            starts[bin + 1] += starts[bin];
+        }
+        let points = order
+            .iter()
+            .map(|&(_, index)| (places[index as usize], index))
+            .collect();
+        Ok(Self {
+            points,
+            starts,
+            bins,
+            metric: Metric::default(),
+        })
+    }
+
+    /// Measures distances in another way.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::WorleyErrorKind::Range) if the exponent of [`Metric::Minkowski`] is not from 1 to 10.
+    pub fn with_metric(self, metric: Metric) -> Result<Self, WorleyError> {
+        Ok(Self {
+            metric: metric.check()?,
+            ..self
+        })
+    }
+
+    /// The `K` nearest feature points of a position, nearest first; `K` is from 1 to 4.
+    ///
+    /// Points at the same distance are in the order of their indices. Where there are fewer points, the rest are
+    /// infinitely far away, with the id `u64::MAX`. A position that is not finite gives NaN and the same id.
+    #[must_use]
+    pub fn sample<const K: usize>(
+        &self,
+        position: impl Into<Vector<N>>,
+    ) -> [Feature<Vector<N>>; K] {
+        const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
+        let position: [f64; N] = position.into().into();
+        if position.iter().any(|part| !part.is_finite()) {
+            return [Feature {
+                distance: f32::NAN,
+                vector: [f64::NAN; N].into(),
+                id: u64::MAX,
+            }; K];
+        }
+        with_norm!(self.metric, norm => self.nearest(norm, position).map(|hit| Feature {
+            distance: norm.distance(hit.key),
+            vector: hit.vector.map(f64::from).into(),
+            id: hit.name.map_or(u64::MAX, |name| u64::from(name.index)),
+        }))
+    }
+
+    /// Bins are visited in growing boxes about the position's own, until no bin outside can hold a nearer point.
+    fn nearest<M: Norm, const K: usize>(&self, norm: M, mut position: [f64; N]) -> [Hit<N>; K] {
+        let bins = &self.bins;
+        for axis in 0..N {
+            if bins.wraps[axis] {
+                position[axis] = wrap(position[axis], bins.period(axis));
+            }
+        }
+        let center = core::array::from_fn(|axis| i64::from(bins.bin(axis, position[axis])));
+        let mut ranking = Ranking::new();
+        if self.points.is_empty() {
+            return ranking.hits;
+        }
+        for ring in 0.. {
+            let [first, last] = bins.reach(center, ring);
+            let mut bin = first;
+            loop {
+                if (0..N).any(|axis| (bin[axis] - center[axis]).abs() == ring) {
+                    self.visit(norm, position, bin, &mut ranking);
+                }
+                let Some(axis) = (0..N).find(|&axis| bin[axis] < last[axis]) else {
+                    break;
+                };
+                bin[axis] += 1;
+                bin[..axis].copy_from_slice(&first[..axis]);
+            }
+            let border = bins.border(position, [first, last]);
+            let is_enough = ranking.reach() * M::LOOSE < norm.key_along_one_axis(border);
+            if is_enough || border == f32::INFINITY {
+                break;
+            }
+        }
+        ranking.hits
+    }
+
+    /// Takes in the points of a bin.
+    fn visit<M: Norm, const K: usize>(
+        &self,
+        norm: M,
+        position: [f64; N],
+        bin: [i64; N],
+        ranking: &mut Ranking<N, K>,
+    ) {
+        let bins = &self.bins;
+        let turns: [i64; N] =
+            core::array::from_fn(|axis| bin[axis].div_euclid(i64::from(bins.count[axis])));
+        let index = bins.index(core::array::from_fn(|axis| {
+            bin[axis].rem_euclid(i64::from(bins.count[axis])) as u32
+        }));
+        let range = self.starts[index] as usize..self.starts[index + 1] as usize;
+        for (point, index) in &self.points[range] {
+            let mut vector = [0.0; N];
+            for axis in 0..N {
+                let shift = turns[axis] as f64 * bins.period(axis);
+                vector[axis] = (position[axis] - (point[axis] + shift)) as f32;
+            }
+            let hash = CellHash::new(Seed(0), []);
+            let hit = Hit {
+                key: norm.key(vector),
+                vector,
+                name: Some(Name {
+                    hash,
+                    index: *index,
+                }),
+            };
+            ranking.add(hit, |name| u64::from(name.index));
+        }
+    }
+}
+
+impl<const N: usize> Bins<N> {
+    fn new(points: &[[f64; N]], period: [Option<f64>; N]) -> Self {
+        let mut origin = [0.0; N];
+        let mut extent = [0.0; N];
+        for axis in 0..N {
+            let along = points.iter().map(|point| point[axis]);
+            let low = along.clone().fold(f64::INFINITY, f64::min);
+            let high = along.fold(f64::NEG_INFINITY, f64::max);
+            (origin[axis], extent[axis]) = match period[axis] {
+                Some(period) => (0.0, period),
+                None if low <= high => (low, high - low),
+                None => (0.0, 0.0),
+            };
+        }
+        // As many bins along the longest axis as cubes would have, and in proportion along the others.
+        let wanted = (points.len() as f64 / POINTS_PER_BIN).max(1.0);
+        let longest = extent.iter().copied().fold(0.0, f64::max);
+        let mut side = longest;
+        for _ in 0..64 {
+            let n_bins: f64 = extent
+                .iter()
+                .map(|&extent| (extent / side).max(1.0))
+                .product();
+            if !(n_bins < wanted) {
+                break;
+            }
+            side *= 0.75;
+        }
+        let count = extent.map(|extent| {
+            let count = (extent / side).floor();
+            if count >= 1.0 {
+                count.min(65_536.0) as u32
+            } else {
+                1
+            }
+        });
+        let size = core::array::from_fn(|axis| extent[axis] / f64::from(count[axis]));
+        Self {
+            origin,
+            size,
+            count,
+            wraps: period.map(|period| period.is_some()),
+        }
+    }
+
+    /// The extent of the bins along an axis: the period, if it wraps.
+    fn period(&self, axis: usize) -> f64 {
+        self.size[axis] * f64::from(self.count[axis])
+    }
+
+    /// The bin of a coordinate, or the nearest one.
+    fn bin(&self, axis: usize, coordinate: f64) -> u32 {
+        let bin = (coordinate - self.origin[axis]) / self.size[axis];
+        // What is below the first bin, or not a number since the extent is zero, goes to the first.
+        (bin as u32).min(self.count[axis] - 1)
+    }
+
+    fn index(&self, bin: [u32; N]) -> usize {
+        (0..N).rev().fold(0, |index, axis| {
+            index * self.count[axis] as usize + bin[axis] as usize
+        })
+    }
+
+    /// The first and the last bins within `ring` bins of one: past the ends only where the axis wraps.
+    fn reach(&self, center: [i64; N], ring: i64) -> [[i64; N]; 2] {
+        let mut reach = [center; 2];
+        for axis in 0..N {
+            let [low, high] = [center[axis] - ring, center[axis] + ring];
+            let last = i64::from(self.count[axis]) - 1;
+            [reach[0][axis], reach[1][axis]] = if self.wraps[axis] {
+                [low, high]
+            } else {
+                [low.max(0), high.min(last)]
+            };
+        }
+        reach
+    }
+
+    /// How far it is from a position to what lies beyond these bins; infinitely far, if nothing does.
+    fn border(&self, position: [f64; N], [first, last]: [[i64; N]; 2]) -> f32 {
+        let mut border = f64::INFINITY;
+        for axis in 0..N {
+            let edge = |bin: i64| self.origin[axis] + bin as f64 * self.size[axis];
+            if self.wraps[axis] || first[axis] > 0 {
+                border = border.min(position[axis] - edge(first[axis]));
+            }
+            if self.wraps[axis] || last[axis] + 1 < i64::from(self.count[axis]) {
+                border = border.min(edge(last[axis] + 1) - position[axis]);
+            }
+        }
+        // Edges are rounded, and so are differences of points beyond them; bins are visited once more if in doubt.
+        let scale = position
+            .iter()
+            .fold(0.0, |scale: f64, part| scale.max(part.abs()));
+        let doubt = 1e-6 * border + 1e-15 * scale;
+        if border == f64::INFINITY {
+            f32::INFINITY
+        } else {
+            (border - doubt).max(0.0) as f32
+        }
+    }
+}
+
+/// The coordinate in `[0, period)` that repeats as `coordinate`.
+fn wrap(coordinate: f64, period: f64) -> f64 {
+    let wrapped = coordinate - (coordinate / period).floor() * period;
+    // Rounding can leave it just outside.
+    if (0.0..period).contains(&wrapped) {
+        wrapped
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::FeatureSet;
+    use crate::{Axes, Metric, Space, Vector};
+    use dapple_hash::{Seed, hash1, unit_f64};
+
+    fn random<const N: usize>(seed: Seed, index: i64, extent: f64) -> [f64; N] {
+        core::array::from_fn(|axis| extent * unit_f64(hash1(seed, [index], axis as u32)))
+    }
+
+    fn agrees_with_all_points<const N: usize>(n: i64, period: [Option<f64>; N], metric: Metric)
+    where
+        Axes: Space<N>,
+    {
+        let points: Vec<Vector<N>> = (0..n)
+            .map(|index| random::<N>(Seed(1), index, 10.0).into())
+            .collect();
+        let set = FeatureSet::new(&points, period)
+            .unwrap()
+            .with_metric(metric)
+            .unwrap();
+        for index in 0..60 {
+            let mut at = random::<N>(Seed(2), index, 30.0);
+            at.iter_mut().for_each(|part| *part -= 10.0);
+            let mut all = Vec::new();
+            for (id, point) in points.iter().enumerate() {
+                let point: [f64; N] = (*point).into();
+                let images = 7_i64.pow(N as u32);
+                for image in 0..images {
+                    let mut keep = true;
+                    let vector: [f64; N] = core::array::from_fn(|axis| {
+                        let turn = image / 7_i64.pow(axis as u32) % 7 - 3;
+                        keep &= turn == 0 || period[axis].is_some();
+                        at[axis] - point[axis] - turn as f64 * period[axis].unwrap_or(0.0)
+                    });
+                    if keep {
+                        all.push((metric.length(vector.map(|part| part as f32)), id as u64));
+                    }
+                }
+            }
+            all.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let found = set.sample::<4>(at);
+            for (rank, feature) in found.iter().enumerate() {
+                let Some(expected) = all.get(rank) else {
+                    assert_eq!((feature.distance, feature.id), (f32::INFINITY, u64::MAX));
+                    continue;
+                };
+                // The oracle takes its differences in another order, so they differ by the rounding of f64 and f32.
+                assert!(
+                    (feature.distance - expected.0).abs() < 1e-5,
+                    "{n} points, {at:?}: {found:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn nearest_points_are_those_of_all_points() {
+        for n in [0, 1, 2, 3, 50, 500] {
+            agrees_with_all_points::<2>(n, [None, None], Metric::Euclidean);
+            agrees_with_all_points::<2>(n, [Some(10.0), None], Metric::Manhattan);
+            agrees_with_all_points::<2>(n, [Some(10.0), Some(12.5)], Metric::Chebyshev);
+        }
+        agrees_with_all_points::<3>(300, [None, Some(11.0), None], Metric::Euclidean);
+        agrees_with_all_points::<4>(50, [None; 4], Metric::Minkowski(3.0));
+    }
+
+    #[test]
+    fn points_on_a_line_or_in_one_place_need_no_area() {
+        let line: Vec<_> = (0..100)
+            .map(|index| [f64::from(index), 3.0].into())
+            .collect();
+        let set = FeatureSet::<2>::new(&line, [None, None]).unwrap();
+        assert_eq!(set.sample::<1>([41.25, 3.0])[0].distance, 0.25);
+        let place = [[5.0, 5.0].into(); 9];
+        let set = FeatureSet::<2>::new(&place, [None, None]).unwrap();
+        assert_eq!(
+            set.sample::<3>([5.0, 6.0]).map(|feature| feature.id),
+            [0, 1, 2]
+        );
+        assert_eq!(set.sample::<1>([1e300, 0.0])[0].distance, f32::INFINITY);
+    }
+
+    #[test]
+    fn bad_points_and_periods_are_refused() {
+        assert!(FeatureSet::<2>::new(&[[f64::NAN, 0.0].into()], [None, None]).is_err());
+        for period in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(
+                FeatureSet::<2>::new(&[], [Some(period), None]).is_err(),
+                "{period}"
+            );
+        }
+        let set = FeatureSet::<2>::new(&[[0.0, 0.0].into()], [None, None]).unwrap();
+        assert!(set.sample::<1>([f64::NAN, 0.0])[0].distance.is_nan());
+    }
+}

@@ -1,0 +1,229 @@
+//! What the Voronoi cells of the feature points give beside F1 to F4.
+//!
+//! The distance to the edge and the radius of the sphere are those that Blender's Voronoi texture has made known; here
+//! they are exact. The smooth F1 is our own definition, since the usual ones depend on the order of the points.
+
+use crate::fixed::{Place, STEP, STEPS};
+use crate::metric::{Euclidean, with_norm};
+use crate::search::{Hit, nearest, order, within};
+use crate::{Axes, Space, Vector, Worley, WorleyError};
+
+impl<const N: usize> Worley<N>
+where
+    Axes: Space<N>,
+{
+    /// The distance from a position to the nearest edge of its Voronoi cell, in cells: zero or more.
+    ///
+    /// It is Euclidean, whatever the metric of the basis: the smallest distance to a plane halfway between the nearest
+    /// feature point and another. Unlike F2 − F1, it measures the same on wide and on narrow cells. NaN where
+    /// [`sample`](Self::sample) is.
+    #[must_use]
+    pub fn edge_distance(&self, position: impl Into<Vector<N>>) -> f32 {
+        let Some(place) = Place::new(position.into().into()) else {
+            return f32::NAN;
+        };
+        let pair: [Hit<N>; 2] = nearest(&self.lattice, Euclidean, place);
+        let [first, second] = pair.map(|hit| hit.vector.map(f64::from));
+        // The plane halfway to a point at the distance d is at least (d − F1) / 2 away.
+        let reach = length(first) + 2.0 * to_plane(first, second);
+        let hits = within(&self.lattice, Euclidean, place, (reach * 1.000_001) as f32);
+        let mut all: Vec<_> = hits.iter().map(|hit| hit.vector.map(f64::from)).collect();
+        if let Some(own) = all.iter().position(|&vector| vector == first) {
+            all.swap_remove(own);
+        }
+        let planes = all.into_iter().map(|other| to_plane(first, other));
+        planes.fold(to_plane(first, second), f64::min).max(0.0) as f32
+    }
+
+    /// The radius of the largest sphere about the feature point nearest to a position that stays in its Voronoi cell,
+    /// in cells: half of the distance from that point to its own nearest neighbor, in the metric of the basis.
+    ///
+    /// NaN where [`sample`](Self::sample) is.
+    #[must_use]
+    pub fn sphere_radius(&self, position: impl Into<Vector<N>>) -> f32 {
+        let Some(place) = Place::new(position.into().into()) else {
+            return f32::NAN;
+        };
+        let [hit] = self.hits::<1>(place);
+        let mut point = place;
+        for axis in 0..N {
+            let steps = i64::from(place.steps[axis]) - i64::from((hit.vector[axis] / STEP) as i32);
+            point.cell[axis] += steps.div_euclid(i64::from(STEPS));
+            point.steps[axis] = steps.rem_euclid(i64::from(STEPS)) as i32;
+        }
+        let [_, neighbor] = self.distances::<2>(point);
+        0.5 * neighbor
+    }
+
+    /// F1 without creases, in cells: `radius` says how far the cells run into each other.
+    ///
+    /// It is the value `s` that solves `Σ max(0, 1 + (s − d) / radius)³ = 1` over the distances `d` of all feature
+    /// points. So it lies between F1 − `radius` and F1, is F1 where no second point is within `radius` of it, and has
+    /// two continuous derivatives wherever the distances have. Only points nearer than F1 + `radius` count, and they
+    /// are summed in the order of their distances and ids. NaN where [`sample`](Self::sample) is.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::WorleyErrorKind::Range) if the radius is not above 0 and at most 4.
+    pub fn smooth_f1(
+        &self,
+        position: impl Into<Vector<N>>,
+        radius: f32,
+    ) -> Result<f32, WorleyError> {
+        let holds = radius > 0.0 && radius <= 4.0 && radius.recip().is_finite();
+        WorleyError::check(
+            holds,
+            "radius of the smooth F1",
+            f64::from(radius),
+            "above 0, at most 4",
+        )?;
+        let Some(place) = Place::new(position.into().into()) else {
+            return Ok(f32::NAN);
+        };
+        let [first] = self.distances::<1>(place);
+        let reach = (first + radius) * 1.000_01;
+        let mut hits = with_norm!(self.metric, norm => within(&self.lattice, norm, place, reach));
+        hits.sort_by(|a, b| order(a, b, |name| self.lattice.id(name)));
+        let distances = hits
+            .iter()
+            .map(|hit| f64::from(self.feature(*hit).distance));
+        Ok(smooth_minimum(&distances.collect::<Vec<_>>(), f64::from(radius)) as f32)
+    }
+}
+
+/// The solution of the sum of [`Worley::smooth_f1`], by Newton's method.
+///
+/// The sum is convex and grows with `s`, and is at least 1 at the smallest distance, so that the steps from there go
+/// down and never past the solution.
+fn smooth_minimum(distances: &[f64], radius: f64) -> f64 {
+    let mut s = distances.first().copied().unwrap_or(f64::INFINITY);
+    for _ in 0..64 {
+        let [mut sum, mut slope] = [0.0; 2];
+        for distance in distances {
+            let part = (1.0 + (s - distance) / radius).max(0.0);
+            sum += part * part * part;
+            slope += 3.0 * part * part / radius;
+        }
+        let next = s - (sum - 1.0) / slope;
+        if !(next < s) {
+            break;
+        }
+        s = next;
+    }
+    s
+}
+
+/// How far the position is from the plane halfway between two points, given the ways from the points to it.
+fn to_plane<const N: usize>(first: [f64; N], other: [f64; N]) -> f64 {
+    let between: [f64; N] = core::array::from_fn(|axis| first[axis] - other[axis]);
+    let [near, far] = [first, other].map(|way| dot(way, way));
+    let apart = length(between);
+    // Two points in one place have an edge between them everywhere.
+    if apart > 0.0 {
+        (far - near) / (2.0 * apart)
+    } else {
+        0.0
+    }
+}
+
+fn length<const N: usize>(vector: [f64; N]) -> f64 {
+    libm::sqrt(dot(vector, vector))
+}
+
+fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::tests::oracle::{brute_force_vectors, position};
+    use crate::{Axes, Metric, Space, Worley};
+    use dapple_hash::Seed;
+
+    fn edges_agree<const N: usize>(samples: i64, reach: i64)
+    where
+        Axes: Space<N>,
+    {
+        let worley = Worley::<N>::new(Seed(5)).with_density(1.0).unwrap();
+        for index in 0..samples {
+            let at = position(Seed(1), index, 1e3);
+            let all = brute_force_vectors(&worley, at, reach);
+            let first = all[0].1;
+            let planes = all[1..].iter().map(|(_, way)| super::to_plane(first, *way));
+            let expected = planes.fold(f64::INFINITY, f64::min);
+            let found = f64::from(worley.edge_distance(at));
+            // Both are computed in f64 from exact vectors, and the result is rounded to f32.
+            assert!(
+                (found - expected).abs() <= 1e-7 * expected + 1e-12,
+                "{at:?}: {found} for {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn edge_distance_is_that_of_all_planes() {
+        edges_agree::<2>(300, 6);
+        edges_agree::<3>(40, 4);
+    }
+
+    #[test]
+    fn sphere_touches_the_nearest_plane_of_its_point() {
+        let worley = Worley::<2>::new(Seed(5))
+            .with_metric(Metric::Euclidean)
+            .unwrap();
+        for index in 0..200 {
+            let at = position::<2>(Seed(2), index, 1e3);
+            let [first] = worley.sample::<1>(at);
+            let way: [f64; 2] = first.vector.into();
+            let point = [at[0] - way[0], at[1] - way[1]];
+            let [own, other] = worley.sample::<2>(point);
+            assert_eq!(own.distance, 0.0, "the point itself, from {at:?}");
+            assert_eq!(worley.sphere_radius(at), 0.5 * other.distance, "{at:?}");
+        }
+    }
+
+    #[test]
+    fn smooth_f1_lies_below_f1_and_solves_its_sum() {
+        let worley = Worley::<2>::new(Seed(5));
+        let mut apart = 0;
+        for index in 0..300 {
+            let at = position::<2>(Seed(3), index, 1e3);
+            let [first, second] = worley.sample::<2>(at).map(|feature| feature.distance);
+            let radius = 0.25;
+            let smooth = worley.smooth_f1(at, radius).unwrap();
+            assert!(
+                smooth <= first && smooth >= first - radius,
+                "{at:?}: {smooth} for {first}"
+            );
+            if second - first > radius {
+                apart += 1;
+                assert_eq!(smooth, first, "{at:?}");
+            }
+            let all = brute_force_vectors(&worley, at, 3);
+            let parts = all.iter().map(|(distance, _)| {
+                (1.0 + (f64::from(smooth) - distance) / f64::from(radius))
+                    .max(0.0)
+                    .powi(3)
+            });
+            // The slope of the sum is at most 3 / radius per point, and s is rounded to f32.
+            let sum: f64 = parts.sum();
+            assert!((sum - 1.0).abs() < 1e-5, "{at:?}: the sum is {sum}");
+        }
+        assert!(
+            apart > 20,
+            "only {apart} positions have one point within the radius"
+        );
+    }
+
+    #[test]
+    fn positions_without_a_place_are_not_numbers() {
+        let worley = Worley::<3>::new(Seed(5));
+        for bad in [[f64::NAN, 0.0, 0.0], [0.0, f64::INFINITY, 0.0]] {
+            assert!(worley.edge_distance(bad).is_nan());
+            assert!(worley.sphere_radius(bad).is_nan());
+            assert!(worley.smooth_f1(bad, 0.5).unwrap().is_nan());
+        }
+        assert!(worley.smooth_f1([0.0; 3], 0.0).is_err());
+        assert!(worley.smooth_f1([0.0; 3], f32::NAN).is_err());
+    }
+}
