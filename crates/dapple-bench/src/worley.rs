@@ -11,6 +11,7 @@ mod alone;
 #[cfg(feature = "peers")]
 mod beside_peers;
 mod digest;
+mod features;
 #[cfg(feature = "peers")]
 mod scattered;
 mod two_builds;
@@ -30,6 +31,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
         scattered::run(bench)?;
     }
     alone::run(bench)?;
+    features::run(bench)?;
     two_builds::run(bench)
 }
 
