@@ -3,4 +3,5 @@
 mod bits;
 mod doors;
 mod forced;
+mod lipschitz;
 pub(crate) mod oracle;
