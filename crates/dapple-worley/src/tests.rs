@@ -5,3 +5,4 @@ mod doors;
 mod forced;
 mod lipschitz;
 pub(crate) mod oracle;
+mod properties;
