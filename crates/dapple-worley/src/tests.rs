@@ -6,3 +6,4 @@ mod forced;
 mod lipschitz;
 pub(crate) mod oracle;
 mod properties;
+mod statistics;
