@@ -2,6 +2,7 @@
 
 mod bits;
 mod doors;
+mod far_away;
 mod forced;
 mod lipschitz;
 pub(crate) mod oracle;
