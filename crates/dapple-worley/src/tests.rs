@@ -8,3 +8,4 @@ mod lipschitz;
 pub(crate) mod oracle;
 mod properties;
 mod statistics;
+mod varying;
