@@ -4,6 +4,7 @@ mod bits;
 mod doors;
 mod far_away;
 mod forced;
+mod fractal;
 mod lipschitz;
 pub(crate) mod oracle;
 mod properties;
