@@ -9,4 +9,5 @@ mod lipschitz;
 pub(crate) mod oracle;
 mod properties;
 mod statistics;
+mod threads;
 mod varying;
