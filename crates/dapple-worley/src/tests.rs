@@ -8,6 +8,8 @@ mod fractal;
 mod lipschitz;
 pub(crate) mod oracle;
 mod properties;
+#[cfg(feature = "serde")]
+mod serialized;
 mod statistics;
 mod threads;
 mod varying;
