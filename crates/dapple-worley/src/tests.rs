@@ -10,6 +10,7 @@ pub(crate) mod oracle;
 mod properties;
 #[cfg(feature = "serde")]
 mod serialized;
+mod stability;
 mod statistics;
 mod threads;
 mod varying;
