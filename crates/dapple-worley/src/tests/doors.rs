@@ -180,5 +180,6 @@ where
 {
     let manhattan_ball = [1.0, 2.0, 2.0, 4.0 / 3.0, 2.0 / 3.0][N];
     let volume = 30.0 / worley.scatter().mean()?;
-    Ok(libm::pow(volume / manhattan_ball, 1.0 / N as f64).ceil() as i64 + 1)
+    // However dense the cells are on average, those of a short period may have one point each.
+    Ok((libm::pow(volume / manhattan_ball, 1.0 / N as f64).ceil() as i64 + 1).max(4))
 }

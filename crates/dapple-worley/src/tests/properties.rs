@@ -1,8 +1,11 @@
 //! What holds for every metric, scatter, period and seed.
 
-use super::doors::{agrees_with_oracle, reach_of, sample_by_every_door};
-use crate::{Axes, Metric, Scatter, Space, Vector, Worley};
+use super::doors::{RANKS, agrees_with_oracle, reach_of, sample_by_every_door};
+use crate::{
+    Axes, Cellular, Combination, FeatureView, Metric, Plane, Scatter, Space, Vector, Worley,
+};
 use dapple_hash::Seed;
+use dapple_raster::{Raster, Window};
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 
@@ -37,13 +40,22 @@ where
     (any::<u64>(), any_metric(), any_scatter(), any_period::<N>()).prop_map(
         |(seed, metric, scatter, period)| {
             let worley = Worley::new(Seed(seed)).with_metric(metric).unwrap();
-            worley
-                .with_scatter(scatter)
-                .unwrap()
-                .with_period(period)
-                .unwrap()
+            let worley = worley.with_scatter(scatter).unwrap();
+            let period = fitting(&worley, period);
+            worley.with_period(period).unwrap()
         },
     )
+}
+
+/// Longer periods for a scatter that may leave all cells of a short one empty.
+fn fitting<const N: usize>(worley: &Worley<N>, period: [Option<u32>; N]) -> [Option<u32>; N]
+where
+    Axes: Space<N>,
+{
+    match worley.scatter() {
+        Scatter::Unclamped { .. } => period.map(|period| period.map(|_| 1000)),
+        _ => period,
+    }
 }
 
 /// Multiples of 2^-21, near and up to 2^29 away, so that nothing is rounded; now and then corners of cells.
@@ -107,6 +119,109 @@ where
     Ok(())
 }
 
+fn any_combination() -> impl Strategy<Value = Combination> {
+    prop_oneof![
+        proptest::sample::select(&RANKS),
+        Just(Combination::F2_MINUS_F1),
+        proptest::array::uniform4(-2.0_f32..2.0).prop_map(Combination::new),
+    ]
+}
+
+/// Pixels from 2^-18 to 2^5 cells, now and then none at all, and either way round.
+fn any_window() -> impl Strategy<Value = Window> {
+    let exponent = prop_oneof![4 => -7.0..0.0, 1 => -18.0..5.0];
+    let size = (exponent, any::<bool>(), 0..20).prop_map(|(exponent, is_flipped, zero)| {
+        let size = libm::exp2(exponent);
+        match (zero, is_flipped) {
+            (0, _) => 0.0,
+            (_, true) => -size,
+            _ => size,
+        }
+    });
+    let coordinate = prop_oneof![4 => -8.0..8.0, 1 => -1e10..1e10];
+    (
+        proptest::array::uniform2(coordinate),
+        proptest::array::uniform2(size),
+        proptest::array::uniform2(-1000_i64..1000),
+        [1_u32..50, 1_u32..24],
+    )
+        .prop_map(|(origin, pixel, first, size)| Window {
+            origin: origin.into(),
+            pixel: pixel.into(),
+            first,
+            size,
+        })
+}
+
+/// Mostly planes whose columns go along the first axis, and no others.
+fn any_plane<const N: usize>() -> impl Strategy<Value = Plane<N>>
+where
+    Axes: Space<N>,
+{
+    let part = prop_oneof![Just(0.0), Just(1.0), -1.5..1.5];
+    let way = proptest::array::uniform::<_, N>(part);
+    (any_position::<N>(), way.clone(), way, 0..5).prop_map(|(origin, mut u, mut v, slanted)| {
+        if slanted > 0 {
+            u[1..].fill(0.0);
+            v[0] = 0.0;
+        }
+        Plane {
+            origin: origin.into(),
+            u: u.into(),
+            v: v.into(),
+        }
+    })
+}
+
+/// Compares the values, the ids and the gradients of a window with those of its pixel centers.
+fn window_holds_samples<const N: usize>(
+    texture: &Cellular<N>,
+    plane: &Plane<N>,
+    window: &Window,
+) -> Result<(), TestCaseError>
+where
+    Axes: Space<N>,
+{
+    let mut values = Raster::filled(window.size, -1.0).unwrap();
+    let mut gradients = Raster::filled(window.size, [-1.0; N]).unwrap();
+    let mut ids = [(); 3].map(|()| Raster::filled(window.size, 1).unwrap());
+    let views = ids.each_mut().map(|ids| FeatureView {
+        id: Some(ids.view_mut()),
+        ..FeatureView::default()
+    });
+    texture
+        .render_plane(plane, window, values.view_mut())
+        .unwrap();
+    texture
+        .render_gradient(plane, window, gradients.view_mut())
+        .unwrap();
+    texture
+        .worley()
+        .render_features(plane, window, views)
+        .unwrap();
+    let [width, height] = window.size;
+    for (column, row) in (0..height).flat_map(|row| (0..width).map(move |column| (column, row))) {
+        let at = plane.position(window.position(column, row));
+        let pixel = column as usize;
+        let found = values.row(row)[pixel];
+        let expected = texture.value(at);
+        prop_assert_eq!(
+            found.to_bits(),
+            expected.to_bits(),
+            "{} for {} at {:?}",
+            found,
+            expected,
+            at
+        );
+        let found = [0, 1, 2].map(|rank: usize| ids[rank].row(row)[pixel]);
+        let expected = texture.worley().sample::<3>(at).map(|feature| feature.id);
+        prop_assert_eq!(found, expected, "ids at {:?}", at);
+        let found = Vector::<N>::from(gradients.row(row)[pixel].map(f64::from));
+        prop_assert_eq!(found, texture.gradient(at), "gradient at {:?}", at);
+    }
+    Ok(())
+}
+
 /// The ids of all points of the cells from `first` on, as many as a period has; in order.
 fn ids_of_a_period<const N: usize>(
     worley: &Worley<N>,
@@ -153,6 +268,7 @@ proptest! {
         at in any_position::<2>(),
         turns in -1000_i64..1000,
     ) {
+        let period = fitting(&worley, period);
         let worley = worley.with_period(period).unwrap();
         repeats(&worley, period, at, turns)?;
     }
@@ -168,6 +284,7 @@ proptest! {
         let ids = ids_of_a_period(&worley, period, [0, 0]);
         prop_assert_eq!(&ids_of_a_period(&worley, period, first), &ids, "from {:?}", first);
         prop_assert!(ids.is_sorted_by(|a, b| a < b), "an id comes twice within a period");
+        prop_assume!(!ids.is_empty());
         for feature in worley.sample::<4>(at) {
             prop_assert!(ids.contains(&feature.id), "{:#x} is none of the period", feature.id);
         }
@@ -261,6 +378,26 @@ proptest! {
     #![proptest_config(cases(64))]
 
     #[test]
+    fn windows_hold_what_samples_give_in_the_plane(
+        worley in any_worley::<2>(),
+        combination in any_combination(),
+        plane in prop_oneof![Just(Plane::default()), any_plane::<2>()],
+        window in any_window(),
+    ) {
+        window_holds_samples(&worley.combine(combination), &plane, &window)?;
+    }
+
+    #[test]
+    fn windows_hold_what_samples_give_in_space(
+        worley in any_worley::<3>(),
+        combination in any_combination(),
+        plane in any_plane::<3>(),
+        window in any_window(),
+    ) {
+        window_holds_samples(&worley.combine(combination), &plane, &window)?;
+    }
+
+    #[test]
     fn doors_agree_in_space(worley in any_worley::<3>(), at in any_position::<3>()) {
         doors_agree(&worley, at, true)?;
     }
@@ -272,6 +409,7 @@ proptest! {
         at in any_position::<3>(),
         turns in -1000_i64..1000,
     ) {
+        let period = fitting(&worley, period);
         let worley = worley.with_period(period).unwrap();
         repeats(&worley, period, at, turns)?;
     }
@@ -292,6 +430,7 @@ proptest! {
         at in any_position::<4>(),
         turns in -1000_i64..1000,
     ) {
+        let period = fitting(&worley, period);
         let worley = worley.with_period(period).unwrap();
         repeats(&worley, period, at, turns)?;
     }
@@ -371,4 +510,81 @@ fn ids_come_once_in_a_block_of_cells() {
     }
     assert!(n_points > 350_000, "{n_points} points are too few");
     assert_eq!(seen.len(), n_points, "ids come twice");
+}
+
+#[test]
+fn points_at_the_same_distance_are_in_the_order_of_their_ids() {
+    // In the middle between the points of a regular grid, many are at the same distance.
+    for metric in [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev] {
+        let worley = Worley::<3>::new(Seed(64))
+            .with_scatter(Scatter::Jittered { jitter: 0.0 })
+            .and_then(|worley| worley.with_metric(metric))
+            .unwrap();
+        for cell in -20..20 {
+            let cell = f64::from(cell);
+            let corner = sample_by_every_door(&worley, [cell, 3.0, -cell]).unwrap();
+            let mut ids: Vec<_> = (0..8)
+                .map(|index| [index & 1, index >> 1 & 1, index >> 2].map(|part| part - 1))
+                .flat_map(|[x, y, z]| worley.cell_points([cell as i64 + x, 3 + y, z - cell as i64]))
+                .map(|point| point.id)
+                .collect();
+            ids.sort_unstable();
+            assert_eq!(
+                corner.map(|feature| feature.id).as_slice(),
+                &ids[..4],
+                "{metric:?} at {cell}"
+            );
+            let side = sample_by_every_door(&worley, [cell, 3.5, 0.5]).unwrap();
+            assert_eq!(side[0].distance, side[1].distance, "{metric:?} at {cell}");
+            assert!(side[0].id < side[1].id, "{metric:?} at {cell}: {side:?}");
+        }
+    }
+}
+
+#[test]
+fn positions_just_below_a_whole_number_are_those_of_the_last_step_or_of_the_number() {
+    for metric in [Metric::Euclidean, Metric::Minkowski(3.0)] {
+        let worley = Worley::<2>::new(Seed(65)).with_metric(metric).unwrap();
+        let periodic = worley.with_period([Some(1), Some(3)]).unwrap();
+        for (worley, whole) in [&worley, &periodic]
+            .into_iter()
+            .flat_map(|worley| [0.0, 1.0, -1.0, 3.0, 4_294_967_296.0].map(|whole| (worley, whole)))
+        {
+            let below = f64::next_down(whole);
+            let step = f64::from(crate::RESOLUTION);
+            // Rounded down to a step, unless the way from the lower corner of its cell is rounded to a whole cell.
+            let rounded = if below - below.floor() < 1.0 {
+                whole - step
+            } else {
+                whole
+            };
+            let mut found = [worley.sample::<4>([0.5, 0.5]); 2];
+            let positions = [[below, 0.25], [0.25, below]].map(glam::DVec2::from);
+            worley.sample_many(&positions, &mut found).unwrap();
+            let expected = [[rounded, 0.25], [0.25, rounded]];
+            for index in 0..2 {
+                let expected = worley.sample::<4>(expected[index]);
+                assert_eq!(found[index], expected, "many, below {whole}");
+                let single = worley.sample::<4>(positions[index]);
+                assert_eq!(single, expected, "one, below {whole}");
+            }
+        }
+    }
+}
+
+#[test]
+fn periods_without_points_are_infinitely_far_from_any() {
+    let scatter = Scatter::Unclamped { density: 0.25 };
+    let empty = (0..20)
+        .map(|seed| Worley::<2>::new(Seed(seed)).with_scatter(scatter).unwrap())
+        .find(|worley| worley.cell_points([0, 0]).is_empty())
+        .and_then(|worley| worley.with_period([Some(1), Some(1)]).ok())
+        .expect("three of four cells are empty");
+    for feature in sample_by_every_door(&empty, [0.25, 7.5]).unwrap() {
+        assert_eq!(
+            (feature.distance, feature.id),
+            (f32::INFINITY, 0),
+            "nothing is there"
+        );
+    }
 }
