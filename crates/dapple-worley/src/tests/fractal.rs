@@ -281,6 +281,34 @@ fn fractals_repeat_exactly_with_the_period_of_the_first_octave() -> Result<(), W
 }
 
 #[test]
+fn octaves_repeat_no_more_often_than_the_first() -> Result<(), WorleyError> {
+    let seed = Seed(118);
+    let period = |cells: u32| [Some(3 * cells), Some(2 * cells)];
+    let worley = Worley::<2>::new(seed).with_period(period(1))?;
+    let octaves = Octaves {
+        count: 4,
+        lacunarity: 3.0,
+        ..Octaves::default()
+    };
+    let fractal = worley.combine(Combination::F1).fractal(octaves)?;
+    for index in 0..100 {
+        let at = position::<2>(Seed(119), index, 100.0);
+        let at = at.map(|part| (part * 1024.0).round() / 1024.0);
+        let [mut sum, mut weight] = [0.0, 1.0];
+        for cells in [1, 3, 9, 27] {
+            let octave = Worley::<2>::new(seed).with_period(period(cells))?;
+            let scaled = at.map(|part| part * f64::from(cells));
+            sum += weight * f64::from(octave.sample::<1>(scaled)[0].distance);
+            weight *= 0.5;
+        }
+        // Three additions of numbers below 4 are rounded to 24 bits.
+        let found = f64::from(fractal.value(at));
+        assert!((found - sum).abs() < 2e-6, "{at:?}: {found} for {sum}");
+    }
+    Ok(())
+}
+
+#[test]
 fn pictures_of_one_period_fit_together_bit_for_bit() -> Result<(), WorleyError> {
     let worley = Worley::<2>::new(Seed(111)).with_period([Some(4), Some(2)])?;
     let fractal = worley
