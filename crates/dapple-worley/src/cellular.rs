@@ -1,9 +1,10 @@
 //! Scalar textures of the basis: a combination at every position.
 
 use crate::fixed::Place;
+use crate::ranges::range;
 use crate::render::{Output, Picture};
 use crate::sink::{Tone, Values};
-use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError};
+use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError, WorleyErrorKind};
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 use glam::DVec2;
@@ -109,6 +110,23 @@ where
         measure_range(seed, n, |position: [f64; N]| {
             self.value(Vector::<N>::from(position))
         })
+    }
+
+    /// The same texture with its values mapped so that about 0 to 1 is their range: from a table of measured ranges, for
+    /// [the combinations that have a name](Combination::NAMED), the default density, and every metric but Minkowski's.
+    /// One value in a thousand lies below 0, and one above 1.
+    ///
+    /// # Errors
+    ///
+    /// [`NoRange`](crate::WorleyErrorKind::NoRange) for any other; use [`measure_range`](Self::measure_range) and
+    /// [`with_range`](Self::with_range) there.
+    pub fn normalized(self) -> Result<Self, WorleyError> {
+        let Worley {
+            metric, scatter, ..
+        } = self.worley;
+        let density = &self.worley.lattice.density;
+        let range = range(N, metric, scatter, self.tone.weights).filter(|_| density.is_none());
+        self.with_range(range.ok_or_else(|| WorleyError::new(WorleyErrorKind::NoRange))?)
     }
 
     /// The same texture with its values mapped so that `range` becomes 0 to 1. Values beyond it are not clamped.

@@ -35,10 +35,32 @@ impl Combination {
     pub const F2_MINUS_F1: Self = Self::new([-1.0, 1.0, 0.0, 0.0]);
     /// `F1 + F2`.
     pub const F1_PLUS_F2: Self = Self::new([1.0, 1.0, 0.0, 0.0]);
+    /// `F3 − F1`.
+    pub const F3_MINUS_F1: Self = Self::new([-1.0, 0.0, 1.0, 0.0]);
     /// `F3 − F2`.
     pub const F3_MINUS_F2: Self = Self::new([0.0, -1.0, 1.0, 0.0]);
+    /// `F4 − F1`.
+    pub const F4_MINUS_F1: Self = Self::new([-1.0, 0.0, 0.0, 1.0]);
+    /// `F4 − F3`.
+    pub const F4_MINUS_F3: Self = Self::new([0.0, 0.0, -1.0, 1.0]);
     /// `2·F3 − F2 − F1`, which the paper names.
     pub const TWO_F3_MINUS_F2_MINUS_F1: Self = Self::new([-1.0, -1.0, 2.0, 0.0]);
+
+    /// The combinations that have a name, which are those whose range is known: see
+    /// [`Cellular::normalized`](crate::Cellular::normalized).
+    pub const NAMED: [(&'static str, Self); 11] = [
+        ("F1", Self::F1),
+        ("F2", Self::F2),
+        ("F3", Self::F3),
+        ("F4", Self::F4),
+        ("F2 - F1", Self::F2_MINUS_F1),
+        ("F1 + F2", Self::F1_PLUS_F2),
+        ("F3 - F1", Self::F3_MINUS_F1),
+        ("F3 - F2", Self::F3_MINUS_F2),
+        ("F4 - F1", Self::F4_MINUS_F1),
+        ("F4 - F3", Self::F4_MINUS_F3),
+        ("2 F3 - F2 - F1", Self::TWO_F3_MINUS_F2_MINUS_F1),
+    ];
 
     /// The combination with these coefficients, of F1 to F4 in their order.
     #[must_use]
@@ -52,7 +74,7 @@ impl Combination {
         self.coefficients
     }
 
-    /// The greatest n whose F_n takes part; 1 for a combination of nothing.
+    /// The greatest n whose `F_n` takes part; 1 for a combination of nothing.
     #[must_use]
     pub fn depth(&self) -> usize {
         let last = self.coefficients.iter().rposition(|&part| part != 0.0);

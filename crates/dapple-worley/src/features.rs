@@ -168,7 +168,7 @@ impl Tone {
         vectors: &[[f32; N]],
     ) -> [f32; N] {
         let mut sum = [0.0; N];
-        for (&vector, coefficient) in vectors.iter().zip(self.combination.coefficients()) {
+        for (&vector, coefficient) in vectors.iter().zip(self.weights.coefficients()) {
             if coefficient != 0.0 {
                 let gradient = metric.gradient(vector);
                 for axis in 0..N {
@@ -176,7 +176,7 @@ impl Tone {
                 }
             }
         }
-        sum.map(|part| part * self.scale)
+        sum
     }
 
     /// The gradient at a place.
@@ -189,7 +189,7 @@ impl Tone {
         Axes: Space<N>,
     {
         let vector = |hit: Hit<N>| hit.vector;
-        if self.combination.depth() <= 2 {
+        if self.depth() <= 2 {
             self.gradient(worley.metric, &worley.hits::<2>(place).map(vector))
         } else {
             self.gradient(worley.metric, &worley.hits::<4>(place).map(vector))

@@ -42,7 +42,9 @@ impl<const N: usize> Place<N> {
 /// The cell of a coordinate and the steps from its lower edge.
 #[inline]
 pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
-    if !(coordinate.abs() <= FARTHEST) {
+    // Not a number is no smaller than anything.
+    let has_cell = coordinate.abs() <= FARTHEST;
+    if !has_cell {
         return None;
     }
     let floor = coordinate.floor();

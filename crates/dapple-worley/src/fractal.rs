@@ -1,6 +1,6 @@
 //! Fractal sums: the same texture at several scales, on top of each other.
 //!
-//! Worley sums `G_n(x) = Σ 2^-i F_n(2^i x)` for `i` from 0 to 5, of F_n and of their combinations ("A Cellular Texture
+//! Worley sums `G_n(x) = Σ 2^-i F_n(2^i x)` for `i` from 0 to 5, of `F_n` and of their combinations ("A Cellular Texture
 //! Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). His octaves are literally one field,
 //! which shows where they agree: at the origin all have the same center. A seed for each octave avoids that.
 //!
@@ -188,7 +188,8 @@ where
                 return Vector::<N>::from([f64::NAN; N]);
             };
             let gradient = self.tone.gradient_at(&octave.worley, place);
-            let slope = f64::from(octave.weight * self.range.scale) * octave.frequency;
+            let slope =
+                f64::from(octave.weight * self.range.weights.coefficients()[0]) * octave.frequency;
             for axis in 0..N {
                 sum[axis] += f64::from(gradient[axis]) * slope;
             }

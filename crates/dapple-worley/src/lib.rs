@@ -1,6 +1,10 @@
 //! Worley's cellular basis function.
 
 #![forbid(unsafe_code)]
+#![expect(
+    clippy::needless_range_loop,
+    reason = "an index goes through several arrays at once, and closures of iterators are not inlined into SIMD code"
+)]
 
 mod cellular;
 mod combination;
@@ -15,6 +19,7 @@ mod one;
 mod plane;
 mod profile;
 mod radial;
+mod ranges;
 mod render;
 mod scatter;
 mod scattered;

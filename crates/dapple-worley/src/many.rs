@@ -139,7 +139,7 @@ impl<S: Simd, const N: usize> Places<S, N> {
         let mut holds = is_last.simd_lt(self.border(simd, norm));
         for rank in 0..K {
             let after = if rank + 1 < K { best[rank + 1] } else { next };
-            holds = holds & (best[rank] | code_mask).simd_lt(after | code_mask);
+            holds &= (best[rank] | code_mask).simd_lt(after | code_mask);
         }
         for code in &mut best {
             let index = *code & ((1 << index_bits) - 1);

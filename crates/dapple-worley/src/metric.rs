@@ -101,8 +101,8 @@ pub(crate) trait Norm: Copy + Send + Sync {
     fn term(self, difference: f32) -> f32;
     fn join(self, term: f32, rest: f32) -> f32;
     fn distance(self, key: f32) -> f32;
-    fn terms<S: Simd>(self, difference: f32x16<S>) -> f32x16<S>;
-    fn joins<S: Simd>(self, term: f32x16<S>, rest: f32x16<S>) -> f32x16<S>;
+    fn terms<S: Simd, V: SimdFloat<S, Element = f32>>(self, difference: V) -> V;
+    fn joins<S: Simd, V: SimdFloat<S, Element = f32>>(self, term: V, rest: V) -> V;
     fn distances<S: Simd>(self, key: f32x16<S>) -> f32x16<S>;
 
     /// The key of a vector.
@@ -158,12 +158,12 @@ impl Norm for Euclidean {
     }
 
     #[inline(always)]
-    fn terms<S: Simd>(self, difference: f32x16<S>) -> f32x16<S> {
+    fn terms<S: Simd, V: SimdFloat<S, Element = f32>>(self, difference: V) -> V {
         difference * difference
     }
 
     #[inline(always)]
-    fn joins<S: Simd>(self, term: f32x16<S>, rest: f32x16<S>) -> f32x16<S> {
+    fn joins<S: Simd, V: SimdFloat<S, Element = f32>>(self, term: V, rest: V) -> V {
         term + rest
     }
 
@@ -193,12 +193,12 @@ impl Norm for Manhattan {
     }
 
     #[inline(always)]
-    fn terms<S: Simd>(self, difference: f32x16<S>) -> f32x16<S> {
+    fn terms<S: Simd, V: SimdFloat<S, Element = f32>>(self, difference: V) -> V {
         difference.abs()
     }
 
     #[inline(always)]
-    fn joins<S: Simd>(self, term: f32x16<S>, rest: f32x16<S>) -> f32x16<S> {
+    fn joins<S: Simd, V: SimdFloat<S, Element = f32>>(self, term: V, rest: V) -> V {
         term + rest
     }
 
@@ -228,12 +228,12 @@ impl Norm for Chebyshev {
     }
 
     #[inline(always)]
-    fn terms<S: Simd>(self, difference: f32x16<S>) -> f32x16<S> {
+    fn terms<S: Simd, V: SimdFloat<S, Element = f32>>(self, difference: V) -> V {
         difference.abs()
     }
 
     #[inline(always)]
-    fn joins<S: Simd>(self, term: f32x16<S>, rest: f32x16<S>) -> f32x16<S> {
+    fn joins<S: Simd, V: SimdFloat<S, Element = f32>>(self, term: V, rest: V) -> V {
         term.max(rest)
     }
 
@@ -271,12 +271,12 @@ impl Norm for Minkowski {
     }
 
     #[inline(always)]
-    fn terms<S: Simd>(self, difference: f32x16<S>) -> f32x16<S> {
+    fn terms<S: Simd, V: SimdFloat<S, Element = f32>>(self, difference: V) -> V {
         each_lane(difference, |difference| self.term(difference))
     }
 
     #[inline(always)]
-    fn joins<S: Simd>(self, term: f32x16<S>, rest: f32x16<S>) -> f32x16<S> {
+    fn joins<S: Simd, V: SimdFloat<S, Element = f32>>(self, term: V, rest: V) -> V {
         term + rest
     }
 
@@ -287,13 +287,14 @@ impl Norm for Minkowski {
 }
 
 #[inline(always)]
-fn each_lane<S: Simd>(lanes: f32x16<S>, change: impl Fn(f32) -> f32) -> f32x16<S> {
+fn each_lane<S: Simd, V: SimdFloat<S, Element = f32>>(lanes: V, change: impl Fn(f32) -> f32) -> V {
     let mut values = [0.0; 16];
-    lanes.store_slice(&mut values);
-    for value in &mut values {
+    let values = &mut values[..V::LEN];
+    lanes.store_slice(values);
+    for value in &mut *values {
         *value = change(*value);
     }
-    f32x16::from_slice(lanes.simd, &values)
+    V::from_slice(lanes.token(), values)
 }
 
 /// Evaluates an expression with the [`Norm`] of a [`Metric`].

@@ -5,12 +5,14 @@
 //! out, and only those are compared at its pixels, sixteen side by side. Where a tile needs points further away than
 //! its neighborhood reaches, the neighborhood grows; where that would not be exact, single positions are searched.
 //!
-//! What runs in registers are three stages with nothing but memory between them ([`table`], [`cull`], [`kernel`]), so
+//! What runs in registers are three stages with nothing but memory between them ([`table`], [`sieve`], [`kernel`]), so
 //! that each is compiled only for what it depends on.
 
 mod block;
-mod cull;
 mod kernel;
+mod shortlist;
+mod sieve;
+mod splat;
 mod table;
 mod tile;
 mod track;
@@ -31,7 +33,7 @@ pub(crate) const LANES: usize = 16;
 const BAND_ROWS: usize = 64;
 
 /// The most columns of a block.
-const BLOCK_COLUMNS: usize = 256;
+const BLOCK_COLUMNS: usize = 128;
 
 /// A window of a plane through the basis.
 pub(crate) struct Picture<'a, const N: usize>
@@ -56,12 +58,10 @@ pub(crate) enum Output<'a, const N: usize> {
 }
 
 impl<const N: usize> Output<'_, N> {
-    /// The greatest n of F_n that is needed.
+    /// The greatest n of `F_n` that is needed.
     fn depth(&self) -> usize {
         match self {
-            Self::Values(Values { tone, .. }, _) | Self::Gradients(tone, _) => {
-                tone.combination.depth()
-            }
+            Self::Values(Values { tone, .. }, _) | Self::Gradients(tone, _) => tone.depth(),
             Self::Features(features) => features.len(),
         }
     }

@@ -73,6 +73,12 @@ impl Scatter {
         Ok(self.counts()?.mean())
     }
 
+    /// The table of counts of the default.
+    pub(crate) fn default_counts() -> PoissonCounts {
+        let counts = PoissonCounts::new(Self::DENSITY, CLAMPED);
+        counts.unwrap_or_else(|_| unreachable!("the default density is in its range"))
+    }
+
     /// The table of counts.
     pub(crate) fn counts(self) -> Result<PoissonCounts, WorleyError> {
         let (density, range) = match self {

@@ -253,10 +253,9 @@ impl<const N: usize> Bins<N> {
                 .iter()
                 .map(|&extent| (extent / side).max(1.0))
                 .product();
-            if !(n_bins < wanted) {
-                break;
+            if n_bins < wanted {
+                side *= 0.75;
             }
-            side *= 0.75;
         }
         let count = extent.map(|extent| {
             let count = (extent / side).floor();

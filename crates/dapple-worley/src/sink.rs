@@ -5,11 +5,11 @@ use crate::metric::Norm;
 use crate::{Axes, Combination, Space, Worley, WorleyError};
 use fearless_simd::{f32x16, prelude::*};
 
-/// A combination, scaled and shifted: `shift + scale · (C1·F1 + …)`.
+/// A combination, mapped to a range: `shift + W1·F1 + W2·F2 + …`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tone {
-    pub(crate) combination: Combination,
-    pub(crate) scale: f32,
+    /// The coefficients times what maps to the range.
+    pub(crate) weights: Combination,
     pub(crate) shift: f32,
 }
 
@@ -17,8 +17,7 @@ impl Tone {
     /// The combination as it is.
     pub(crate) fn plain(combination: Combination) -> Self {
         Self {
-            combination,
-            scale: 1.0,
+            weights: combination,
             shift: 0.0,
         }
     }
@@ -32,12 +31,16 @@ impl Tone {
             f64::from(extent),
             "finite and above 0",
         )?;
-        let map = |value: f32| (value - low) / extent;
+        let weights = self.weights.coefficients().map(|weight| weight / extent);
         Ok(Self {
-            scale: self.scale / extent,
-            shift: map(self.shift),
-            ..self
+            weights: Combination::new(weights),
+            shift: (self.shift - low) / extent,
         })
+    }
+
+    /// The greatest n of `F_n` that is needed.
+    pub(crate) fn depth(&self) -> usize {
+        self.weights.depth()
     }
 
     /// At a place.
@@ -45,16 +48,22 @@ impl Tone {
     where
         Axes: Space<N>,
     {
-        if self.combination.depth() <= 2 {
+        if self.depth() <= 2 {
             self.of(&worley.distances::<2>(place))
         } else {
             self.of(&worley.distances::<4>(place))
         }
     }
 
-    /// From distances, at least [`Combination::depth`] of them.
+    /// From distances, at least [`Tone::depth`] of them.
     pub(crate) fn of(&self, distances: &[f32]) -> f32 {
-        self.shift + self.scale * self.combination.of(distances)
+        let mut sum = self.shift;
+        for (&weight, &distance) in self.weights.coefficients().iter().zip(distances) {
+            if weight != 0.0 {
+                sum += distance * weight;
+            }
+        }
+        sum
     }
 
     /// From the keys of sixteen pixels.
@@ -64,13 +73,13 @@ impl Tone {
         norm: M,
         keys: [f32x16<S>; K],
     ) -> f32x16<S> {
-        let mut sum = f32x16::splat(keys[0].simd, 0.0);
-        for (rank, &coefficient) in self.combination.coefficients().iter().take(K).enumerate() {
-            if coefficient != 0.0 {
-                sum += norm.distances(keys[rank]) * coefficient;
+        let mut sum = f32x16::splat(keys[0].simd, self.shift);
+        for (rank, &weight) in self.weights.coefficients().iter().take(K).enumerate() {
+            if weight != 0.0 {
+                sum += norm.distances(keys[rank]) * weight;
             }
         }
-        sum * self.scale + self.shift
+        sum
     }
 }
 
@@ -100,7 +109,7 @@ impl Values {
         };
     }
 
-    /// Takes in the keys of up to sixteen pixels.
+    /// Takes in the keys of sixteen pixels.
     #[inline(always)]
     pub(crate) fn put<S: Simd, M: Norm, const K: usize>(
         &self,
@@ -108,21 +117,24 @@ impl Values {
         keys: [f32x16<S>; K],
         out: &mut [f32],
     ) {
-        let simd = keys[0].simd;
         let mut values = self.tone.of_keys(norm, keys);
-        if out.len() == 16 {
-            if let Some(weight) = self.weight {
-                values = f32x16::from_slice(simd, out) + values * weight;
-            }
-            values.store_slice(out);
-            return;
-        }
-        let mut lanes = [0.0; 16];
         if let Some(weight) = self.weight {
-            lanes[..out.len()].copy_from_slice(out);
-            values = f32x16::from_slice(simd, &lanes) + values * weight;
+            values = f32x16::from_slice(keys[0].simd, out) + values * weight;
         }
-        values.store_slice(&mut lanes);
+        values.store_slice(out);
+    }
+
+    /// Takes in the keys of fewer than sixteen pixels.
+    #[inline(always)]
+    pub(crate) fn put_part<S: Simd, M: Norm, const K: usize>(
+        &self,
+        norm: M,
+        keys: [f32x16<S>; K],
+        out: &mut [f32],
+    ) {
+        let mut lanes = [0.0; 16];
+        lanes[..out.len()].copy_from_slice(out);
+        self.put(norm, keys, &mut lanes);
         out.copy_from_slice(&lanes[..out.len()]);
     }
 }

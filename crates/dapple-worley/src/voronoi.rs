@@ -105,10 +105,12 @@ fn smooth_minimum(distances: &[f64], radius: f64) -> f64 {
             slope += 3.0 * part * part / radius;
         }
         let next = s - (sum - 1.0) / slope;
-        if !(next < s) {
+        // Not a number is no smaller, and ends it too.
+        if next < s {
+            s = next;
+        } else {
             break;
         }
-        s = next;
     }
     s
 }
@@ -201,9 +203,8 @@ mod tests {
             }
             let all = brute_force_vectors(&worley, at, 3);
             let parts = all.iter().map(|(distance, _)| {
-                (1.0 + (f64::from(smooth) - distance) / f64::from(radius))
-                    .max(0.0)
-                    .powi(3)
+                let part = (1.0 + (f64::from(smooth) - distance) / f64::from(radius)).max(0.0);
+                part * part * part
             });
             // The slope of the sum is at most 3 / radius per point, and s is rounded to f32.
             let sum: f64 = parts.sum();

@@ -10,7 +10,7 @@ use dapple_hash::{Seed, unit_f32};
 use fearless_simd::{Level, dispatch};
 use std::sync::Arc;
 
-/// The greatest n of F_n.
+/// The greatest n of `F_n`.
 pub const LIMIT: usize = 4;
 
 /// Worley's basis in the plane.
@@ -82,12 +82,9 @@ where
     #[must_use]
     pub fn new(seed: Seed) -> Self {
         let scatter = Scatter::default();
-        let counts = scatter
-            .counts()
-            .expect("the default density is in its range");
         Self {
             seed,
-            lattice: Lattice::new(seed, scatter, counts),
+            lattice: Lattice::new(seed, scatter, Scatter::default_counts()),
             scatter,
             metric: Metric::default(),
         }

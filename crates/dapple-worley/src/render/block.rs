@@ -1,10 +1,13 @@
 //! A block: a few columns of a band, whose feature points are made once.
 
-use super::cull::Candidates;
+use super::shortlist::Shortlist;
+use super::sieve::{Keep, PixelBox, PointList, Points};
+use super::splat::Splat;
 use super::table::{CellBox, Table};
 use super::tile::{Guess, Tile};
 use super::{LANES, Line, Output, Picture};
 use crate::fixed::{STEP, STEPS};
+use crate::metric::{Norm as _, with_norm};
 use crate::{Axes, Feature, LIMIT, Space};
 use core::ops::Range;
 use fearless_simd::{Level, dispatch};
@@ -40,7 +43,15 @@ pub(super) struct Memory<const N: usize> {
     pub(super) table: Table<N>,
     /// The points about a tile whose neighborhood had to grow.
     pub(super) wide_table: Table<N>,
-    pub(super) candidates: Candidates<N>,
+    /// Those that matter to the squares about a tile, from the largest to the smallest, and the limit of their keys.
+    pub(super) lists: [(PointList<N>, f32); SQUARES.len()],
+    /// Those that matter to a tile.
+    pub(super) list: PointList<N>,
+    pub(super) shortlist: Shortlist<N>,
+    pub(super) near: Vec<f32>,
+    pub(super) runs: Vec<Range<usize>>,
+    /// The smallest keys of the pixels of a block.
+    pub(super) planes: [Vec<f32>; LIMIT],
     /// The coordinates of the columns of the block, in steps from the lower corner of the table, and those of the rows
     /// of the band along the other axes; the last one is repeated to fill a register.
     pub(super) lines: [Vec<i32>; N],
@@ -51,11 +62,36 @@ impl<const N: usize> Memory<N> {
         Self {
             table: Table::new(),
             wide_table: Table::new(),
-            candidates: Candidates::new(),
+            lists: core::array::from_fn(|_| (PointList::new(), 0.0)),
+            list: PointList::new(),
+            shortlist: Shortlist::new(),
+            near: Vec::new(),
+            runs: Vec::new(),
+            planes: core::array::from_fn(|_| Vec::new()),
             lines: core::array::from_fn(|_| Vec::new()),
         }
     }
+
+    /// Where the pixels of some columns of the block and rows of the band lie.
+    pub(super) fn pixel_box(&self, columns: Range<usize>, rows: Range<usize>) -> PixelBox<N> {
+        let mut pixels = PixelBox {
+            low: [0; N],
+            high: [0; N],
+        };
+        for (axis, line) in self.lines.iter().enumerate() {
+            let range = if axis == 0 { &columns } else { &rows };
+            let [a, b] = [line[range.start], line[range.end - 1]];
+            (pixels.low[axis], pixels.high[axis]) = (a.min(b), a.max(b));
+        }
+        pixels
+    }
 }
+
+/// The sides of the squares of pixels for which points are sifted before they are for a tile.
+const SQUARES: [usize; 2] = [64, 32];
+
+/// Squares are not wider than this many steps: in wider ones, almost all points matter.
+const WIDEST_SQUARE: i32 = STEPS + STEPS / 4;
 
 impl<const N: usize> Block<'_, N>
 where
@@ -66,7 +102,9 @@ where
         let lattice = &self.picture.worley.lattice;
         let depth = out.depth();
         let guess = Guess::new(lattice, self.middle(), depth);
-        let Some(cells) = self.cells(guess.ring) else {
+        let splat = Splat::new(self, guess.distance).filter(|_| matches!(out, Output::Values(..)));
+        let ring = splat.map_or(guess.ring, |splat| splat.reach.ceil() as i32);
+        let Some(cells) = self.cells(ring) else {
             self.one_by_one(0..self.n_rows, self.range.clone(), out);
             return;
         };
@@ -87,20 +125,111 @@ where
             let last = line.last().copied().unwrap_or(0);
             line.resize(line.len() + LANES, last);
         }
+        let splat = splat.filter(|splat| splat.is_even(&memory.lines));
+        if let (Output::Values(values, rows), Some(splat)) = (&mut *out, &splat) {
+            splat.render(self, (values, rows), memory);
+            return;
+        }
         let height = self.tile_height(&memory.lines[0]);
-        for row in (0..self.n_rows).step_by(height) {
-            let rows = row..self.n_rows.min(row + height);
-            for column in (0..self.range.len()).step_by(LANES) {
-                let tile = Tile {
-                    block: self,
-                    depth,
-                    rows: rows.clone(),
-                    column,
-                    guess,
-                };
-                tile.render(out, memory);
+        let all = (0..self.range.len(), 0..self.n_rows);
+        self.squares(all, (depth, guess, height), (out, memory), (0, None));
+    }
+
+    /// Fills the pixels of a rectangle, columns of the block and rows of the band, square by square, and the last ones
+    /// tile by tile. `from` is the list with the points that matter, if there is one.
+    fn squares(
+        &self,
+        (columns, rows): (Range<usize>, Range<usize>),
+        (depth, guess, height): (usize, Guess, usize),
+        (out, memory): (&mut Output<'_, N>, &mut Memory<N>),
+        (level, from): (usize, Option<usize>),
+    ) {
+        let Some(&side) = SQUARES.get(level) else {
+            for row in rows.clone().step_by(height) {
+                for column in columns.clone().step_by(LANES) {
+                    let tile = Tile {
+                        block: self,
+                        depth,
+                        rows: row..rows.end.min(row + height),
+                        column,
+                        guess,
+                    };
+                    tile.render(out, memory, from);
+                }
+            }
+            return;
+        };
+        let first = memory.pixel_box(
+            columns.start..columns.end.min(columns.start + side),
+            rows.start..rows.end.min(rows.start + side),
+        );
+        if (0..N).any(|axis| first.high[axis] - first.low[axis] > WIDEST_SQUARE) {
+            let rectangle = (columns, rows);
+            return self.squares(
+                rectangle,
+                (depth, guess, height),
+                (out, memory),
+                (level + 1, from),
+            );
+        }
+        for row in rows.clone().step_by(side) {
+            for column in columns.clone().step_by(side) {
+                let columns = column..columns.end.min(column + side);
+                let rows = row..rows.end.min(row + side);
+                let pixels = memory.pixel_box(columns.clone(), rows.clone());
+                self.sift(&pixels, (depth, guess), memory, (level, from));
+                let next = (level + 1, Some(level));
+                self.squares((columns, rows), (depth, guess, height), (out, memory), next);
             }
         }
+    }
+
+    /// Makes the list of a square.
+    fn sift(
+        &self,
+        pixels: &PixelBox<N>,
+        (depth, guess): (usize, Guess),
+        memory: &mut Memory<N>,
+        (level, from): (usize, Option<usize>),
+    ) {
+        let Memory {
+            table,
+            lists,
+            near,
+            runs,
+            ..
+        } = memory;
+        let (larger, smaller) = lists.split_at_mut(level);
+        let (list, limit) = &mut smaller[0];
+        let norm_border;
+        let run;
+        let points = match from {
+            Some(from) => {
+                norm_border = None;
+                run = 0..larger[from].0.len;
+                *limit = larger[from].1;
+                larger[from].0.points(&run, table.wants_ids)
+            }
+            None => {
+                let cells = pixels.cells(guess.ring);
+                norm_border = Some(pixels.border(cells) as f32 * STEP);
+                table.runs(cells, runs);
+                Points {
+                    steps: &table.steps,
+                    numbers: None,
+                    runs,
+                    wants_numbers: table.wants_ids,
+                }
+            }
+        };
+        with_norm!(self.picture.worley.metric, norm => {
+            if let Some(border) = norm_border {
+                *limit = norm.tightened(norm.key_along_one_axis(border));
+            }
+            dispatch!(self.level, simd => {
+                list.sift(simd, norm, points, (pixels, Keep::Nearest(depth)), near);
+            });
+        });
     }
 
     /// The cell in the middle.

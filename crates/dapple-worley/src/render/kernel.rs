@@ -1,21 +1,13 @@
 //! The inner loop: the smallest keys of sixteen pixels side by side, for several rows at once.
 
 use super::LANES;
+use super::shortlist::{CHUNK, RowTerms};
 use crate::Metric;
 use crate::fixed::STEP;
 use crate::metric::{Norm, with_norm};
 use crate::sink::Values;
 use core::ops::Range;
-use fearless_simd::{Level, dispatch, f32x16, i32x16, prelude::*, u32x16};
-
-/// The feature points that matter to a tile.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Shortlist<'a> {
-    /// Their coordinates along the first axis, in cells from the lower corner of the tile.
-    pub(super) columns: &'a [f32],
-    /// The terms of all axes but the first, joined: for each point, one for each of sixteen rows of the tile.
-    pub(super) row_terms: &'a [f32],
-}
+use fearless_simd::{Level, dispatch, f32x16, i32x16, prelude::*};
 
 /// Some rows of a tile.
 #[derive(Debug)]
@@ -30,7 +22,9 @@ pub(super) struct Rows<'a> {
     pub(super) steps: &'a [i32],
     /// The coordinate that is the smallest of them.
     pub(super) low: i32,
-    pub(super) shortlist: Shortlist<'a>,
+    /// The coordinates of the points that matter, along the first axis, in cells from there.
+    pub(super) points: &'a [f32],
+    pub(super) row_terms: RowTerms<'a>,
     /// Keys from here on may be wrong.
     pub(super) limit: f32,
     pub(super) values: &'a Values,
@@ -60,10 +54,12 @@ impl Rows<'_> {
         norm: M,
         out: &mut [&mut [f32]],
     ) -> usize {
-        if const { <S::f32s as SimdBase<S>>::LEN == LANES } {
-            self.fill_groups::<S, M, K, 8>(simd, norm, out)
-        } else {
+        if const { <S::f32s as SimdBase<S>>::LEN < LANES } {
             self.fill_groups::<S, M, K, 2>(simd, norm, out)
+        } else if self.rows.len() <= 4 {
+            self.fill_groups::<S, M, K, 4>(simd, norm, out)
+        } else {
+            self.fill_groups::<S, M, K, 8>(simd, norm, out)
         }
     }
 
@@ -82,13 +78,20 @@ impl Rows<'_> {
             if !worst.simd_lt(self.limit).all_true() {
                 return row;
             }
-            for keys in keys {
-                if row < self.rows.end {
+            let end = self.rows.end.min(row + R);
+            let out = &mut out[row..end];
+            if let (Ok(out), LANES) = (<&mut [_; R]>::try_from(&mut *out), self.columns.len()) {
+                for at in 0..R {
                     self.values
-                        .put(norm, keys, &mut out[row][self.columns.clone()]);
-                    row += 1;
+                        .put(norm, keys[at], &mut out[at][self.columns.start..][..LANES]);
+                }
+            } else {
+                for (keys, out) in keys.into_iter().zip(out) {
+                    self.values
+                        .put_part(norm, keys, &mut out[self.columns.clone()]);
                 }
             }
+            row = end;
         }
         row
     }
@@ -104,12 +107,14 @@ impl Rows<'_> {
     ) -> ([[f32x16<S>; K]; R], f32x16<S>) {
         let simd = columns.simd;
         let mut best = [[f32x16::splat(simd, f32::INFINITY); K]; R];
-        for (index, &column) in self.shortlist.columns.iter().enumerate() {
-            let column_terms = norm.terms(columns - column);
-            let row_terms = &self.shortlist.row_terms[index * LANES + first..][..R];
-            for row in 0..R {
-                let key = norm.joins(column_terms, f32x16::splat(simd, row_terms[row]));
-                insert(&mut best[row], key);
+        for (chunk, points) in self.points.chunks(CHUNK).enumerate() {
+            let row_terms = self.row_terms.rows::<R>(chunk, first);
+            for (index, &point) in points.iter().enumerate() {
+                let column_terms = norm.terms(columns - point);
+                for row in 0..R {
+                    let row_term = f32x16::splat(simd, row_terms[row][index % CHUNK]);
+                    insert(&mut best[row], norm.joins(column_terms, row_term));
+                }
             }
         }
         let mut worst = best[0][K - 1];
@@ -131,24 +136,20 @@ fn insert<S: Simd, const K: usize>(best: &mut [f32x16<S>; K], key: f32x16<S>) {
 
 /// Floats of at least zero are in the order of their bits, and most processors compare whole numbers faster.
 #[inline(always)]
-pub(super) fn lesser<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
-    if floats_are_faster(a.simd) {
+pub(super) fn lesser<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V {
+    if floats_are_faster(a.token()) {
         a.min(b)
     } else {
-        a.bitcast::<u32x16<S>>()
-            .min(b.bitcast::<u32x16<S>>())
-            .bitcast()
+        V::from_bits(a.to_bits().min(b.to_bits()))
     }
 }
 
 #[inline(always)]
-pub(super) fn greater<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
-    if floats_are_faster(a.simd) {
+pub(super) fn greater<S: Simd, V: SimdFloat<S, Element = f32>>(a: V, b: V) -> V {
+    if floats_are_faster(a.token()) {
         a.max(b)
     } else {
-        a.bitcast::<u32x16<S>>()
-            .max(b.bitcast::<u32x16<S>>())
-            .bitcast()
+        V::from_bits(a.to_bits().max(b.to_bits()))
     }
 }
 

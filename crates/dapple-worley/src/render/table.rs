@@ -1,8 +1,9 @@
 //! The feature points of a box of cells, made once and then looked up.
 
+use super::LANES;
+use super::sieve::PointList;
 use crate::fixed::STEP_BITS;
 use crate::lattice::{IDS, Lattice, SixteenCells};
-use crate::render::LANES;
 use core::ops::Range;
 use dapple_hash::{CellHash, CellHashes};
 use fearless_simd::{prelude::*, u32x16};
@@ -36,6 +37,9 @@ impl<const N: usize> CellBox<N> {
             .product()
     }
 }
+
+/// So many points of a cell are copied without looking how many it has.
+const USUAL: usize = 4;
 
 /// The feature points of a box of cells, row by row of cells.
 #[derive(Debug)]
@@ -99,16 +103,11 @@ impl<const N: usize> Table<N> {
                 self.add(
                     simd,
                     lattice,
-                    hash,
-                    columns,
+                    (hash, columns),
                     (corner, n_cells),
                     &mut scratch,
                 );
             }
-        }
-        for steps in &mut self.steps {
-            let end = *self.starts.last().unwrap_or(&0) as usize;
-            steps.resize(end + LANES, 0);
         }
     }
 
@@ -118,8 +117,7 @@ impl<const N: usize> Table<N> {
         &mut self,
         simd: S,
         lattice: &Lattice<N>,
-        row: CellHash,
-        columns: &[[u32; 2]],
+        (row, columns): (CellHash, &[[u32; 2]]),
         (corner, n_cells): ([i32; N], usize),
         scratch: &mut Vec<u32>,
     ) {
@@ -149,7 +147,7 @@ impl<const N: usize> Table<N> {
             }
         }
         let most = numbers[..n_cells].iter().copied().fold(0, u32::max);
-        scratch.resize(most as usize * N * LANES, 0);
+        scratch.resize(most.max(USUAL as u32) as usize * N * LANES, 0);
         for index in 0..most {
             let steps: [u32x16<S>; N] = cells.steps(u32x16::splat(simd, index), lattice.jitter);
             for axis in 0..N {
@@ -157,23 +155,34 @@ impl<const N: usize> Table<N> {
                 steps[axis].store_slice(&mut scratch[at..at + LANES]);
             }
         }
-        let mut end = *self.starts.last().unwrap_or(&0);
+        let mut end = *self.starts.last().unwrap_or(&0) as usize;
+        for axis in 0..N {
+            let room = end + most as usize * LANES + LANES;
+            if self.steps[axis].len() < room {
+                self.steps[axis].resize(room.next_power_of_two(), 0);
+            }
+        }
         for (lane, &number) in numbers[..n_cells].iter().enumerate() {
+            let number = number as usize;
             for axis in 0..N {
                 let shift = if axis == 0 {
-                    (lane as i32) << STEP_BITS
+                    corner[axis] + ((lane as i32) << STEP_BITS)
                 } else {
-                    0
+                    corner[axis]
                 };
-                let to = &mut self.steps[axis];
-                to.truncate(end as usize);
-                for index in 0..number as usize {
-                    let steps = scratch[(index * N + axis) * LANES + lane];
-                    to.push(steps.cast_signed() + corner[axis] + shift);
+                let from =
+                    |index: usize| scratch[(index * N + axis) * LANES + lane].cast_signed() + shift;
+                // Most cells have no more points than this; what is too much is written over by the next cell.
+                let to = &mut self.steps[axis][end..end + number.max(USUAL)];
+                for index in 0..USUAL {
+                    to[index] = from(index);
+                }
+                for index in USUAL..number {
+                    to[index] = from(index);
                 }
             }
             end += number;
-            self.starts.push(end);
+            self.starts.push(end as u32);
         }
         if self.wants_ids {
             self.add_ids(simd, hashes, &numbers[..n_cells]);
@@ -204,9 +213,38 @@ impl<const N: usize> Table<N> {
         }
     }
 
+    /// The points of the cells from `first` to `last` along each axis, row by row.
+    pub(super) fn runs(&self, [first, last]: [[i32; N]; 2], runs: &mut Vec<Range<usize>>) {
+        runs.clear();
+        let columns = first[0] as usize..last[0] as usize + 1;
+        let mut row = first;
+        loop {
+            let mut index = 0;
+            for axis in (1..N).rev() {
+                index = index * self.cells.side(axis) + row[axis] as usize;
+            }
+            runs.push(self.run(index, columns.clone()));
+            let Some(axis) = (1..N).find(|&axis| row[axis] < last[axis]) else {
+                return;
+            };
+            row[axis] += 1;
+            row[1..axis].copy_from_slice(&first[1..axis]);
+        }
+    }
+
+    /// The ids of the points of a list, if they are wanted, padded to a whole register.
+    pub(super) fn look_up_ids(&self, list: &PointList<N>, ids: &mut Vec<u64>) {
+        ids.clear();
+        if self.wants_ids {
+            let numbers = list.numbers[..list.len].iter();
+            ids.extend(numbers.map(|&number| self.ids[number as usize]));
+            ids.resize(list.len.next_multiple_of(LANES).max(LANES), 0);
+        }
+    }
+
     /// The points of the cells `columns` (along the first axis) of a row of cells, as a range.
     #[inline(always)]
-    pub(super) fn run(&self, row: usize, columns: Range<usize>) -> Range<usize> {
+    fn run(&self, row: usize, columns: Range<usize>) -> Range<usize> {
         let first = row * self.cells.side(0);
         self.starts[first + columns.start] as usize..self.starts[first + columns.end] as usize
     }

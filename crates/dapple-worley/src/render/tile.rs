@@ -1,12 +1,12 @@
 //! A tile: up to 16 × 16 pixels, and how far away the points are that they need.
 
 use super::block::{Block, Memory};
-use super::cull::{Find, TileBox};
 use super::kernel::Rows;
+use super::sieve::{Keep, PixelBox, Points};
 use super::table::CellBox;
 use super::track::{Found, TrackedRows};
 use super::{LANES, Output};
-use crate::fixed::{STEP, STEP_BITS, STEPS};
+use crate::fixed::{STEP, STEPS};
 use crate::lattice::Lattice;
 use crate::metric::{Chebyshev, Euclidean, Manhattan, Norm, with_norm};
 use crate::{Axes, Metric, Space};
@@ -22,7 +22,7 @@ const NARROW: i32 = STEPS / 2;
 /// A distance that hardly any of the nearest points exceeds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Guess {
-    distance: f32,
+    pub(super) distance: f32,
     /// The cells that it reaches over.
     pub(super) ring: i32,
 }
@@ -36,7 +36,7 @@ impl Guess {
         };
         let points = [5.5, 7.8, 9.8, 11.6][depth - 1];
         // The volumes of the Euclidean unit balls, near enough for a guess.
-        let ball = [1.0, 2.0, 3.14, 4.19, 4.93][N];
+        let ball = [1.0, 2.0, 3.1, 4.2, 4.9][N];
         let distance = libm::pow(points / (ball * density), 1.0 / N as f64);
         Self {
             distance: distance as f32,
@@ -51,7 +51,7 @@ where
     Axes: Space<N>,
 {
     pub(super) block: &'a Block<'a, N>,
-    /// The greatest n of F_n that is needed.
+    /// The greatest n of `F_n` that is needed.
     pub(super) depth: usize,
     /// The rows, within the band.
     pub(super) rows: Range<usize>,
@@ -64,55 +64,85 @@ impl<const N: usize> Tile<'_, N>
 where
     Axes: Space<N>,
 {
-    /// Fills the pixels; `out` has the rows of the band.
-    pub(super) fn render(&self, out: &mut Output<'_, N>, memory: &mut Memory<N>) {
-        let picture = self.block.picture;
+    /// Fills the pixels; `out` has the rows of the band. The points that matter are in list `level` of the memory, or,
+    /// if there is none, in the table.
+    pub(super) fn render(
+        &self,
+        out: &mut Output<'_, N>,
+        memory: &mut Memory<N>,
+        level: Option<usize>,
+    ) {
         let left = self.block.range.start + self.column;
         let columns = left..self.block.range.end.min(left + LANES);
-        let tile = self.tile_box(columns.len(), memory);
-        let is_narrow = tile.high[0] - tile.low[0] < NARROW;
+        let pixels = memory.pixel_box(self.column..self.column + columns.len(), self.rows.clone());
+        let is_narrow = level.is_some() || pixels.high[0] - pixels.low[0] < NARROW;
         let mut neighborhood = Neighborhood {
             ring: self.guess.ring,
             guess: (!is_narrow).then_some(self.guess.distance),
         };
         let mut row = self.rows.start;
-        while neighborhood.fits(&tile) {
-            let limit = self.find(&neighborhood, &tile, memory);
-            let rest = row..self.rows.end;
-            row = match out {
-                Output::Values(values, out) => {
-                    let rows = Rows {
-                        rows: rest,
-                        first: self.rows.start,
-                        columns: columns.clone(),
-                        steps: &memory.lines[0][self.column..],
-                        low: tile.low[0],
-                        shortlist: memory.candidates.shortlist(),
-                        limit,
-                        values,
-                    };
-                    rows.fill(self.block.level, picture.worley.metric, self.depth, out)
-                }
-                _ => {
-                    let rows = TrackedRows {
-                        rows: rest,
-                        columns: columns.clone(),
-                        first_column: self.column,
-                        lines: &memory.lines,
-                        low: tile.low,
-                        first_row: self.rows.start,
-                        candidates: &memory.candidates,
-                        limit,
-                    };
-                    self.track(&rows, out)
-                }
+        let mut from = level;
+        while neighborhood.fits(&pixels) {
+            let limit = match from.take() {
+                Some(level) => self.find_in_list(&pixels, memory, level),
+                None => self.find(&neighborhood, &pixels, memory),
             };
+            row = self.fill(
+                row..self.rows.end,
+                columns.clone(),
+                (pixels.low, limit),
+                (out, memory),
+            );
             if row == self.rows.end {
                 return;
             }
             neighborhood.grow();
         }
         self.block.one_by_one(row..self.rows.end, columns, out);
+    }
+
+    /// Fills pixels from the shortlist, up to the first row with a key beyond the limit, which it returns.
+    fn fill(
+        &self,
+        rows: Range<usize>,
+        columns: Range<usize>,
+        (low, limit): ([i32; N], f32),
+        (out, memory): (&mut Output<'_, N>, &Memory<N>),
+    ) -> usize {
+        match out {
+            Output::Values(values, out) => {
+                let rows = Rows {
+                    rows,
+                    first: self.rows.start,
+                    columns,
+                    steps: &memory.lines[0][self.column..],
+                    low: low[0],
+                    points: &memory.shortlist.coordinates[0][..memory.shortlist.len],
+                    row_terms: memory.shortlist.row_terms(),
+                    limit,
+                    values,
+                };
+                rows.fill(
+                    self.block.level,
+                    self.block.picture.worley.metric,
+                    self.depth,
+                    out,
+                )
+            }
+            _ => {
+                let rows = TrackedRows {
+                    rows,
+                    columns,
+                    first_column: self.column,
+                    lines: &memory.lines,
+                    low,
+                    first_row: self.rows.start,
+                    shortlist: &memory.shortlist,
+                    limit,
+                };
+                self.track(&rows, out)
+            }
+        }
     }
 
     /// Fills pixels that show which points are the nearest.
@@ -173,53 +203,93 @@ where
         }
     }
 
-    /// Where the pixels lie.
-    fn tile_box(&self, width: usize, memory: &Memory<N>) -> TileBox<N> {
-        let mut tile = TileBox {
-            low: [0; N],
-            high: [0; N],
-        };
-        for (axis, line) in memory.lines.iter().enumerate() {
-            let [a, b] = match axis {
-                0 => [line[self.column], line[self.column + width - 1]],
-                _ => [line[self.rows.start], line[self.rows.end - 1]],
-            };
-            (tile.low[axis], tile.high[axis]) = (a.min(b), a.max(b));
-        }
-        tile
+    /// Finds the points that matter, in a list of those that matter to a larger box. All keys below the limit that is
+    /// returned are right.
+    fn find_in_list(&self, pixels: &PixelBox<N>, memory: &mut Memory<N>, level: usize) -> f32 {
+        let Memory {
+            lists,
+            list,
+            shortlist,
+            near,
+            table,
+            lines,
+            ..
+        } = memory;
+        let (larger, limit) = &lists[level];
+        let limit = *limit;
+        let run = 0..larger.len;
+        let points = larger.points(&run, table.wants_ids);
+        let lines = core::array::from_fn(|axis| match axis {
+            0 => &lines[0][..],
+            _ => &lines[axis][self.rows.clone()],
+        });
+        with_norm!(self.block.picture.worley.metric, norm => {
+            dispatch!(self.block.level, simd => {
+                list.sift(simd, norm, points, (pixels, Keep::Nearest(self.depth)), near);
+                shortlist.fill(simd, norm, (&*list, pixels), (lines, pixels.low));
+            });
+        });
+        table.look_up_ids(list, &mut shortlist.ids);
+        limit
     }
 
-    /// Finds the points that matter. All keys below the limit that is returned are right.
-    fn find(&self, neighborhood: &Neighborhood, tile: &TileBox<N>, memory: &mut Memory<N>) -> f32 {
+    /// The same among the points of the table.
+    fn find(
+        &self,
+        neighborhood: &Neighborhood,
+        pixels: &PixelBox<N>,
+        memory: &mut Memory<N>,
+    ) -> f32 {
         let block = self.block;
-        let metric = block.picture.worley.metric;
-        let cells = tile.cells(neighborhood.ring);
-        let mut find = Find {
-            table: &memory.table,
-            tile: *tile,
-            cells,
-            lines: &memory.lines,
-            line_low: tile.low,
-            first_row: self.rows.start,
-            depth: self.depth,
-            guess: None,
-        };
+        let mut cells = pixels.cells(neighborhood.ring);
+        let border = pixels.border(cells) as f32 * STEP;
+        let Memory {
+            list,
+            shortlist,
+            near,
+            runs,
+            lines,
+            ..
+        } = memory;
+        let mut table = &mut memory.table;
+        let mut moved = *pixels;
         if neighborhood.ring > self.guess.ring {
-            let corner = memory.table.cells.first;
+            let corner = table.cells.first;
             let [first, last] = cells
                 .map(|cells| core::array::from_fn(|axis| corner[axis] + i64::from(cells[axis])));
-            let cells = CellBox { first, last };
+            table = &mut memory.wide_table;
             let lattice = &block.picture.worley.lattice;
-            dispatch!(block.level, simd => memory.wide_table.fill(simd, lattice, cells));
-            find.move_to(&memory.wide_table);
+            let all = CellBox { first, last };
+            dispatch!(block.level, simd => table.fill(simd, lattice, all));
+            for axis in 0..N {
+                moved.low[axis] -= cells[0][axis] * STEPS;
+                moved.high[axis] -= cells[0][axis] * STEPS;
+            }
+            cells = moved.cells(neighborhood.ring);
         }
-        let border = tile.border(cells) as f32 * STEP;
-        with_norm!(metric, norm => {
-            find.guess = neighborhood.guess.map(|guess| norm.key_along_one_axis(guess));
-            dispatch!(block.level, simd => memory.candidates.find(simd, norm, &find));
+        table.runs(cells, runs);
+        let points = Points {
+            steps: &table.steps,
+            numbers: None,
+            runs,
+            wants_numbers: table.wants_ids,
+        };
+        let lines = core::array::from_fn(|axis| match axis {
+            0 => &lines[0][..],
+            _ => &lines[axis][self.rows.clone()],
+        });
+        let limit = with_norm!(block.picture.worley.metric, norm => {
+            let guess = neighborhood.guess.map(|guess| norm.key_along_one_axis(guess));
+            let keep = guess.map_or(Keep::Nearest(self.depth), Keep::Within);
+            dispatch!(block.level, simd => {
+                list.sift(simd, norm, points, (&moved, keep), near);
+                shortlist.fill(simd, norm, (&*list, &moved), (lines, pixels.low));
+            });
             let border = norm.key_along_one_axis(border);
-            norm.tightened(find.guess.map_or(border, |guess| guess.min(border)))
-        })
+            norm.tightened(guess.map_or(border, |guess| guess.min(border)))
+        });
+        table.look_up_ids(list, &mut shortlist.ids);
+        limit
     }
 }
 
@@ -234,7 +304,7 @@ struct Neighborhood {
 
 impl Neighborhood {
     /// Whether coordinates within it are exact.
-    fn fits<const N: usize>(&self, tile: &TileBox<N>) -> bool {
+    fn fits<const N: usize>(&self, tile: &PixelBox<N>) -> bool {
         let [first, last] = tile.cells(self.ring);
         (0..N).all(|axis| last[axis] - first[axis] < SPAN)
     }
@@ -244,27 +314,5 @@ impl Neighborhood {
         if self.guess.take().is_none() {
             self.ring += 1;
         }
-    }
-}
-
-impl<const N: usize> TileBox<N> {
-    /// The cells of the table within `ring` cells of those that the tile touches, as the first and the last along each
-    /// axis. May reach past the table.
-    fn cells(&self, ring: i32) -> [[i32; N]; 2] {
-        [
-            self.low.map(|low| (low >> STEP_BITS) - ring),
-            self.high.map(|high| (high >> STEP_BITS) + ring),
-        ]
-    }
-
-    /// How far it is from the tile to the nearest place outside of these cells, in steps.
-    fn border(&self, [first, last]: [[i32; N]; 2]) -> i32 {
-        let mut border = i32::MAX;
-        for axis in 0..N {
-            border = border
-                .min(self.low[axis] - first[axis] * STEPS)
-                .min((last[axis] + 1) * STEPS - self.high[axis]);
-        }
-        border
     }
 }

@@ -4,8 +4,8 @@
 //! two of the nearest cannot be told from the other bits are searched on their own.
 
 use super::LANES;
-use super::cull::Candidates;
 use super::kernel::{greater, lesser};
+use super::shortlist::{CHUNK, Shortlist};
 use crate::features::FeatureRows;
 use crate::fixed::STEP;
 use crate::many::NOTHING;
@@ -28,7 +28,7 @@ pub(super) struct TrackedRows<'a, const N: usize> {
     pub(super) low: [i32; N],
     /// The first row of the tile, in the band.
     pub(super) first_row: usize,
-    pub(super) candidates: &'a Candidates<N>,
+    pub(super) shortlist: &'a Shortlist<N>,
     /// Keys from here on may be wrong.
     pub(super) limit: f32,
 }
@@ -64,7 +64,7 @@ impl<const N: usize> TrackedRows<'_, N> {
         };
         let columns = i32x16::from_slice(simd, &self.lines[0][self.first_column..][..LANES]);
         let mut places = [(columns - self.low[0]).to_float::<f32x16<S>>() * STEP; N];
-        let n_bits = usize::BITS - self.candidates.len().leading_zeros();
+        let n_bits = usize::BITS - self.shortlist.len.leading_zeros();
         let mask = (1_u32 << n_bits) - 1;
         for row in self.rows.clone() {
             for axis in 1..N {
@@ -99,22 +99,31 @@ impl<const N: usize> TrackedRows<'_, N> {
         mask: u32,
     ) -> ([u32x16<S>; K], u32x16<S>) {
         let simd = columns.simd;
-        let mut best = [u32x16::splat(simd, NOTHING); K];
+        let mut best = [f32x16::splat(simd, f32::from_bits(NOTHING)); K];
         let mut next = best[0];
-        let shortlist = self.candidates.shortlist();
-        let first = row - self.first_row;
-        for (index, &column) in shortlist.columns.iter().enumerate() {
-            let row_term = shortlist.row_terms[index * LANES + first];
-            let key = norm.joins(norm.terms(columns - column), f32x16::splat(simd, row_term));
-            let mut coded = (key.bitcast::<u32x16<S>>() & !mask) | index as u32;
-            for best in &mut best {
-                let larger = greater(best.bitcast(), coded.bitcast()).bitcast();
-                *best = lesser(best.bitcast(), coded.bitcast()).bitcast();
-                coded = larger;
+        let shortlist = self.shortlist;
+        let points = &shortlist.coordinates[0][..shortlist.len];
+        for (chunk, points) in points.chunks(CHUNK).enumerate() {
+            let [row_terms] = shortlist.row_terms().rows::<1>(chunk, row - self.first_row);
+            for (index, &point) in points.iter().enumerate() {
+                let row_term = f32x16::splat(simd, row_terms[index % CHUNK]);
+                let key = norm.joins(norm.terms(columns - point), row_term);
+                let number = (chunk * CHUNK + index) as u32;
+                let coded = (key.to_bits() & !mask) | number;
+                let mut coded = f32x16::from_bits(coded);
+                for best in &mut best {
+                    let larger = greater(*best, coded);
+                    *best = lesser(*best, coded);
+                    coded = larger;
+                }
+                next = lesser(next, coded);
             }
-            next = lesser(next.bitcast(), coded.bitcast()).bitcast();
         }
-        (best, next)
+        let mut bits = [next.to_bits(); K];
+        for rank in 0..K {
+            bits[rank] = best[rank].to_bits();
+        }
+        (bits, next.to_bits())
     }
 
     /// Takes down which points they are.
@@ -130,7 +139,7 @@ impl<const N: usize> TrackedRows<'_, N> {
         let mut vector = *places;
         let mut parts = [[0.0; LANES]; N];
         for axis in 0..N {
-            let points = look_up(simd, self.candidates.coordinates(axis), numbers);
+            let points = look_up(simd, self.shortlist.coordinates(axis), numbers);
             vector[axis] = places[axis] - points;
             vector[axis].store_slice(&mut parts[axis]);
         }
@@ -138,7 +147,7 @@ impl<const N: usize> TrackedRows<'_, N> {
             .store_slice(&mut found.distances[rank]);
         let mut lanes = [0; LANES];
         numbers.store_slice(&mut lanes);
-        let ids = self.candidates.ids();
+        let ids = &self.shortlist.ids;
         for lane in 0..LANES {
             for axis in 0..N {
                 found.vectors[rank][lane][axis] = parts[axis][lane];

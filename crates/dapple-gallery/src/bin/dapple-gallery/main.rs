@@ -2,6 +2,7 @@
 
 mod check;
 mod export;
+mod ranges;
 
 use anyhow::ensure;
 use clap::Parser;
@@ -39,6 +40,10 @@ struct Arguments {
     /// Prints the names of the figures and nothing more.
     #[arg(long, conflicts_with_all = ["check", "bless", "out", "open", "size"])]
     list: bool,
+
+    /// Prints the ranges of the combinations of Worley's basis, as the table in `dapple-worley` has them.
+    #[arg(long, conflicts_with_all = ["list", "check", "bless", "out", "open", "size"])]
+    ranges: bool,
 }
 
 fn main() -> anyhow::Result<()> {
@@ -49,7 +54,10 @@ fn main() -> anyhow::Result<()> {
         "no figure has `{}` in its name; `--list` shows all names",
         arguments.filter.join("` or `")
     );
-    if arguments.list {
+    if arguments.ranges {
+        say(&ranges::table()?);
+        Ok(())
+    } else if arguments.list {
         figures.iter().for_each(|figure| say(&figure.name()));
         Ok(())
     } else if arguments.check {

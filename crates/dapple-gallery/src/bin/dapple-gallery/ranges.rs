@@ -1,0 +1,29 @@
+//! Measures the ranges of the named combinations of Worley's basis, for the table in `dapple-worley`.
+
+use dapple_worley::{Axes, Combination, Metric, Space, Worley, WorleyError, hash::Seed};
+use std::fmt::Write as _;
+
+/// The table as `crates/dapple-worley/src/ranges.rs` has it: metrics, numbers of axes, combinations.
+pub(crate) fn table() -> anyhow::Result<String> {
+    let mut text = String::from("[\n");
+    for metric in [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev] {
+        let rows = [row::<2>(metric)?, row::<3>(metric)?, row::<4>(metric)?];
+        writeln!(text, "    [\n{}    ],", rows.concat())?;
+    }
+    text.push(']');
+    Ok(text)
+}
+
+/// The ranges with `N` axes.
+fn row<const N: usize>(metric: Metric) -> Result<String, WorleyError>
+where
+    Axes: Space<N>,
+{
+    let worley = Worley::<N>::new(Seed(0)).with_metric(metric)?;
+    let ranges = Combination::NAMED.map(|(_, combination)| {
+        let range = worley.combine(combination).measure_range(Seed(1), 20_000);
+        range.map(|range| format!("{range:?}"))
+    });
+    let ranges: Result<Vec<_>, _> = ranges.into_iter().collect();
+    Ok(format!("        [{}],\n", ranges?.join(", ")))
+}
