@@ -17,6 +17,7 @@ use dapple_pups::{
     CowOptions, OctavesOptions, Pups, SpaceGiraffeOptions, cow, space_giraffe, turbulence,
 };
 use dapple_raster::{Field, Ramp, Raster, Varying, Window, glam::DVec2};
+use dapple_worley::{Combination, Metric, Octaves, Plane, Worley2, Worley3};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
@@ -41,6 +42,8 @@ const GOLDEN: &[Golden] = &[
     ("pups-labels", pups_labels),
     ("pups-noise", pups_noise),
     ("pups-turbulence", pups_turbulence),
+    ("worley-cells", worley_cells),
+    ("worley-combinations", worley_combinations),
 ];
 
 #[test]
@@ -183,6 +186,43 @@ fn jittered_points() -> anyhow::Result<PointSet> {
     };
     let positions = (0..36).map(|cell| position([cell % 6, cell / 6]));
     Ok(PointSet::new(unit_torus(), positions.collect())?)
+}
+
+/// The ids of Manhattan cells that tile after four, as colors.
+fn worley_cells() -> anyhow::Result<Vec<u8>> {
+    let period = [Some(4), Some(4)];
+    let worley = Worley2::new(Seed(3)).with_metric(Metric::Manhattan)?;
+    let worley = worley.with_period(period)?;
+    let window = Window::new(DVec2::ZERO, DVec2::splat(5.0), [SIZE; 2])?;
+    let cells = Raster::from_window(&window, |at| {
+        label_color(worley.sample::<1>(at)[0].id as u32 % 64)
+    })?;
+    color(&cells)
+}
+
+/// F1 above and F2 - F1 below, each plain on the left and fractal on the right.
+fn worley_combinations() -> anyhow::Result<Vec<u8>> {
+    let worley = Worley3::new(Seed(5));
+    let half = SIZE / 2;
+    let window = Window::new(DVec2::ZERO, DVec2::splat(3.0), [half; 2])?;
+    let mut picture = Raster::filled([SIZE; 2], 0.0)?;
+    for (row, combination) in [Combination::F1, Combination::F2_MINUS_F1]
+        .into_iter()
+        .enumerate()
+    {
+        let plane = Plane::slice([0.0, 0.0, 0.3].into());
+        let texture = worley.combine(combination);
+        let fractal = texture.fractal(Octaves::default())?;
+        let above = row as u32 * half;
+        let plain = picture.view_mut().crop([0, above], [half; 2])?;
+        texture.normalized()?.render_plane(&plane, &window, plain)?;
+        let range = fractal.measure_range(Seed(6), 2000)?;
+        let right = picture.view_mut().crop([half, above], [half; 2])?;
+        fractal
+            .with_range(range)?
+            .render_plane(&plane, &window, right)?;
+    }
+    gray(&picture)
 }
 
 fn dots(points: &PointSet) -> anyhow::Result<Vec<u8>> {

@@ -118,14 +118,15 @@ where
     ///
     /// # Errors
     ///
-    /// [`NoRange`](crate::WorleyErrorKind::NoRange) for any other; use [`measure_range`](Self::measure_range) and
+    /// [`NoRange`](crate::WorleyErrorKind::NoRange) for any other, and where a range was set before; use [`measure_range`](Self::measure_range) and
     /// [`with_range`](Self::with_range) there.
     pub fn normalized(self) -> Result<Self, WorleyError> {
         let Worley {
             metric, scatter, ..
         } = self.worley;
         let density = &self.worley.lattice.density;
-        let range = range(N, metric, scatter, self.tone.weights).filter(|_| density.is_none());
+        let is_plain = density.is_none() && self.tone.shift == 0.0;
+        let range = range(N, metric, scatter, self.tone.weights).filter(|_| is_plain);
         self.with_range(range.ok_or_else(|| WorleyError::new(WorleyErrorKind::NoRange))?)
     }
 

@@ -58,6 +58,12 @@ impl<const N: usize> Lattice<N> {
         }
     }
 
+    /// Whether cells beyond `ring` rings only repeat those within.
+    pub(crate) fn repeats_within(&self, ring: i64) -> bool {
+        let mut periods = self.period.iter().map(|&period| i64::from(period));
+        periods.all(|period| period > 0 && period <= 2 * ring + 1)
+    }
+
     #[inline]
     pub(crate) fn hash(&self, cell: [i64; N]) -> CellHash {
         let axes = (0..N).rev();

@@ -1,4 +1,35 @@
-//! Worley's cellular basis function.
+//! Worley's cellular basis: exact F1 to F4 with ids and vectors, in the plane, in space and in four dimensions.
+//!
+//! Reference: Steven Worley, "A Cellular Texture Basis Function", SIGGRAPH 1996,
+//! <https://doi.org/10.1145/237170.237267>.
+//!
+//! Feature points are scattered over all of space: every unit cell has a Poisson-distributed number of them, made from
+//! a hash of the cell, and nothing is stored. F1 of a position is its distance to the nearest feature point, F2 to the
+//! second nearest, and so on. [`Worley`] holds such a basis, with its [`Scatter`], its [`Metric`] and its period.
+//!
+//! ```
+//! use dapple_worley::{Combination, Worley2, hash::Seed, raster::{Field, Window, glam::DVec2}};
+//!
+//! let worley = Worley2::new(Seed(7));
+//! let [nearest, second] = worley.sample([0.25, 0.75]);
+//! assert!(nearest.distance <= second.distance);
+//!
+//! let cracks = worley.combine(Combination::F2_MINUS_F1).normalized()?;
+//! let window = Window::new(DVec2::ZERO, DVec2::splat(8.0), [256, 256])?;
+//! let picture = cracks.to_raster(&window)?;
+//! assert_eq!(picture.row(3)[5], cracks.sample(window.position(5, 3)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! There are three doors, and they give the same bits: one position ([`Worley::sample`], [`Cellular::value`]), many
+//! scattered positions ([`Worley::sample_many`]), and a window of a [`Plane`] ([`Cellular::render_plane`],
+//! [`Worley::render_features`], [`Cellular::render_gradient`]), which is by far the fastest.
+//!
+//! On top of F1 to F4 are [`Combination`]s, [`Fractal`] sums, [`Profile`]s for bumps, [`Radial`] cells for spheres, and
+//! what the Voronoi cells give: [`Worley::edge_distance`], [`Worley::smooth_f1`], [`Worley::sphere_radius`],
+//! [`Feature::cell_value`]. A [`FeatureSet`] is the same basis over points that you have placed.
+//!
+//! Positions are `f64` and in cells, distances are `f32` and in cells. A position is rounded down to [`RESOLUTION`].
 
 #![forbid(unsafe_code)]
 #![expect(
@@ -6,30 +37,37 @@
     reason = "an index goes through several arrays at once, and closures of iterators are not inlined into SIMD code"
 )]
 
-mod cellular;
-mod combination;
-mod error;
-mod features;
-mod fixed;
-mod fractal;
-mod lattice;
-mod many;
+mod space;
+
+mod worley;
+
 mod metric;
-mod one;
+mod scatter;
+
+mod combination;
+
+mod cellular;
+mod features;
+mod fractal;
 mod plane;
 mod profile;
 mod radial;
 mod ranges;
-mod render;
-mod scatter;
 mod scattered;
-mod search;
 mod set;
+mod voronoi;
+
+mod fixed;
+mod lattice;
+mod search;
+
+mod many;
+mod one;
+mod render;
 mod simd;
 mod sink;
-mod space;
-mod voronoi;
-mod worley;
+
+mod error;
 
 pub use cellular::Cellular;
 pub use combination::Combination;

@@ -86,7 +86,8 @@ pub(crate) fn nearest<M: Norm, const N: usize, const K: usize>(
                 search.cell(shift, |hit| ranking.add(hit, |name| lattice.id(name)));
             }
         });
-        if ranking.reach() * M::LOOSE < search.border(ring) {
+        let is_empty = ranking.hits[0].name.is_none() && lattice.repeats_within(ring);
+        if is_empty || ranking.reach() * M::LOOSE < search.border(ring) {
             break;
         }
     }

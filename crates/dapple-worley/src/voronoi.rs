@@ -23,6 +23,9 @@ where
             return f32::NAN;
         };
         let pair: [Hit<N>; 2] = nearest(&self.lattice, Euclidean, place);
+        if pair[1].name.is_none() {
+            return f32::INFINITY;
+        }
         let [first, second] = pair.map(|hit| hit.vector.map(f64::from));
         // The plane halfway to a point at the distance d is at least (d − F1) / 2 away.
         let reach = length(first) + 2.0 * to_plane(first, second);
@@ -45,6 +48,9 @@ where
             return f32::NAN;
         };
         let [hit] = self.hits::<1>(place);
+        if hit.name.is_none() {
+            return f32::INFINITY;
+        }
         let mut point = place;
         for axis in 0..N {
             let steps = i64::from(place.steps[axis]) - i64::from((hit.vector[axis] / STEP) as i32);
@@ -81,6 +87,9 @@ where
             return Ok(f32::NAN);
         };
         let [first] = self.distances::<1>(place);
+        if first == f32::INFINITY {
+            return Ok(first);
+        }
         let reach = (first + radius) * 1.000_01;
         let mut hits = with_norm!(self.metric, norm => within(&self.lattice, norm, place, reach));
         hits.sort_by(|a, b| order(a, b, |name| self.lattice.id(name)));

@@ -104,7 +104,7 @@ where
         }
     }
 
-    /// Spreads the feature points in another way.
+    /// Spreads the feature points in another way, with one density everywhere.
     ///
     /// # Errors
     ///
@@ -210,7 +210,8 @@ where
     /// The `K` nearest feature points of a position, nearest first; `K` is from 1 to 4.
     ///
     /// Points at the same distance are in the order of their ids. A position with a coordinate that is not finite, or
-    /// further out than 2^62, has no place: its distances and vectors are NaN and its ids 0.
+    /// further out than 2^62, has no place: its distances and vectors are NaN and its ids 0. Where a short period of
+    /// unclamped points has no point at all, distances and vectors are infinite and ids 0.
     #[must_use]
     pub fn sample<const K: usize>(
         &self,

@@ -18,8 +18,11 @@ const MOST_CELLS: u128 = 1 << 16;
 /// The most cells along an axis, so that steps fit into 32 bits.
 const LONGEST_SIDE: usize = 1000;
 
-/// The most rows of a tile: those of one register.
-const TILE_ROWS: usize = LANES;
+/// The most columns and rows of a tile.
+const LARGE_TILE: usize = 32;
+
+/// Tiles of this many columns are large if they are not wider than this many steps.
+const LARGE_TILE_STEPS: i32 = STEPS * 3 / 4;
 
 /// A few columns of a band.
 pub(super) struct Block<'a, const N: usize>
@@ -130,9 +133,9 @@ where
             splat.render(self, (values, rows), memory);
             return;
         }
-        let height = self.tile_height(&memory.lines[0]);
+        let size = self.tile_size(&memory.lines[0]);
         let all = (0..self.range.len(), 0..self.n_rows);
-        self.squares(all, (depth, guess, height), (out, memory), (0, None));
+        self.squares(all, (depth, guess, size), (out, memory), (0, None));
     }
 
     /// Fills the pixels of a rectangle, columns of the block and rows of the band, square by square, and the last ones
@@ -140,18 +143,19 @@ where
     fn squares(
         &self,
         (columns, rows): (Range<usize>, Range<usize>),
-        (depth, guess, height): (usize, Guess, usize),
+        (depth, guess, size): (usize, Guess, [usize; 2]),
         (out, memory): (&mut Output<'_, N>, &mut Memory<N>),
         (level, from): (usize, Option<usize>),
     ) {
         let Some(&side) = SQUARES.get(level) else {
+            let [width, height] = size;
             for row in rows.clone().step_by(height) {
-                for column in columns.clone().step_by(LANES) {
+                for column in columns.clone().step_by(width) {
                     let tile = Tile {
                         block: self,
                         depth,
                         rows: row..rows.end.min(row + height),
-                        column,
+                        columns: column..columns.end.min(column + width),
                         guess,
                     };
                     tile.render(out, memory, from);
@@ -163,11 +167,12 @@ where
             columns.start..columns.end.min(columns.start + side),
             rows.start..rows.end.min(rows.start + side),
         );
-        if (0..N).any(|axis| first.high[axis] - first.low[axis] > WIDEST_SQUARE) {
+        let is_wide = (0..N).any(|axis| first.high[axis] - first.low[axis] > WIDEST_SQUARE);
+        if is_wide || side <= size[0] {
             let rectangle = (columns, rows);
             return self.squares(
                 rectangle,
-                (depth, guess, height),
+                (depth, guess, size),
                 (out, memory),
                 (level + 1, from),
             );
@@ -179,7 +184,7 @@ where
                 let pixels = memory.pixel_box(columns.clone(), rows.clone());
                 self.sift(&pixels, (depth, guess), memory, (level, from));
                 let next = (level + 1, Some(level));
-                self.squares((columns, rows), (depth, guess, height), (out, memory), next);
+                self.squares((columns, rows), (depth, guess, size), (out, memory), next);
             }
         }
     }
@@ -262,13 +267,17 @@ where
         is_small.then_some(cells)
     }
 
-    /// How many rows a tile has: fewer, where sixteen columns go further.
-    fn tile_height(&self, columns: &[i32]) -> usize {
-        let width = (columns[LANES.min(self.range.len()) - 1] - columns[0]).unsigned_abs();
-        match width as f32 * STEP {
-            ..0.5 => TILE_ROWS,
-            ..1.5 => TILE_ROWS / 2,
-            _ => TILE_ROWS / 4,
+    /// The columns and rows of a tile: fewer, where pixels are further apart.
+    fn tile_size(&self, columns: &[i32]) -> [usize; 2] {
+        let n = self.range.len();
+        let width = |n_columns: usize| (columns[n_columns.min(n) - 1] - columns[0]).abs();
+        if width(LARGE_TILE) <= LARGE_TILE_STEPS {
+            return [LARGE_TILE; 2];
+        }
+        match width(LANES) as f32 * STEP {
+            ..0.5 => [LANES, LANES],
+            ..1.5 => [LANES, LANES / 2],
+            _ => [LANES, LANES / 4],
         }
     }
 

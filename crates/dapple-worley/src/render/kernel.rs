@@ -12,10 +12,8 @@ use fearless_simd::{Level, dispatch, f32x16, i32x16, prelude::*};
 /// Some rows of a tile.
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
-    /// The rows, in the band.
+    /// The rows of the tile, in the band.
     pub(super) rows: Range<usize>,
-    /// The first row of the tile, in the band.
-    pub(super) first: usize,
     /// The columns, in the window; at most [`LANES`].
     pub(super) columns: Range<usize>,
     /// The coordinates of the columns, in steps.
@@ -54,7 +52,9 @@ impl Rows<'_> {
         norm: M,
         out: &mut [&mut [f32]],
     ) -> usize {
-        if const { <S::f32s as SimdBase<S>>::LEN < LANES } {
+        if self.columns.len() < LANES {
+            self.fill_rows::<S, M, K>(simd, norm, out)
+        } else if const { <S::f32s as SimdBase<S>>::LEN < LANES } {
             self.fill_groups::<S, M, K, 2>(simd, norm, out)
         } else if self.rows.len() <= 4 {
             self.fill_groups::<S, M, K, 4>(simd, norm, out)
@@ -63,6 +63,8 @@ impl Rows<'_> {
         }
     }
 
+    /// Roots take long but hardly any of the processor, so those of one group are taken between the comparisons of the
+    /// next. No function may be called there: it would cost all registers.
     #[inline(always)]
     fn fill_groups<S: Simd, M: Norm, const K: usize, const R: usize>(
         &self,
@@ -70,58 +72,109 @@ impl Rows<'_> {
         norm: M,
         out: &mut [&mut [f32]],
     ) -> usize {
-        let columns = i32x16::from_slice(simd, &self.steps[..LANES]) - self.low;
-        let columns = columns.to_float::<f32x16<S>>() * STEP;
-        let mut row = self.rows.start;
-        while row < self.rows.end {
-            let (keys, worst) = self.smallest::<S, M, K, R>(norm, columns, row - self.first);
-            if !worst.simd_lt(self.limit).all_true() {
-                return row;
-            }
-            let end = self.rows.end.min(row + R);
-            let out = &mut out[row..end];
-            if let (Ok(out), LANES) = (<&mut [_; R]>::try_from(&mut *out), self.columns.len()) {
-                for at in 0..R {
-                    self.values
-                        .put(norm, keys[at], &mut out[at][self.columns.start..][..LANES]);
+        let columns = self.places(simd);
+        let left = self.columns.start;
+        let mut waiting = [[f32x16::splat(simd, 0.0); K]; R];
+        let mut next = self.rows.start;
+        let mut end = self.rows.start;
+        while end < self.rows.end {
+            let first = end;
+            let per_point = (end - next).div_ceil(self.points.len().max(1));
+            let mut best = [[f32x16::splat(simd, f32::INFINITY); K]; R];
+            for (chunk, points) in self.points.chunks(CHUNK).enumerate() {
+                let row_terms = self.row_terms.rows::<R>(chunk, first - self.rows.start);
+                for (index, &point) in points.iter().enumerate() {
+                    compare(norm, columns - point, row_terms, index, &mut best);
+                    let until = end.min(next + per_point);
+                    while next < until {
+                        let keys = waiting[(next - self.rows.start) % R];
+                        self.values
+                            .put(norm, keys, &mut out[next][left..left + LANES]);
+                        next += 1;
+                    }
                 }
-            } else {
-                for (keys, out) in keys.into_iter().zip(out) {
-                    self.values
-                        .put_part(norm, keys, &mut out[self.columns.clone()]);
-                }
             }
-            row = end;
+            while next < end {
+                let keys = waiting[(next - self.rows.start) % R];
+                self.values
+                    .put(norm, keys, &mut out[next][left..left + LANES]);
+                next += 1;
+            }
+            if !self.is_right(&best) {
+                return first;
+            }
+            waiting = best;
+            end = self.rows.end.min(first + R);
         }
-        row
+        while next < end {
+            let keys = waiting[(next - self.rows.start) % R];
+            self.values
+                .put(norm, keys, &mut out[next][left..left + LANES]);
+            next += 1;
+        }
+        end
     }
 
-    /// The `K` smallest keys, smallest first, of `R` rows from row `first` of the tile on; and the largest of the
-    /// `K`-th.
+    /// The same row by row, for fewer columns.
     #[inline(always)]
-    fn smallest<S: Simd, M: Norm, const K: usize, const R: usize>(
+    fn fill_rows<S: Simd, M: Norm, const K: usize>(
         &self,
+        simd: S,
         norm: M,
-        columns: f32x16<S>,
-        first: usize,
-    ) -> ([[f32x16<S>; K]; R], f32x16<S>) {
-        let simd = columns.simd;
-        let mut best = [[f32x16::splat(simd, f32::INFINITY); K]; R];
-        for (chunk, points) in self.points.chunks(CHUNK).enumerate() {
-            let row_terms = self.row_terms.rows::<R>(chunk, first);
-            for (index, &point) in points.iter().enumerate() {
-                let column_terms = norm.terms(columns - point);
-                for row in 0..R {
-                    let row_term = f32x16::splat(simd, row_terms[row][index % CHUNK]);
-                    insert(&mut best[row], norm.joins(column_terms, row_term));
+        out: &mut [&mut [f32]],
+    ) -> usize {
+        let columns = self.places(simd);
+        for row in self.rows.clone() {
+            let mut best = [[f32x16::splat(simd, f32::INFINITY); K]; 1];
+            for (chunk, points) in self.points.chunks(CHUNK).enumerate() {
+                let row_terms = self.row_terms.rows::<1>(chunk, row - self.rows.start);
+                for (index, &point) in points.iter().enumerate() {
+                    compare(norm, columns - point, row_terms, index, &mut best);
                 }
             }
+            if !self.is_right(&best) {
+                return row;
+            }
+            self.values
+                .put_part(norm, best[0], &mut out[row][self.columns.clone()]);
         }
+        self.rows.end
+    }
+
+    /// Where the columns are, in cells from the lower corner of the tile.
+    #[inline(always)]
+    fn places<S: Simd>(&self, simd: S) -> f32x16<S> {
+        let columns = i32x16::from_slice(simd, &self.steps[..LANES]) - self.low;
+        columns.to_float::<f32x16<S>>() * STEP
+    }
+
+    /// Whether all keys are below the limit.
+    #[inline(always)]
+    fn is_right<S: Simd, const K: usize, const R: usize>(
+        &self,
+        best: &[[f32x16<S>; K]; R],
+    ) -> bool {
         let mut worst = best[0][K - 1];
         for row in 1..R {
             worst = greater(worst, best[row][K - 1]);
         }
-        (best, worst)
+        worst.simd_lt(self.limit).all_true()
+    }
+}
+
+/// Compares a point at the pixels of `R` rows, from the ways to it along the first axis.
+#[inline(always)]
+fn compare<S: Simd, M: Norm, const K: usize, const R: usize>(
+    norm: M,
+    ways: f32x16<S>,
+    row_terms: &[[f32; CHUNK]; R],
+    index: usize,
+    best: &mut [[f32x16<S>; K]; R],
+) {
+    let column_terms = norm.terms(ways);
+    for row in 0..R {
+        let row_term = f32x16::splat(ways.simd, row_terms[row][index % CHUNK]);
+        insert(&mut best[row], norm.joins(column_terms, row_term));
     }
 }
 

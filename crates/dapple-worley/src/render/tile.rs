@@ -1,4 +1,4 @@
-//! A tile: up to 16 × 16 pixels, and how far away the points are that they need.
+//! A tile: up to 32 × 32 pixels, and how far away the points are that they need.
 
 use super::block::{Block, Memory};
 use super::kernel::Rows;
@@ -45,7 +45,7 @@ impl Guess {
     }
 }
 
-/// Up to 16 × 16 pixels of a block.
+/// Up to 32 × 32 pixels of a block.
 pub(super) struct Tile<'a, const N: usize>
 where
     Axes: Space<N>,
@@ -55,8 +55,8 @@ where
     pub(super) depth: usize,
     /// The rows, within the band.
     pub(super) rows: Range<usize>,
-    /// The first column, within the block.
-    pub(super) column: usize,
+    /// The columns, within the block.
+    pub(super) columns: Range<usize>,
     pub(super) guess: Guess,
 }
 
@@ -72,50 +72,88 @@ where
         memory: &mut Memory<N>,
         level: Option<usize>,
     ) {
-        let left = self.block.range.start + self.column;
-        let columns = left..self.block.range.end.min(left + LANES);
-        let pixels = memory.pixel_box(self.column..self.column + columns.len(), self.rows.clone());
+        let pixels = memory.pixel_box(self.columns.clone(), self.rows.clone());
         let is_narrow = level.is_some() || pixels.high[0] - pixels.low[0] < NARROW;
         let mut neighborhood = Neighborhood {
             ring: self.guess.ring,
             guess: (!is_narrow).then_some(self.guess.distance),
         };
-        let mut row = self.rows.start;
-        let mut from = level;
-        while neighborhood.fits(&pixels) {
-            let limit = match from.take() {
+        if neighborhood.fits(&pixels) {
+            let limit = match level {
                 Some(level) => self.find_in_list(&pixels, memory, level),
                 None => self.find(&neighborhood, &pixels, memory),
             };
-            row = self.fill(
-                row..self.rows.end,
-                columns.clone(),
-                (pixels.low, limit),
-                (out, memory),
-            );
-            if row == self.rows.end {
-                return;
+            let mut rest = Vec::new();
+            for first in self.columns.clone().step_by(LANES) {
+                let columns = first..self.columns.end.min(first + LANES);
+                let row = self.fill(columns.clone(), (pixels.low, limit), (out, memory));
+                if row < self.rows.end {
+                    rest.push(self.part(columns, row));
+                }
             }
             neighborhood.grow();
+            for part in rest {
+                part.render_near(neighborhood, out, memory);
+            }
+        } else {
+            self.one_by_one(out);
         }
-        self.block.one_by_one(row..self.rows.end, columns, out);
+    }
+
+    /// Fills the pixels of a tile with one register's columns, from as many points as it takes.
+    fn render_near(
+        &self,
+        mut neighborhood: Neighborhood,
+        out: &mut Output<'_, N>,
+        memory: &mut Memory<N>,
+    ) {
+        let pixels = memory.pixel_box(self.columns.clone(), self.rows.clone());
+        if !neighborhood.fits(&pixels) {
+            self.one_by_one(out);
+            return;
+        }
+        let limit = self.find(&neighborhood, &pixels, memory);
+        let row = self.fill(self.columns.clone(), (pixels.low, limit), (out, memory));
+        if row < self.rows.end {
+            neighborhood.grow();
+            let rest = self.part(self.columns.clone(), row);
+            rest.render_near(neighborhood, out, memory);
+        }
+    }
+
+    /// Some columns, from a row on.
+    fn part(&self, columns: Range<usize>, row: usize) -> Self {
+        Self {
+            block: self.block,
+            depth: self.depth,
+            rows: row..self.rows.end,
+            columns,
+            guess: self.guess,
+        }
+    }
+
+    /// Fills pixels each on its own.
+    fn one_by_one(&self, out: &mut Output<'_, N>) {
+        let left = self.block.range.start;
+        let columns = left + self.columns.start..left + self.columns.end;
+        self.block.one_by_one(self.rows.clone(), columns, out);
     }
 
     /// Fills pixels from the shortlist, up to the first row with a key beyond the limit, which it returns.
     fn fill(
         &self,
-        rows: Range<usize>,
         columns: Range<usize>,
         (low, limit): ([i32; N], f32),
         (out, memory): (&mut Output<'_, N>, &Memory<N>),
     ) -> usize {
+        let left = self.block.range.start;
+        let in_window = left + columns.start..left + columns.end;
         match out {
             Output::Values(values, out) => {
                 let rows = Rows {
-                    rows,
-                    first: self.rows.start,
-                    columns,
-                    steps: &memory.lines[0][self.column..],
+                    rows: self.rows.clone(),
+                    columns: in_window,
+                    steps: &memory.lines[0][columns.start..],
                     low: low[0],
                     points: &memory.shortlist.coordinates[0][..memory.shortlist.len],
                     row_terms: memory.shortlist.row_terms(),
@@ -131,12 +169,11 @@ where
             }
             _ => {
                 let rows = TrackedRows {
-                    rows,
-                    columns,
-                    first_column: self.column,
+                    rows: self.rows.clone(),
+                    columns: in_window,
+                    first_column: columns.start,
                     lines: &memory.lines,
                     low,
-                    first_row: self.rows.start,
                     shortlist: &memory.shortlist,
                     limit,
                 };

@@ -16,7 +16,7 @@ use fearless_simd::{f32x16, i32x16, prelude::*, u8x64, u32x16};
 /// Some rows of a tile.
 #[derive(Debug)]
 pub(super) struct TrackedRows<'a, const N: usize> {
-    /// The rows, in the band.
+    /// The rows of the tile, in the band.
     pub(super) rows: Range<usize>,
     /// The columns, in the window; at most [`LANES`].
     pub(super) columns: Range<usize>,
@@ -26,8 +26,6 @@ pub(super) struct TrackedRows<'a, const N: usize> {
     pub(super) lines: &'a [Vec<i32>; N],
     /// The smallest of them in the tile.
     pub(super) low: [i32; N],
-    /// The first row of the tile, in the band.
-    pub(super) first_row: usize,
     pub(super) shortlist: &'a Shortlist<N>,
     /// Keys from here on may be wrong.
     pub(super) limit: f32,
@@ -104,7 +102,9 @@ impl<const N: usize> TrackedRows<'_, N> {
         let shortlist = self.shortlist;
         let points = &shortlist.coordinates[0][..shortlist.len];
         for (chunk, points) in points.chunks(CHUNK).enumerate() {
-            let [row_terms] = shortlist.row_terms().rows::<1>(chunk, row - self.first_row);
+            let [row_terms] = shortlist
+                .row_terms()
+                .rows::<1>(chunk, row - self.rows.start);
             for (index, &point) in points.iter().enumerate() {
                 let row_term = f32x16::splat(simd, row_terms[index % CHUNK]);
                 let key = norm.joins(norm.terms(columns - point), row_term);
