@@ -1,12 +1,14 @@
 //! Many positions at once: a window of a plane.
 //!
 //! The window is cut into bands of rows, which threads share out, and blocks of columns. The feature points of a block
-//! and its neighborhood are made once; then, for each tile of up to 16 × 16 pixels, those that matter to it are picked
-//! out, and only those are compared at its pixels, sixteen side by side. Where a tile needs points further away than
-//! its neighborhood reaches, the neighborhood grows; where that would not be exact, single positions are searched.
+//! and its neighborhood are made once ([`table`]); then, for each tile of up to 32 × 32 pixels, those that matter to it
+//! are picked out ([`sieve`]), and only those are compared at its pixels, sixteen side by side ([`kernel`]; [`track`],
+//! where it matters which points they are). Where a tile needs points further away than its neighborhood reaches, the
+//! neighborhood grows; where that would not be exact, single positions are searched. Cells of a few pixels are filled
+//! point by point instead ([`splat`]).
 //!
-//! What runs in registers are three stages with nothing but memory between them ([`table`], [`sieve`], [`kernel`]), so
-//! that each is compiled only for what it depends on.
+//! What runs in registers are stages with nothing but memory between them, so that each is compiled only for what it
+//! depends on.
 
 mod block;
 mod kernel;

@@ -34,6 +34,9 @@ const SPAN_16: usize = 15 * STRIDE + 16;
 /// The largest part of half a square that is relied upon: the place of a point among the pixels is rounded.
 const SURE: f32 = 0.999;
 
+/// By how many cells the distance of a point from a block of up to 1000 cells may be rounded, and more.
+const ROUNDING: f32 = 0.001;
+
 /// How a block is filled.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Splat {
@@ -149,8 +152,9 @@ impl Splat {
         }
         let planes: &mut [Vec<f32>; K] = (&mut planes[..K]).try_into().expect("K is at most 4");
         let key = norm.key_along_one_axis(self.reach);
+        let generous = norm.key_along_one_axis(self.reach + ROUNDING);
         dispatch!(level, simd => {
-            list.sift(simd, norm, points, (&pixels, Keep::Within(key)), near);
+            list.sift(simd, norm, points, (&pixels, Keep::Within(generous)), near);
             let row_axis = &lines[self.row_axis];
             for first in (0..list.len).step_by(LANES) {
                 let lefts = self.corners(simd, 0, &list.steps[0][first..], lines[0][0]);
@@ -207,11 +211,13 @@ impl Splat {
         (point, [left, top], lines): ([i32; N], [i32; 2], &[Vec<i32>; N]),
         planes: &mut [Vec<f32>; K],
     ) {
-        let first = (top + MARGIN as i32) as usize * STRIDE + (left + MARGIN as i32) as usize;
         // What lies further out than the margin touches no pixel.
-        let is_beside =
-            left < -(MARGIN as i32) || left as isize + W as isize > (STRIDE - MARGIN) as isize;
-        if is_beside || first + SPAN > planes[0].len() {
+        let margin = MARGIN as i32;
+        if left < -margin || top < -margin || (left + margin) as usize + W > STRIDE {
+            return;
+        }
+        let first = (top + margin) as usize * STRIDE + (left + margin) as usize;
+        if first + SPAN > planes[0].len() {
             return;
         }
         let mut row_terms = [0.0; W];
