@@ -113,8 +113,15 @@ where
         #[cfg(feature = "rayon")]
         {
             use rayon::prelude::*;
-            let bands = bands.into_par_iter().enumerate();
-            bands.for_each_init(Memory::new, render);
+            use std::sync::{Mutex, PoisonError};
+            // Memory goes from band to band, since it takes time to be had anew.
+            let pool = Mutex::new(Vec::new());
+            let lock = || pool.lock().unwrap_or_else(PoisonError::into_inner);
+            bands.into_par_iter().enumerate().for_each(|band| {
+                let mut memory = lock().pop().unwrap_or_else(Memory::new);
+                render(&mut memory, band);
+                lock().push(memory);
+            });
         }
         #[cfg(not(feature = "rayon"))]
         {
