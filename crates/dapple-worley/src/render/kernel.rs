@@ -73,7 +73,6 @@ impl Rows<'_> {
         out: &mut [&mut [f32]],
     ) -> usize {
         let columns = self.places(simd);
-        let left = self.columns.start;
         let mut waiting = [[f32x16::splat(simd, 0.0); K]; R];
         let mut next = self.rows.start;
         let mut end = self.rows.start;
@@ -86,33 +85,37 @@ impl Rows<'_> {
                 for (index, &point) in points.iter().enumerate() {
                     compare(norm, columns - point, row_terms, index, &mut best);
                     let until = end.min(next + per_point);
-                    while next < until {
-                        let keys = waiting[(next - self.rows.start) % R];
-                        self.values
-                            .put(norm, keys, &mut out[next][left..left + LANES]);
-                        next += 1;
-                    }
+                    self.put_waiting(norm, &waiting, next..until, out);
+                    next = until;
                 }
             }
-            while next < end {
-                let keys = waiting[(next - self.rows.start) % R];
-                self.values
-                    .put(norm, keys, &mut out[next][left..left + LANES]);
-                next += 1;
-            }
+            self.put_waiting(norm, &waiting, next..end, out);
+            next = end;
             if !self.is_right(&best) {
                 return first;
             }
             waiting = best;
             end = self.rows.end.min(first + R);
         }
-        while next < end {
-            let keys = waiting[(next - self.rows.start) % R];
-            self.values
-                .put(norm, keys, &mut out[next][left..left + LANES]);
-            next += 1;
-        }
+        self.put_waiting(norm, &waiting, next..end, out);
         end
+    }
+
+    /// Puts some rows of the group that waits.
+    #[inline(always)]
+    fn put_waiting<S: Simd, M: Norm, const K: usize, const R: usize>(
+        &self,
+        norm: M,
+        waiting: &[[f32x16<S>; K]; R],
+        rows: Range<usize>,
+        out: &mut [&mut [f32]],
+    ) {
+        let left = self.columns.start;
+        for row in rows {
+            let keys = waiting[(row - self.rows.start) % R];
+            self.values
+                .put(norm, keys, &mut out[row][left..left + LANES]);
+        }
     }
 
     /// The same row by row, for fewer columns.
