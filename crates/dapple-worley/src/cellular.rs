@@ -2,9 +2,9 @@
 
 use crate::fixed::Place;
 use crate::ranges::range;
-use crate::render::{Output, Picture};
+use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
-use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError, WorleyErrorKind};
+use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError, WorleyErrorKind, simd};
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 use glam::DVec2;
@@ -82,9 +82,46 @@ where
         window: &Window,
         out: RasterViewMut<'_, f32>,
     ) -> Result<(), RasterError> {
-        window.check_size(out.size())?;
-        let picture = self.worley.feature_picture(plane, window);
-        picture.render(self.outputs(&picture, out));
+        self.render_slices(window, vec![(*plane, out)])
+    }
+
+    /// The same for several planes, such as the slices of a volume. Those next to one another share what they look at, so
+    /// they are filled faster together than one by one, most of all if they are near one another.
+    ///
+    /// # Errors
+    ///
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window; no view
+    /// has been changed then.
+    ///
+    /// # Examples
+    ///
+    /// A volume of 32 slices, as rasters that lie one below the other:
+    ///
+    /// ```
+    /// use dapple_worley::{Combination, Plane, Worley3, hash::Seed};
+    /// use dapple_worley::raster::{Raster, Window, glam::{DVec2, DVec3}};
+    ///
+    /// let texture = Worley3::new(Seed(1)).combine(Combination::F1);
+    /// let window = Window::new(DVec2::ZERO, DVec2::splat(2.0), [64, 64])?;
+    /// let planes = (0..32).map(|slice| Plane::slice(DVec3::new(0.0, 0.0, f64::from(slice) / 32.0)));
+    /// let mut volume = Raster::filled([64, 64 * 32], 0.0)?;
+    /// texture.render_slices(&window, planes.zip(volume.view_mut().bands(64)).collect())?;
+    /// # Ok::<(), dapple_worley::raster::RasterError>(())
+    /// ```
+    pub fn render_slices(
+        &self,
+        window: &Window,
+        slices: Vec<(Plane<N>, RasterViewMut<'_, f32>)>,
+    ) -> Result<(), RasterError> {
+        for (_, out) in &slices {
+            window.check_size(out.size())?;
+        }
+        let (planes, outs): (Vec<_>, Vec<_>) = slices.into_iter().unzip();
+        let stack = planes.iter().zip(outs).map(|(plane, out)| {
+            let picture = self.worley.feature_picture(plane, window);
+            (picture, self.outputs(&picture, out))
+        });
+        render_stack(simd::level(), stack.collect());
         Ok(())
     }
 

@@ -47,14 +47,13 @@ pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
     if !has_cell {
         return None;
     }
-    let floor = coordinate.floor();
-    let steps = ((coordinate - floor) * f64::from(STEPS)) as i32;
+    // Not `floor`, which is a function call on processors without an instruction for it.
+    let truncated = coordinate as i64;
+    let floor = truncated - i64::from(truncated as f64 > coordinate);
+    let steps = ((coordinate - floor as f64) * f64::from(STEPS)) as i32;
     // Just below a whole number the difference can be rounded up to a whole cell.
     let carry = steps >> STEP_BITS;
-    Some((
-        floor as i64 + i64::from(carry),
-        steps - (carry << STEP_BITS),
-    ))
+    Some((floor + i64::from(carry), steps - (carry << STEP_BITS)))
 }
 
 /// A number of steps as cells, rounded to `f32` once.

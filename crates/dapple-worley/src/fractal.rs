@@ -9,9 +9,9 @@
 
 use crate::cellular::measure_range;
 use crate::fixed::Place;
-use crate::render::{Output, Picture};
+use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
-use crate::{Axes, Cellular, Plane, Space, Vector, Worley, WorleyError};
+use crate::{Axes, Cellular, Plane, Space, Vector, Worley, WorleyError, simd};
 use dapple_hash::Seed;
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 use glam::DVec2;
@@ -206,32 +206,53 @@ where
         &self,
         plane: &Plane<N>,
         window: &Window,
-        mut out: RasterViewMut<'_, f32>,
+        out: RasterViewMut<'_, f32>,
     ) -> Result<(), RasterError> {
-        window.check_size(out.size())?;
-        out.fill(0.0);
+        self.render_slices(window, vec![(*plane, out)])
+    }
+
+    /// The same for several planes, such as the slices of a volume: see [`Cellular::render_slices`].
+    ///
+    /// # Errors
+    ///
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window; no view
+    /// has been changed then.
+    pub fn render_slices(
+        &self,
+        window: &Window,
+        mut slices: Vec<(Plane<N>, RasterViewMut<'_, f32>)>,
+    ) -> Result<(), RasterError> {
+        for (_, out) in &slices {
+            window.check_size(out.size())?;
+        }
+        for (_, out) in &mut slices {
+            out.fill(0.0);
+        }
         for octave in &self.octaves {
-            let picture = Picture {
-                worley: &octave.worley,
-                plane,
-                window,
-                frequency: octave.frequency,
-            };
             let values = Values {
                 tone: self.tone,
                 weight: Some(octave.weight),
             };
-            let bands = picture.bands(Some(out.reborrow()));
-            picture.render(bands.map(|rows| Output::Values(values, rows)).collect());
-        }
-        for row in out.rows_mut() {
-            for value in row {
-                *value = if value.is_nan() {
-                    f32::NAN
-                } else {
-                    self.range.of(&[*value])
+            let stack = slices.iter_mut().map(|(plane, out)| {
+                let picture = Picture {
+                    worley: &octave.worley,
+                    plane,
+                    window,
+                    frequency: octave.frequency,
                 };
-            }
+                let bands = picture.bands(Some(out.reborrow()));
+                let outputs = bands.map(|rows| Output::Values(values, rows));
+                (picture, outputs.collect())
+            });
+            render_stack(simd::level(), stack.collect());
+        }
+        let rows = slices.iter_mut().flat_map(|(_, out)| out.rows_mut());
+        for value in rows.flatten() {
+            *value = if value.is_nan() {
+                f32::NAN
+            } else {
+                self.range.of(&[*value])
+            };
         }
         Ok(())
     }

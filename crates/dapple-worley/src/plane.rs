@@ -58,6 +58,12 @@ where
         origin + (u * position.x + v * position.y)
     }
 
+    /// Whether another plane has the same coordinates along an axis.
+    pub(crate) fn is_same_along(&self, axis: usize, other: &Self) -> bool {
+        let parts = |plane: &Self| [plane.origin, plane.u, plane.v].map(|part| part.into()[axis]);
+        parts(self) == parts(other)
+    }
+
     /// Whether the first axis, and no other, goes with the columns.
     pub(crate) fn is_upright(&self) -> bool {
         let [u, v]: [[f64; N]; 2] = [self.u.into(), self.v.into()];

@@ -12,10 +12,12 @@
 
 mod block;
 mod kernel;
+mod sheet;
 mod shortlist;
 mod sieve;
 mod splat;
 mod table;
+mod thin;
 mod tile;
 mod track;
 
@@ -27,6 +29,7 @@ use block::{Block, Memory};
 use dapple_raster::{RasterViewMut, Window};
 use fearless_simd::Level;
 use glam::DVec2;
+use std::sync::Arc;
 
 /// The pixels of a register.
 pub(crate) const LANES: usize = 16;
@@ -38,6 +41,7 @@ const BAND_ROWS: usize = 64;
 const BLOCK_COLUMNS: usize = 128;
 
 /// A window of a plane through the basis.
+#[derive(Clone, Copy)]
 pub(crate) struct Picture<'a, const N: usize>
 where
     Axes: Space<N>,
@@ -104,61 +108,37 @@ where
 
     /// As [`render`](Self::render), at a given SIMD level.
     pub(crate) fn render_at(&self, level: Level, bands: Vec<Output<'_, N>>) {
-        let columns = self.line(0, self.window.size[0], |column| {
-            DVec2::new(self.window.column_x(column), 0.0)
-        });
-        let render = |memory: &mut Memory<N>, (band, mut out): (usize, Output<'_, N>)| {
-            self.band(level, &columns, band * BAND_ROWS, &mut out, memory);
-        };
-        #[cfg(feature = "rayon")]
-        {
-            use rayon::prelude::*;
-            use std::sync::{Mutex, PoisonError};
-            // Memory goes from band to band, since it takes time to be had anew.
-            let pool = Mutex::new(Vec::new());
-            let lock = || pool.lock().unwrap_or_else(PoisonError::into_inner);
-            bands.into_par_iter().enumerate().for_each(|band| {
-                let mut memory = lock().pop().unwrap_or_else(Memory::new);
-                render(&mut memory, band);
-                lock().push(memory);
-            });
-        }
-        #[cfg(not(feature = "rayon"))]
-        {
-            let mut memory = Memory::new();
-            let bands = bands.into_iter().enumerate();
-            bands.for_each(|band| render(&mut memory, band));
+        render_stack(level, vec![(*self, bands)]);
+    }
+
+    /// The coordinates of the columns; those of the picture before, if they are the same.
+    fn columns(&self, before: Option<&Shelf<'_, N>>) -> Arc<Line> {
+        match before {
+            Some(before) if before.picture.plane.is_same_along(0, self.plane) => {
+                before.columns.clone()
+            }
+            _ => Arc::new(self.line(0, self.window.size[0], |column| {
+                DVec2::new(self.window.column_x(column), 0.0)
+            })),
         }
     }
 
-    /// Fills the rows of a band, which begins with row `first` of the window.
-    fn band(
-        &self,
-        level: Level,
-        columns: &Line,
-        first: usize,
-        out: &mut Output<'_, N>,
-        memory: &mut Memory<N>,
-    ) {
-        let n_rows = BAND_ROWS.min(self.window.size[1] as usize - first);
-        let rows: [Line; N] = core::array::from_fn(|axis| {
-            self.line(axis, n_rows as u32, |row| {
-                DVec2::new(0.0, self.window.row_y(first as u32 + row))
-            })
-        });
-        for start in (0..columns.places.len()).step_by(BLOCK_COLUMNS) {
-            let end = columns.places.len().min(start + BLOCK_COLUMNS);
-            let block = Block {
-                picture: self,
-                level,
-                columns,
-                rows: &rows,
-                n_rows,
-                first,
-                range: start..end,
-            };
-            block.render(out, memory);
-        }
+    /// The coordinates of `n` rows from `first` on; along each axis those of the picture before, if they are the same.
+    fn rows(&self, [first, n]: [usize; 2], before: Option<&Shelf<'_, N>>) -> [Arc<Line>; N] {
+        core::array::from_fn(|axis| match before {
+            Some(before) if before.picture.plane.is_same_along(axis, self.plane) => {
+                before.rows[axis].clone()
+            }
+            _ => {
+                // Where all rows are at the same place, the first one does for all.
+                let is_level = self.plane.v.into()[axis] == 0.0;
+                let mut line = self.line(axis, if is_level { 1 } else { n as u32 }, |row| {
+                    DVec2::new(0.0, self.window.row_y(first as u32 + row))
+                });
+                line.places.resize(n, line.places[0]);
+                Arc::new(line)
+            }
+        })
     }
 
     /// The coordinates of columns or rows along one axis. They are those of [`place`](Self::place) if the plane is
@@ -180,6 +160,96 @@ where
             self.plane.coordinate(axis, position) * self.frequency
         }))
     }
+}
+
+/// So many pictures of a stack are filled by one thread, so that they can share what they look at.
+const STACK: usize = 16;
+
+/// Fills the bands of pictures of the same basis, frequency and window, on all cores where the feature `rayon` is on.
+pub(crate) fn render_stack<'a, const N: usize>(
+    level: Level,
+    mut stack: Vec<(Picture<'a, N>, Vec<Output<'a, N>>)>,
+) where
+    Axes: Space<N>,
+{
+    let mut jobs = Vec::new();
+    for pictures in stack.chunks_mut(STACK) {
+        for band in (0..pictures[0].0.n_bands()).rev() {
+            let bands = pictures.iter_mut();
+            let outputs = bands.filter_map(|(picture, bands)| Some((*picture, bands.pop()?)));
+            jobs.push((band, outputs.collect()));
+        }
+    }
+    #[cfg(feature = "rayon")]
+    {
+        use rayon::prelude::*;
+        use std::sync::{Mutex, PoisonError};
+        // Memory goes from job to job, since it takes time to be had anew.
+        let pool = Mutex::new(Vec::new());
+        let lock = || pool.lock().unwrap_or_else(PoisonError::into_inner);
+        jobs.into_par_iter().for_each(|(band, outputs)| {
+            let mut memory = lock().pop().unwrap_or_else(Memory::new);
+            render_band(level, band, outputs, &mut memory);
+            lock().push(memory);
+        });
+    }
+    #[cfg(not(feature = "rayon"))]
+    {
+        let mut memory = Memory::new();
+        for (band, outputs) in jobs {
+            render_band(level, band, outputs, &mut memory);
+        }
+    }
+}
+
+/// Fills the same band of several pictures.
+fn render_band<const N: usize>(
+    level: Level,
+    band: usize,
+    outputs: Vec<(Picture<'_, N>, Output<'_, N>)>,
+    memory: &mut Memory<N>,
+) where
+    Axes: Space<N>,
+{
+    let first = band * BAND_ROWS;
+    let mut shelves: Vec<Shelf<'_, N>> = Vec::with_capacity(outputs.len());
+    for (picture, out) in outputs {
+        let n_rows = BAND_ROWS.min(picture.window.size[1] as usize - first);
+        let before = shelves.last();
+        shelves.push(Shelf {
+            columns: picture.columns(before),
+            rows: picture.rows([first, n_rows], before),
+            picture,
+            out,
+        });
+    }
+    let n_columns = shelves[0].columns.places.len();
+    for start in (0..n_columns).step_by(BLOCK_COLUMNS) {
+        for shelf in &mut shelves {
+            let block = Block {
+                picture: &shelf.picture,
+                level,
+                columns: &shelf.columns,
+                rows: &shelf.rows,
+                n_rows: shelf.rows[0].places.len(),
+                first,
+                range: start..n_columns.min(start + BLOCK_COLUMNS),
+            };
+            block.render(&mut shelf.out, memory);
+        }
+    }
+}
+
+/// A band of a picture.
+struct Shelf<'a, const N: usize>
+where
+    Axes: Space<N>,
+{
+    picture: Picture<'a, N>,
+    out: Output<'a, N>,
+    columns: Arc<Line>,
+    /// Along every axis.
+    rows: [Arc<Line>; N],
 }
 
 /// The coordinates of columns or rows along one axis: cell, and steps within it.

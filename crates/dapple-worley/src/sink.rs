@@ -65,22 +65,6 @@ impl Tone {
         }
         sum
     }
-
-    /// From the keys of sixteen pixels.
-    #[inline(always)]
-    pub(crate) fn of_keys<S: Simd, M: Norm, const K: usize>(
-        &self,
-        norm: M,
-        keys: [f32x16<S>; K],
-    ) -> f32x16<S> {
-        let mut sum = f32x16::splat(keys[0].simd, self.shift);
-        for (rank, &weight) in self.weights.coefficients().iter().take(K).enumerate() {
-            if weight != 0.0 {
-                sum += norm.distances(keys[rank]) * weight;
-            }
-        }
-        sum
-    }
 }
 
 /// Puts tones into rows of values: in place of what is there, or, times a weight, on top of it.
@@ -109,29 +93,56 @@ impl Values {
         };
     }
 
+    /// The same for sixteen pixels at once.
+    #[inline(always)]
+    pub(crate) fn lanes<S: Simd, const K: usize>(&self, simd: S) -> ValueLanes<S, K> {
+        let coefficients = self.tone.weights.coefficients();
+        let mut lanes = ValueLanes {
+            shift: f32x16::splat(simd, self.tone.shift),
+            weights: [f32x16::splat(simd, 0.0); K],
+            counts: [false; K],
+            is_added: self.weight.is_some(),
+            weight: f32x16::splat(simd, self.weight.unwrap_or(1.0)),
+        };
+        for rank in 0..K {
+            lanes.weights[rank] = f32x16::splat(simd, coefficients[rank]);
+            lanes.counts[rank] = coefficients[rank] != 0.0;
+        }
+        lanes
+    }
+}
+
+/// [`Values`], in every lane.
+#[derive(Clone, Copy)]
+pub(crate) struct ValueLanes<S: Simd, const K: usize> {
+    shift: f32x16<S>,
+    weights: [f32x16<S>; K],
+    /// Which weights are not zero.
+    counts: [bool; K],
+    is_added: bool,
+    weight: f32x16<S>,
+}
+
+impl<S: Simd, const K: usize> ValueLanes<S, K> {
     /// Takes in the keys of sixteen pixels.
     #[inline(always)]
-    pub(crate) fn put<S: Simd, M: Norm, const K: usize>(
-        &self,
-        norm: M,
-        keys: [f32x16<S>; K],
-        out: &mut [f32],
-    ) {
-        let mut values = self.tone.of_keys(norm, keys);
-        if let Some(weight) = self.weight {
-            values = f32x16::from_slice(keys[0].simd, out) + values * weight;
+    pub(crate) fn put<M: Norm>(&self, norm: M, keys: [f32x16<S>; K], out: &mut [f32]) {
+        let mut values = self.shift;
+        for rank in 0..K {
+            // The last one of one or two is never zero.
+            if (rank + 1 == K && K <= 2) || self.counts[rank] {
+                values += norm.distances(keys[rank]) * self.weights[rank];
+            }
+        }
+        if self.is_added {
+            values = f32x16::from_slice(values.simd, out) + values * self.weight;
         }
         values.store_slice(out);
     }
 
     /// Takes in the keys of fewer than sixteen pixels.
     #[inline(always)]
-    pub(crate) fn put_part<S: Simd, M: Norm, const K: usize>(
-        &self,
-        norm: M,
-        keys: [f32x16<S>; K],
-        out: &mut [f32],
-    ) {
+    pub(crate) fn put_part<M: Norm>(&self, norm: M, keys: [f32x16<S>; K], out: &mut [f32]) {
         let mut lanes = [0.0; 16];
         lanes[..out.len()].copy_from_slice(out);
         self.put(norm, keys, &mut lanes);

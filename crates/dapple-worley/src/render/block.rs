@@ -1,5 +1,6 @@
 //! A block: a few columns of a band, whose feature points are made once.
 
+use super::sheet::Sheet;
 use super::shortlist::Shortlist;
 use super::sieve::{Keep, PixelBox, PointList, Points};
 use super::splat::Splat;
@@ -11,6 +12,7 @@ use crate::metric::{Norm as _, with_norm};
 use crate::{Axes, Feature, LIMIT, Space};
 use core::ops::Range;
 use fearless_simd::{Level, dispatch};
+use std::sync::Arc;
 
 /// The most cells of a block, with its neighborhood; where there are more, a pixel is larger than a cell.
 const MOST_CELLS: u128 = 1 << 16;
@@ -33,7 +35,7 @@ where
     pub(super) level: Level,
     pub(super) columns: &'a Line,
     /// The rows of the band, along every axis.
-    pub(super) rows: &'a [Line; N],
+    pub(super) rows: &'a [Arc<Line>; N],
     pub(super) n_rows: usize,
     /// The first row of the band, in the window.
     pub(super) first: usize,
@@ -51,6 +53,7 @@ pub(super) struct Memory<const N: usize> {
     /// Those that matter to a tile.
     pub(super) list: PointList<N>,
     pub(super) shortlist: Shortlist<N>,
+    pub(super) sheet: Sheet,
     pub(super) near: Vec<f32>,
     pub(super) runs: Vec<Range<usize>>,
     /// The smallest keys of the pixels of a block.
@@ -68,6 +71,7 @@ impl<const N: usize> Memory<N> {
             lists: core::array::from_fn(|_| (PointList::new(), 0.0)),
             list: PointList::new(),
             shortlist: Shortlist::new(),
+            sheet: Sheet::new(),
             near: Vec::new(),
             runs: Vec::new(),
             planes: core::array::from_fn(|_| Vec::new()),
@@ -103,7 +107,11 @@ where
     /// Fills the pixels of the block; `out` has the rows of the band.
     pub(super) fn render(&self, out: &mut Output<'_, N>, memory: &mut Memory<N>) {
         let lattice = &self.picture.worley.lattice;
-        let depth = out.depth();
+        // The inner loops know one, two and four.
+        let depth = match out.depth() {
+            3 => 4,
+            depth => depth,
+        };
         let guess = Guess::new(lattice, self.middle(), depth);
         let splat = Splat::new(self, guess.distance).filter(|_| matches!(out, Output::Values(..)));
         let ring = splat.map_or(guess.ring, |splat| splat.reach.ceil() as i32);
@@ -111,9 +119,12 @@ where
             self.one_by_one(0..self.n_rows, self.range.clone(), out);
             return;
         };
-        memory.table.wants_ids = out.wants_ids();
         memory.wide_table.wants_ids = out.wants_ids();
-        dispatch!(self.level, simd => memory.table.fill(simd, lattice, cells));
+        // The picture before may be of the same cells.
+        if !memory.table.has(&cells, out.wants_ids()) {
+            memory.table.wants_ids = out.wants_ids();
+            dispatch!(self.level, simd => memory.table.fill(simd, lattice, cells));
+        }
         for axis in 0..N {
             let places = match axis {
                 0 => &self.columns.places[self.range.clone()],
@@ -131,6 +142,9 @@ where
         let splat = splat.filter(|splat| splat.is_even(&memory.lines));
         if let (Output::Values(values, rows), Some(splat)) = (&mut *out, &splat) {
             splat.render(self, (values, rows), memory);
+            return;
+        }
+        if matches!(out, Output::Values(..)) && self.sheet((depth, guess), (out, memory)) {
             return;
         }
         let size = self.tile_size(&memory.lines[0]);

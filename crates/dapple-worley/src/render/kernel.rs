@@ -1,7 +1,7 @@
 //! The inner loop: the smallest keys of sixteen pixels side by side, for several rows at once.
 
 use super::LANES;
-use super::shortlist::{CHUNK, RowTerms};
+use super::shortlist::TILE_ROWS;
 use crate::Metric;
 use crate::fixed::STEP;
 use crate::metric::{Norm, with_norm};
@@ -14,7 +14,7 @@ use fearless_simd::{Level, dispatch, f32x16, i32x16, prelude::*};
 pub(super) struct Rows<'a> {
     /// The rows of the tile, in the band.
     pub(super) rows: Range<usize>,
-    /// The columns, in the window; at most [`LANES`].
+    /// The columns, in the window: at most [`LANES`], or twice as many.
     pub(super) columns: Range<usize>,
     /// The coordinates of the columns, in steps.
     pub(super) steps: &'a [i32],
@@ -22,7 +22,8 @@ pub(super) struct Rows<'a> {
     pub(super) low: i32,
     /// The coordinates of the points that matter, along the first axis, in cells from there.
     pub(super) points: &'a [f32],
-    pub(super) row_terms: RowTerms<'a>,
+    /// What the rows add to the keys of each point.
+    pub(super) row_terms: &'a [[f32; TILE_ROWS]],
     /// Keys from here on may be wrong.
     pub(super) limit: f32,
     pub(super) values: &'a Values,
@@ -44,140 +45,76 @@ impl Rows<'_> {
         })
     }
 
-    /// As many rows at once as there are registers for.
+    /// Roots take long, but while they are taken, the processor goes on to compare the next few rows: not too many at
+    /// once, so that it can look that far ahead.
     #[inline(always)]
-    fn fill_with<S: Simd, M: Norm, const K: usize>(
+    pub(super) fn fill_with<S: Simd, M: Norm, const K: usize>(
         &self,
         simd: S,
         norm: M,
         out: &mut [&mut [f32]],
     ) -> usize {
-        if self.columns.len() < LANES {
-            self.fill_rows::<S, M, K>(simd, norm, out)
-        } else if const { <S::f32s as SimdBase<S>>::LEN < LANES } {
-            self.fill_groups::<S, M, K, 2>(simd, norm, out)
-        } else if self.rows.len() <= 4 {
-            self.fill_groups::<S, M, K, 4>(simd, norm, out)
-        } else {
-            self.fill_groups::<S, M, K, 8>(simd, norm, out)
+        match self.columns.len() {
+            32 if K == 1 => self.fill_groups::<S, M, K, 4, 2>(simd, norm, out),
+            32 => self.fill_groups::<S, M, K, 2, 2>(simd, norm, out),
+            16 => self.fill_groups::<S, M, K, 4, 1>(simd, norm, out),
+            _ => self.fill_groups::<S, M, K, 1, 0>(simd, norm, out),
         }
     }
 
-    /// Roots take long but hardly any of the processor, so those of one group are taken between the comparisons of the
-    /// next. No function may be called there: it would cost all registers.
+    /// `R` rows and `C` registers of columns at once; none stands for a part of one.
     #[inline(always)]
-    fn fill_groups<S: Simd, M: Norm, const K: usize, const R: usize>(
+    fn fill_groups<S: Simd, M: Norm, const K: usize, const R: usize, const C: usize>(
         &self,
         simd: S,
         norm: M,
         out: &mut [&mut [f32]],
     ) -> usize {
-        let columns = self.places(simd);
-        let mut waiting = [[f32x16::splat(simd, 0.0); K]; R];
-        let mut next = self.rows.start;
-        let mut end = self.rows.start;
-        while end < self.rows.end {
-            let first = end;
-            let per_point = (end - next).div_ceil(self.points.len().max(1));
-            let mut best = [[f32x16::splat(simd, f32::INFINITY); K]; R];
-            for (chunk, points) in self.points.chunks(CHUNK).enumerate() {
-                let row_terms = self.row_terms.rows::<R>(chunk, first - self.rows.start);
-                for (index, &point) in points.iter().enumerate() {
-                    compare(norm, columns - point, row_terms, index, &mut best);
-                    let until = end.min(next + per_point);
-                    self.put_waiting(norm, &waiting, next..until, out);
-                    next = until;
+        let mut columns = [f32x16::splat(simd, 0.0); 2];
+        for part in 0..C.max(1) {
+            let steps = i32x16::from_slice(simd, &self.steps[part * LANES..][..LANES]) - self.low;
+            columns[part] = steps.to_float::<f32x16<S>>() * STEP;
+        }
+        let values = self.values.lanes::<S, K>(simd);
+        let out = &mut out[self.rows.clone()];
+        for (group, out) in out.chunks_mut(R).enumerate() {
+            let mut best = [[[f32x16::splat(simd, f32::INFINITY); K]; 2]; R];
+            for (&point, row_terms) in self.points.iter().zip(self.row_terms) {
+                let row_terms = &row_terms.as_chunks::<R>().0[group];
+                for part in 0..C.max(1) {
+                    let column_terms = norm.terms(columns[part] - point);
+                    for row in 0..R {
+                        let row_term = f32x16::splat(simd, row_terms[row]);
+                        insert(&mut best[row][part], norm.joins(column_terms, row_term));
+                    }
                 }
             }
-            self.put_waiting(norm, &waiting, next..end, out);
-            next = end;
-            if !self.is_right(&best) {
-                return first;
-            }
-            waiting = best;
-            end = self.rows.end.min(first + R);
-        }
-        self.put_waiting(norm, &waiting, next..end, out);
-        end
-    }
-
-    /// Puts some rows of the group that waits.
-    #[inline(always)]
-    fn put_waiting<S: Simd, M: Norm, const K: usize, const R: usize>(
-        &self,
-        norm: M,
-        waiting: &[[f32x16<S>; K]; R],
-        rows: Range<usize>,
-        out: &mut [&mut [f32]],
-    ) {
-        let left = self.columns.start;
-        for row in rows {
-            let keys = waiting[(row - self.rows.start) % R];
-            self.values
-                .put(norm, keys, &mut out[row][left..left + LANES]);
-        }
-    }
-
-    /// The same row by row, for fewer columns.
-    #[inline(always)]
-    fn fill_rows<S: Simd, M: Norm, const K: usize>(
-        &self,
-        simd: S,
-        norm: M,
-        out: &mut [&mut [f32]],
-    ) -> usize {
-        let columns = self.places(simd);
-        for row in self.rows.clone() {
-            let mut best = [[f32x16::splat(simd, f32::INFINITY); K]; 1];
-            for (chunk, points) in self.points.chunks(CHUNK).enumerate() {
-                let row_terms = self.row_terms.rows::<1>(chunk, row - self.rows.start);
-                for (index, &point) in points.iter().enumerate() {
-                    compare(norm, columns - point, row_terms, index, &mut best);
+            let mut worst = best[0][0][K - 1];
+            for row in 0..R {
+                for part in 0..C.max(1) {
+                    worst = greater(worst, best[row][part][K - 1]);
                 }
             }
-            if !self.is_right(&best) {
-                return row;
+            if !worst.simd_lt(self.limit).all_true() {
+                return self.rows.start + group * R;
             }
-            self.values
-                .put_part(norm, best[0], &mut out[row][self.columns.clone()]);
+            for row in 0..R {
+                let Some(out) = out.get_mut(row) else {
+                    break;
+                };
+                let out = &mut out[self.columns.clone()];
+                match C {
+                    0 => values.put_part(norm, best[row][0], out),
+                    1 => values.put(norm, best[row][0], out),
+                    _ => {
+                        let (left, right) = out.split_at_mut(LANES);
+                        values.put(norm, best[row][0], left);
+                        values.put(norm, best[row][1], right);
+                    }
+                }
+            }
         }
         self.rows.end
-    }
-
-    /// Where the columns are, in cells from the lower corner of the tile.
-    #[inline(always)]
-    fn places<S: Simd>(&self, simd: S) -> f32x16<S> {
-        let columns = i32x16::from_slice(simd, &self.steps[..LANES]) - self.low;
-        columns.to_float::<f32x16<S>>() * STEP
-    }
-
-    /// Whether all keys are below the limit.
-    #[inline(always)]
-    fn is_right<S: Simd, const K: usize, const R: usize>(
-        &self,
-        best: &[[f32x16<S>; K]; R],
-    ) -> bool {
-        let mut worst = best[0][K - 1];
-        for row in 1..R {
-            worst = greater(worst, best[row][K - 1]);
-        }
-        worst.simd_lt(self.limit).all_true()
-    }
-}
-
-/// Compares a point at the pixels of `R` rows, from the ways to it along the first axis.
-#[inline(always)]
-fn compare<S: Simd, M: Norm, const K: usize, const R: usize>(
-    norm: M,
-    ways: f32x16<S>,
-    row_terms: &[[f32; CHUNK]; R],
-    index: usize,
-    best: &mut [[f32x16<S>; K]; R],
-) {
-    let column_terms = norm.terms(ways);
-    for row in 0..R {
-        let row_term = f32x16::splat(ways.simd, row_terms[row][index % CHUNK]);
-        insert(&mut best[row], norm.joins(column_terms, row_term));
     }
 }
 

@@ -269,6 +269,7 @@ fn resolve<S: Simd, M: Norm, const K: usize>(
     out: &mut [f32],
 ) -> Vec<(usize, f32)> {
     let mut unknown = Vec::new();
+    let values = values.lanes::<S, K>(simd);
     for (at, out) in (0..).step_by(LANES).zip(out.chunks_mut(LANES)) {
         let mut keys = [f32x16::splat(simd, 0.0); K];
         for rank in 0..K {

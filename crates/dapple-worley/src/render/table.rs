@@ -71,6 +71,11 @@ impl<const N: usize> Table<N> {
         }
     }
 
+    /// Whether it has the points of these cells, with ids or without.
+    pub(super) fn has(&self, cells: &CellBox<N>, with_ids: bool) -> bool {
+        !self.starts.is_empty() && self.cells == *cells && self.wants_ids == with_ids
+    }
+
     /// Makes the points of `cells`, which are at most 1000 along each axis.
     #[inline(always)]
     pub(super) fn fill<S: Simd>(&mut self, simd: S, lattice: &Lattice<N>, cells: CellBox<N>) {

@@ -100,6 +100,19 @@ where
         }
     }
 
+    /// Fills pixels for which the usual neighborhood is known to be too small.
+    pub(super) fn render_further(&self, out: &mut Output<'_, N>, memory: &mut Memory<N>) {
+        for first in self.columns.clone().step_by(LANES) {
+            let columns = first..self.columns.end.min(first + LANES);
+            let neighborhood = Neighborhood {
+                ring: self.guess.ring + 1,
+                guess: None,
+            };
+            let part = self.part(columns, self.rows.start);
+            part.render_near(neighborhood, out, memory);
+        }
+    }
+
     /// Fills the pixels of a tile with one register's columns, from as many points as it takes.
     fn render_near(
         &self,
@@ -156,7 +169,7 @@ where
                     steps: &memory.lines[0][columns.start..],
                     low: low[0],
                     points: &memory.shortlist.coordinates[0][..memory.shortlist.len],
-                    row_terms: memory.shortlist.row_terms(),
+                    row_terms: &memory.shortlist.row_terms,
                     limit,
                     values,
                 };
@@ -258,12 +271,13 @@ where
         let points = larger.points(&run, table.wants_ids);
         let lines = core::array::from_fn(|axis| match axis {
             0 => &lines[0][..],
-            _ => &lines[axis][self.rows.clone()],
+            _ => &lines[axis][self.rows.start..],
         });
+        let rows = (self.rows.len(), lines, pixels.low);
         with_norm!(self.block.picture.worley.metric, norm => {
             dispatch!(self.block.level, simd => {
                 list.sift(simd, norm, points, (pixels, Keep::Nearest(self.depth)), near);
-                shortlist.fill(simd, norm, (&*list, pixels), (lines, pixels.low));
+                shortlist.fill(simd, norm, (&*list, pixels), rows);
             });
         });
         table.look_up_ids(list, &mut shortlist.ids);
@@ -313,14 +327,15 @@ where
         };
         let lines = core::array::from_fn(|axis| match axis {
             0 => &lines[0][..],
-            _ => &lines[axis][self.rows.clone()],
+            _ => &lines[axis][self.rows.start..],
         });
+        let rows = (self.rows.len(), lines, pixels.low);
         let limit = with_norm!(block.picture.worley.metric, norm => {
             let guess = neighborhood.guess.map(|guess| norm.key_along_one_axis(guess));
             let keep = guess.map_or(Keep::Nearest(self.depth), Keep::Within);
             dispatch!(block.level, simd => {
                 list.sift(simd, norm, points, (&moved, keep), near);
-                shortlist.fill(simd, norm, (&*list, &moved), (lines, pixels.low));
+                shortlist.fill(simd, norm, (&*list, &moved), rows);
             });
             let border = norm.key_along_one_axis(border);
             norm.tightened(guess.map_or(border, |guess| guess.min(border)))
@@ -332,16 +347,16 @@ where
 
 /// From where feature points are taken for a tile.
 #[derive(Clone, Copy, Debug)]
-struct Neighborhood {
+pub(super) struct Neighborhood {
     /// So many cells on every side of those that the tile touches.
-    ring: i32,
+    pub(super) ring: i32,
     /// How near to the tile points are looked for; all that could matter, if nothing.
-    guess: Option<f32>,
+    pub(super) guess: Option<f32>,
 }
 
 impl Neighborhood {
     /// Whether coordinates within it are exact.
-    fn fits<const N: usize>(&self, tile: &PixelBox<N>) -> bool {
+    pub(super) fn fits<const N: usize>(&self, tile: &PixelBox<N>) -> bool {
         let [first, last] = tile.cells(self.ring);
         (0..N).all(|axis| last[axis] - first[axis] < SPAN)
     }

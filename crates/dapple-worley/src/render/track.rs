@@ -5,7 +5,7 @@
 
 use super::LANES;
 use super::kernel::{greater, lesser};
-use super::shortlist::{CHUNK, Shortlist};
+use super::shortlist::Shortlist;
 use crate::features::FeatureRows;
 use crate::fixed::STEP;
 use crate::many::NOTHING;
@@ -101,23 +101,18 @@ impl<const N: usize> TrackedRows<'_, N> {
         let mut next = best[0];
         let shortlist = self.shortlist;
         let points = &shortlist.coordinates[0][..shortlist.len];
-        for (chunk, points) in points.chunks(CHUNK).enumerate() {
-            let [row_terms] = shortlist
-                .row_terms()
-                .rows::<1>(chunk, row - self.rows.start);
-            for (index, &point) in points.iter().enumerate() {
-                let row_term = f32x16::splat(simd, row_terms[index % CHUNK]);
-                let key = norm.joins(norm.terms(columns - point), row_term);
-                let number = (chunk * CHUNK + index) as u32;
-                let coded = (key.to_bits() & !mask) | number;
-                let mut coded = f32x16::from_bits(coded);
-                for best in &mut best {
-                    let larger = greater(*best, coded);
-                    *best = lesser(*best, coded);
-                    coded = larger;
-                }
-                next = lesser(next, coded);
+        let row = row - self.rows.start;
+        for (number, (&point, row_terms)) in points.iter().zip(&shortlist.row_terms).enumerate() {
+            let row_term = f32x16::splat(simd, row_terms[row]);
+            let key = norm.joins(norm.terms(columns - point), row_term);
+            let coded = (key.to_bits() & !mask) | number as u32;
+            let mut coded = f32x16::from_bits(coded);
+            for best in &mut best {
+                let larger = greater(*best, coded);
+                *best = lesser(*best, coded);
+                coded = larger;
             }
+            next = lesser(next, coded);
         }
         let mut bits = [next.to_bits(); K];
         for rank in 0..K {
