@@ -189,6 +189,15 @@ impl<S: Simd> SixteenCells<S> {
         cells
     }
 
+    /// The largest of the counts.
+    #[inline(always)]
+    pub(crate) fn most<const N: usize>(&self, lattice: &Lattice<N>) -> u32 {
+        if lattice.counts.thresholds().is_empty() {
+            return lattice.counts.least();
+        }
+        self.counts.reduce_max()
+    }
+
     /// The steps of one point of each cell, from the lower corner of the cell.
     #[inline(always)]
     pub(crate) fn steps<const N: usize>(&self, index: u32x16<S>, jitter: u32) -> [u32x16<S>; N] {
