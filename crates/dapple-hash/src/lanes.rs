@@ -4,6 +4,7 @@
 
 use crate::CellHash;
 use crate::mix::{M0, M1, M2, M3, N0, N1};
+use core::ops::{Add, BitOr, BitXor, BitXorAssign, Mul, Shl, Shr};
 use fearless_simd::{prelude::*, u32x16};
 
 /// Sixteen [`CellHash`]es, one in each lane.
@@ -25,29 +26,60 @@ impl<S: Simd> CellHashes<S> {
     /// Takes in the coordinate of one more axis, a faster one than those before: its low and its high 32 bits.
     #[inline(always)]
     pub fn axis(self, low: u32x16<S>, high: u32x16<S>) -> Self {
-        Self {
-            state: absorb(absorb(self.state, high), low),
-        }
+        let [hashes] = Self::axis_each([self], [[low, high]]);
+        hashes
     }
 
     /// The 64 random bits of counter `index`, which may differ from lane to lane: the high 32 bits, then the low.
     #[inline(always)]
     pub fn at(self, index: u32x16<S>) -> [u32x16<S>; 2] {
-        finish(absorb(self.state, index))
+        let [bits] = Self::at_each([self], [index]);
+        bits
+    }
+
+    /// [`axis`](Self::axis) for several registers in step: faster, because a hash is one long chain of operations that
+    /// wait for each other.
+    #[inline(always)]
+    pub fn axis_each<const C: usize>(hashes: [Self; C], words: [[u32x16<S>; 2]; C]) -> [Self; C] {
+        let [low, high] = in_step(words);
+        let [a, b] = absorb(absorb(in_step(states(hashes)), high), low);
+        let mut hashes = hashes;
+        for (i, hash) in hashes.iter_mut().enumerate() {
+            hash.state = [a.0[i], b.0[i]];
+        }
+        hashes
+    }
+
+    /// [`at`](Self::at) for several registers in step.
+    #[inline(always)]
+    pub fn at_each<const C: usize>(
+        hashes: [Self; C],
+        index: [u32x16<S>; C],
+    ) -> [[u32x16<S>; 2]; C] {
+        out_of_step(finish(absorb(in_step(states(hashes)), InStep(index))))
     }
 }
 
-/// [`mix32`](crate::mix32) in every lane.
+/// [`mix32`](crate::mix32) in every lane of several pairs of registers in step.
 #[inline(always)]
 #[must_use]
-pub fn mix32_lanes<S: Simd>(mut bits: u32x16<S>) -> u32x16<S> {
+pub fn mix32_pairs<S: Simd, const C: usize>(pairs: [[u32x16<S>; 2]; C]) -> [[u32x16<S>; 2]; C] {
+    let [a, b] = in_step(pairs);
+    out_of_step([mix(a), mix(b)])
+}
+
+#[inline(always)]
+fn mix<S: Simd, const C: usize>(mut bits: InStep<S, C>) -> InStep<S, C> {
     bits = (bits ^ (bits >> 16)) * N0;
     bits = (bits ^ (bits >> 15)) * N1;
     bits ^ (bits >> 16)
 }
 
 #[inline(always)]
-fn absorb<S: Simd>([mut a, mut b]: [u32x16<S>; 2], word: u32x16<S>) -> [u32x16<S>; 2] {
+fn absorb<S: Simd, const C: usize>(
+    [mut a, mut b]: [InStep<S, C>; 2],
+    word: InStep<S, C>,
+) -> [InStep<S, C>; 2] {
     a = (a ^ word) * M0;
     a ^= a >> 15;
     b = (b ^ a) * M1;
@@ -56,7 +88,7 @@ fn absorb<S: Simd>([mut a, mut b]: [u32x16<S>; 2], word: u32x16<S>) -> [u32x16<S
 }
 
 #[inline(always)]
-fn finish<S: Simd>([mut a, mut b]: [u32x16<S>; 2]) -> [u32x16<S>; 2] {
+fn finish<S: Simd, const C: usize>([mut a, mut b]: [InStep<S, C>; 2]) -> [InStep<S, C>; 2] {
     a = (a ^ (a >> 16)) * M2;
     b = (b + (a ^ (a >> 15))) * M3;
     b ^= b >> 15;
@@ -67,9 +99,72 @@ fn finish<S: Simd>([mut a, mut b]: [u32x16<S>; 2]) -> [u32x16<S>; 2] {
     [a ^ (b << 7 | b >> 25), b]
 }
 
+/// Registers that all take one operation before any takes the next.
+#[derive(Clone, Copy)]
+struct InStep<S: Simd, const C: usize>([u32x16<S>; C]);
+
+#[inline(always)]
+fn states<S: Simd, const C: usize>(hashes: [CellHashes<S>; C]) -> [[u32x16<S>; 2]; C] {
+    let mut states = [hashes[0].state; C];
+    for i in 0..C {
+        states[i] = hashes[i].state;
+    }
+    states
+}
+
+#[inline(always)]
+fn in_step<S: Simd, const C: usize>(pairs: [[u32x16<S>; 2]; C]) -> [InStep<S, C>; 2] {
+    let [mut a, mut b] = [[pairs[0][0]; C]; 2];
+    for i in 0..C {
+        [a[i], b[i]] = pairs[i];
+    }
+    [InStep(a), InStep(b)]
+}
+
+#[inline(always)]
+fn out_of_step<S: Simd, const C: usize>([a, b]: [InStep<S, C>; 2]) -> [[u32x16<S>; 2]; C] {
+    let mut pairs = [[a.0[0], b.0[0]]; C];
+    for (i, pair) in pairs.iter_mut().enumerate() {
+        *pair = [a.0[i], b.0[i]];
+    }
+    pairs
+}
+
+/// Implements operators that take registers or a number, by those that assign.
+macro_rules! operators {
+    ($($operator:ident $function:ident $assign:tt $other:ty $(, $register:tt)?;)*) => {$(
+        impl<S: Simd, const C: usize> $operator<$other> for InStep<S, C> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(mut self, other: $other) -> Self {
+                for i in 0..C {
+                    self.0[i] $assign other $(.$register[i])?;
+                }
+                self
+            }
+        }
+    )*};
+}
+operators! {
+    Add add += Self, 0;
+    BitOr bitor |= Self, 0;
+    BitXor bitxor ^= Self, 0;
+    Mul mul *= u32;
+    Shl shl <<= u32;
+    Shr shr >>= u32;
+}
+
+impl<S: Simd, const C: usize> BitXorAssign for InStep<S, C> {
+    #[inline(always)]
+    fn bitxor_assign(&mut self, other: Self) {
+        *self = *self ^ other;
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{CellHashes, mix32_lanes};
+    use super::{CellHashes, mix32_pairs};
     use crate::{CellHash, Seed, hash1, mix32};
     use fearless_simd::{Level, dispatch, prelude::*, u32x16};
 
@@ -103,7 +198,7 @@ mod tests {
         let [x, x_high, y, y_high, index] = words.map(|word| u32x16::from_slice(simd, &word));
         let hashes = CellHashes::splat(simd, row).axis(y, y_high).axis(x, x_high);
         let [high, low] = hashes.at(index);
-        let mixed = mix32_lanes(low);
+        let [[_, mixed]] = mix32_pairs([[high, low]]);
         core::array::from_fn(|lane| {
             (
                 u64::from(high[lane]) << 32 | u64::from(low[lane]),

@@ -34,7 +34,7 @@ mod unit;
 
 pub use cell::{CellHash, hash1, hash2, hash3, hash4};
 #[cfg(feature = "simd")]
-pub use lanes::{CellHashes, mix32_lanes};
+pub use lanes::{CellHashes, mix32_pairs};
 pub use mix::mix32;
 pub use poisson::{PoissonCounts, PoissonError, PoissonErrorKind, poisson_count};
 pub use rand_core;

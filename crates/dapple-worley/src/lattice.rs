@@ -9,7 +9,7 @@ use crate::scatter::{DENSITIES, JITTER_PARTS, Scatter};
 use crate::search::Name;
 use core::fmt;
 use core::ops::{Add, BitAnd, BitOr, Mul, Shl, Shr};
-use dapple_hash::{CellHash, CellHashes, PoissonCounts, Seed, mix32, mix32_lanes, poisson_count};
+use dapple_hash::{CellHash, CellHashes, PoissonCounts, Seed, mix32, mix32_pairs, poisson_count};
 use fearless_simd::{prelude::*, u32x16};
 use std::sync::Arc;
 
@@ -159,27 +159,71 @@ impl<S: Simd> SixteenCells<S> {
         lattice: &Lattice<N>,
         hashes: CellHashes<S>,
     ) -> Self {
-        let words = hashes.at(u32x16::splat(simd, 0));
-        let mut counts = u32x16::splat(simd, lattice.counts.least());
+        let [cells] = Self::new_each(simd, lattice, [hashes]);
+        cells
+    }
+
+    /// The same for several registers in step.
+    #[inline(always)]
+    pub(crate) fn new_each<const N: usize, const C: usize>(
+        simd: S,
+        lattice: &Lattice<N>,
+        hashes: [CellHashes<S>; C],
+    ) -> [Self; C] {
+        let words = CellHashes::at_each(hashes, [u32x16::splat(simd, 0); C]);
+        let counts = u32x16::splat(simd, lattice.counts.least());
+        let mut cells = [Self {
+            words: words[0],
+            counts,
+        }; C];
+        for i in 0..C {
+            cells[i].words = words[i];
+        }
         let one = u32x16::splat(simd, 1);
         for &threshold in lattice.counts.thresholds() {
-            counts = words[0].simd_ge(threshold).select(counts + one, counts);
+            for cells in &mut cells {
+                let is_more = cells.words[0].simd_ge(threshold);
+                cells.counts = is_more.select(cells.counts + one, cells.counts);
+            }
         }
-        Self { words, counts }
+        cells
+    }
+
+    /// The largest of the counts.
+    #[inline(always)]
+    pub(crate) fn most<const N: usize>(&self, lattice: &Lattice<N>) -> u32 {
+        if lattice.counts.thresholds().is_empty() {
+            return lattice.counts.least();
+        }
+        self.counts.reduce_max()
     }
 
     /// The steps of one point of each cell, from the lower corner of the cell.
     #[inline(always)]
     pub(crate) fn steps<const N: usize>(&self, index: u32x16<S>, jitter: u32) -> [u32x16<S>; N] {
-        let next = index + 1;
-        let [a, b] = [next * STRIDES[0], next * STRIDES[1]];
-        steps(
-            [
-                mix32_lanes(self.words[0] + a),
-                mix32_lanes(self.words[1] + b),
-            ],
-            jitter,
-        )
+        let [point] = Self::steps_each([*self], [index], jitter);
+        point
+    }
+
+    /// The same for several registers in step.
+    #[inline(always)]
+    pub(crate) fn steps_each<const N: usize, const C: usize>(
+        cells: [Self; C],
+        index: [u32x16<S>; C],
+        jitter: u32,
+    ) -> [[u32x16<S>; N]; C] {
+        let mut words = [cells[0].words; C];
+        for i in 0..C {
+            for which in 0..2 {
+                words[i][which] = cells[i].words[which] + (index[i] + 1) * STRIDES[which];
+            }
+        }
+        let words = mix32_pairs(words);
+        let mut points = [[index[0]; N]; C];
+        for i in 0..C {
+            points[i] = steps(words[i], jitter);
+        }
+        points
     }
 }
 

@@ -63,6 +63,7 @@ mod search;
 
 mod many;
 mod one;
+mod places;
 mod render;
 mod simd;
 mod sink;

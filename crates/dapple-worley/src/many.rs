@@ -1,374 +1,556 @@
 //! Many scattered positions: sixteen side by side, one in each lane.
 //!
-//! Every lane visits its own cell and the neighbors of that, the near ones first: along each axis, first the cell
-//! itself, then the neighbor on the nearer side, then the other. A neighbor that is too far away for all lanes is left
-//! out.
+//! Every lane visits its own cell and the neighbors of that. The nearer neighbors matter to most lanes, and are visited
+//! by all of them together. The farther ones matter to few: which of them are left to visit, and for which position, is
+//! put on a list for a whole group of positions, and then the list fills the lanes.
 //!
 //! While searching, the low bits of a key hold which point it belongs to, so that one minimum and one maximum sort both
-//! at once. The order of two points whose keys agree in the other bits is not known then. A lane that has such points,
-//! or for which neighbors are not enough, does not hold, and is searched again on its own.
+//! at once. The order of two points whose keys agree in the other bits is not known then. A position that has such
+//! points, or for which neighbors are not enough, does not hold, and is searched again on its own.
 
-use crate::fixed::{STEP, STEPS, split};
+use crate::fixed::{STEP, STEPS};
 use crate::lattice::{IDS, Lattice, SixteenCells};
 use crate::metric::Norm;
+use crate::places::{LANES, Places, Words, cells_by_distance, digit, load, store};
+use crate::{Axes, Space, Vector};
 use dapple_hash::CellHashes;
-use fearless_simd::{f32x16, f64x8, i32x16, prelude::*, u32x16, u64x8};
+use fearless_simd::{f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
 
-/// The positions of a register.
-pub(crate) const LANES: usize = 16;
-
-/// The low and the high word of sixteen whole numbers.
-type Words<S> = [u32x16<S>; 2];
-
-/// Sixteen places, axis by axis.
-pub(crate) struct Places<S: Simd, const N: usize> {
-    /// The steps within the cells.
-    steps: [i32x16<S>; N],
-    /// For each axis, which neighbor is nearer: -1 or 1.
-    nearer: [i32x16<S>; N],
-    /// For each axis, the own cell, the nearer and the other neighbor.
-    cells: [[Words<S>; 3]; N],
-}
-
-/// The nearest points of sixteen places.
-pub(crate) struct Nearest<S: Simd, const K: usize> {
-    /// Which points they are, nearest first: see [`INDEX_SHIFT`].
-    codes: [u32x16<S>; K],
-    /// The lanes that hold, as bits.
-    pub(crate) holds: u64,
-}
-
-/// One of the nearest points of sixteen places.
-pub(crate) struct Points<S: Simd, const N: usize> {
-    /// The ways from the points to the places, in cells.
-    pub(crate) vectors: [f32x16<S>; N],
-    /// The low and the high words of their ids.
-    pub(crate) ids: Words<S>,
-}
+/// The positions of a group.
+pub(crate) const GROUP: usize = 4 * LANES;
 
 /// The key of no point: the largest number. (Infinity with a code in its low bits would not be a number.)
 pub(crate) const NOTHING: u32 = f32::MAX.to_bits();
 
-/// `f64` has whole numbers only between this and twice this, and their difference from this is in the low bits.
-const WHOLE: f64 = (3_u64 << 51) as f64;
+/// Where to search, and how the low bits of a key are used.
+#[derive(Clone, Copy)]
+pub(crate) struct Search<'a, M, const N: usize> {
+    lattice: &'a Lattice<N>,
+    norm: M,
+    /// How many bits hold the index of a point in its cell; above are the two bits of each axis.
+    index_bits: u32,
+    /// All of these bits.
+    code_mask: u32,
+}
 
-impl<S: Simd, const N: usize> Places<S, N> {
-    /// The places of sixteen positions, axis by axis; those that have none get any, and are not told apart.
+/// A group of positions, and the memory to search for their nearest points.
+pub(crate) struct Group<const N: usize, const K: usize> {
+    positions: [[f64; GROUP]; N],
+    /// Which positions have a place, as bits.
+    has_place: u64,
+    cells: [[[u32; GROUP]; 2]; N],
+    steps: [[i32; GROUP]; N],
+    near: [Near; MOST_NEAR],
+    visits: Visits,
+    /// The keys of the nearest points so far.
+    best: [[u32; GROUP]; K],
+    /// The smallest key of all others.
+    next: [u32; GROUP],
+    points: [Points<N>; K],
+}
+
+/// The own cells of a register, or the neighbors that are on the nearer sides.
+#[derive(Clone, Copy)]
+struct Near {
+    words: [[u32; LANES]; 2],
+    counts: [u32; LANES],
+    /// The largest of the counts.
+    most: u32,
+}
+
+/// How many of these there are in four dimensions.
+const MOST_NEAR: usize = 1 << 4;
+
+/// The farther neighbors that are still to be visited.
+struct Visits {
+    /// Each is a neighbor and, from [`PLACE_SHIFT`] on, a place of the group.
+    list: [u32; FULL + (MOST_FAR + 1) * LANES],
+    len: usize,
+}
+
+/// Where the place begins in [`Visits::list`].
+const PLACE_SHIFT: u32 = 8;
+
+/// The list is worked off when it is longer than this: 2-D and 3-D groups hardly ever come to it.
+const FULL: usize = 512;
+
+/// The farther neighbors in four dimensions.
+const MOST_FAR: usize = 81 - MOST_NEAR;
+
+/// One of the nearest points of each place of a group.
+#[derive(Clone, Copy)]
+pub(crate) struct Points<const N: usize> {
+    /// In cells.
+    pub(crate) distances: [f32; GROUP],
+    /// The ways from the points to the places, in cells.
+    pub(crate) vectors: [[f64; GROUP]; N],
+    pub(crate) ids: [u64; GROUP],
+}
+
+impl<'a, M: Norm, const N: usize> Search<'a, M, N> {
+    pub(crate) fn new(norm: M, lattice: &'a Lattice<N>) -> Self {
+        let index_bits = u32::BITS - lattice.counts.range().end().leading_zeros();
+        Self {
+            lattice,
+            norm,
+            index_bits,
+            code_mask: (1 << (2 * N as u32 + index_bits)) - 1,
+        }
+    }
+}
+
+impl<const N: usize, const K: usize> Group<N, K> {
+    pub(crate) const fn new() -> Self {
+        Self {
+            positions: [[0.0; GROUP]; N],
+            has_place: 0,
+            cells: [[[0; GROUP]; 2]; N],
+            steps: [[0; GROUP]; N],
+            near: [Near {
+                words: [[0; LANES]; 2],
+                counts: [0; LANES],
+                most: 0,
+            }; MOST_NEAR],
+            visits: Visits {
+                list: [0; FULL + (MOST_FAR + 1) * LANES],
+                len: 0,
+            },
+            best: [[NOTHING; GROUP]; K],
+            next: [NOTHING; GROUP],
+            points: [Points {
+                distances: [0.0; GROUP],
+                vectors: [[0.0; GROUP]; N],
+                ids: [0; GROUP],
+            }; K],
+        }
+    }
+
+    /// The nearest points that the last search found, nearest first.
+    pub(crate) fn points(&self) -> &[Points<N>; K] {
+        &self.points
+    }
+
+    /// Finds the nearest points of up to a group of positions, and tells for which of them they hold, as bits.
     #[inline(always)]
-    pub(crate) fn new(simd: S, lattice: &Lattice<N>, positions: &[[f64; LANES]; N]) -> Self {
-        let zero = u32x16::splat(simd, 0);
-        let mut places = Self {
-            steps: [i32x16::splat(simd, 0); N],
-            nearer: [i32x16::splat(simd, 1); N],
-            cells: [[[zero; 2]; 3]; N],
-        };
-        for axis in 0..N {
-            let (cell, steps) = split_lanes(simd, &positions[axis]);
-            let is_low = steps.simd_lt(STEPS / 2);
-            let [one, minus_one] = [1, -1].map(|shift| i32x16::splat(simd, shift));
-            let nearer = is_low.select(minus_one, one);
-            places.steps[axis] = steps;
-            places.nearer[axis] = nearer;
-            let [below, above] = [previous(cell), next(cell)];
-            let [mut near, mut far] = [cell; 2];
-            for half in 0..2 {
-                near[half] = is_low.select(below[half], above[half]);
-                far[half] = is_low.select(above[half], below[half]);
+    pub(crate) fn search<S: Simd, M: Norm>(
+        &mut self,
+        simd: S,
+        search: Search<'_, M, N>,
+        positions: &[Vector<N>],
+    ) -> u64
+    where
+        Axes: Space<N>,
+    {
+        for (place, &position) in positions.iter().enumerate() {
+            let position: [f64; N] = position.into();
+            for axis in 0..N {
+                self.positions[axis][place] = position[axis];
             }
-            places.cells[axis] = [cell, near, far];
-            if lattice.period[axis] > 0 {
-                for cell in &mut places.cells[axis] {
-                    *cell = wrap(lattice, axis, *cell);
+        }
+        let n_registers = positions.len().div_ceil(LANES);
+        // Where sixteen lanes are several registers of the processor, these are in step already.
+        if <S::u32s as SimdBase<S>>::LEN < LANES {
+            return self.search_in_step::<S, M, 1>(simd, search, n_registers);
+        }
+        self.search_in_step::<S, M, 4>(simd, search, n_registers)
+    }
+
+    /// The same, where hashes are made for `C` registers at a time.
+    #[inline(always)]
+    fn search_in_step<S: Simd, M: Norm, const C: usize>(
+        &mut self,
+        simd: S,
+        search: Search<'_, M, N>,
+        n_registers: usize,
+    ) -> u64 {
+        self.has_place = 0;
+        for register in 0..n_registers {
+            self.visit_near::<S, M, C>(simd, search, register);
+            if register + 1 == n_registers || self.visits.len > FULL {
+                while self.visits.len > 0 {
+                    self.visit_far(simd, search);
                 }
             }
         }
-        places
+        let mut holds = 0;
+        for register in 0..n_registers {
+            holds |= self.holds(simd, search, register) << (register * LANES);
+        }
+        // The memory has registers past the last one, too; what is in them does not matter.
+        for first in (0..n_registers * K).step_by(C) {
+            self.finish::<S, M, C>(simd, search, first);
+        }
+        holds & self.has_place
     }
 
-    /// The `K` nearest points.
+    /// Visits the nearer neighbors of a register, and puts the others on the list.
     #[inline(always)]
-    pub(crate) fn nearest<M: Norm, const K: usize>(
-        &self,
+    fn visit_near<S: Simd, M: Norm, const C: usize>(
+        &mut self,
         simd: S,
-        norm: M,
-        lattice: &Lattice<N>,
-    ) -> Nearest<S, K> {
-        let mut best = [u32x16::splat(simd, NOTHING); K];
-        let mut next = u32x16::splat(simd, NOTHING);
-        let index_bits = u32::BITS - lattice.counts.range().end().leading_zeros();
-        let code_mask = (1 << (2 * N as u32 + index_bits)) - 1;
-        let gaps = self.gaps(simd, norm);
-        let rows = self.rows(simd, lattice);
-        for &cell in cells_by_distance::<N>() {
-            let cell = u32::from(cell);
-            let mut gap = gaps[N - 1][digit(cell, N - 1)];
+        search: Search<'_, M, N>,
+        register: usize,
+    ) {
+        let (places, has_place) = Places::new(simd, &self.positions, register);
+        self.has_place |= has_place << (register * LANES);
+        places.store(&mut self.cells, &mut self.steps, register);
+        self.hash_near::<S, C>(simd, search.lattice, &places);
+        let gaps = gaps(simd, search.norm, &places);
+        let numbers = u32x16::from_slice(simd, &ASCENDING) + (register * LANES) as u32;
+        let mut found = Found::<S, K>::new(simd);
+        for &neighbor in cells_by_distance::<N>() {
+            let neighbor = u32::from(neighbor);
+            let mut gap = gaps[N - 1][digit(neighbor, N - 1)];
             for axis in (0..N - 1).rev() {
-                gap = norm.joins(gaps[axis][digit(cell, axis)], gap);
+                gap = search.norm.joins(gaps[axis][digit(neighbor, axis)], gap);
             }
-            let reach = (best[K - 1] | code_mask).bitcast::<f32x16<S>>();
+            let reach = (found.best[K - 1] | search.code_mask).bitcast::<f32x16<S>>();
             let matters = gap.simd_le(reach);
+            if neighbor & FARTHER != 0 {
+                self.visits.push(numbers << PLACE_SHIFT | neighbor, matters);
+                continue;
+            }
             if matters.all_false() {
                 continue;
             }
-            let [low, high] = self.cells[0][digit(cell, 0)];
-            let hashes = rows[row_index::<N>(cell)].axis(low, high);
-            let cells = SixteenCells::new(simd, lattice, hashes);
-            let counts = matters.select(cells.counts, u32x16::splat(simd, 0));
-            let origins = self.origins(simd, cell);
-            for index in 0..counts.reduce_max() {
-                let index_lanes = u32x16::splat(simd, index);
-                let points: [_; N] = cells.steps(index_lanes, lattice.jitter);
-                let mut vector = [gap; N];
-                for axis in 0..N {
-                    let ahead = origins[axis] - points[axis].bitcast::<i32x16<S>>();
-                    vector[axis] = ahead.to_float();
+            let mut origins = places.steps;
+            for axis in 0..N {
+                if digit(neighbor, axis) > 0 {
+                    origins[axis] -= places.nearer(simd, axis) * i32x16::splat(simd, STEPS);
                 }
-                let key = norm.keys(vector).bitcast::<u32x16<S>>();
-                let coded = (key & !code_mask) | (cell << index_bits | index);
-                let is_there = counts.simd_gt(index_lanes);
-                let mut coded = is_there.select(coded, u32x16::splat(simd, NOTHING));
-                for best in &mut best {
-                    let larger = best.max(coded);
-                    *best = best.min(coded);
-                    coded = larger;
-                }
-                next = next.min(coded);
             }
+            let near = &self.near[near_index::<N>(neighbor)];
+            let points = SixteenCells {
+                words: [load(simd, &near.words[0], 0), load(simd, &near.words[1], 0)],
+                counts: load(simd, &near.counts, 0),
+            };
+            let codes = u32x16::splat(simd, neighbor << search.index_bits);
+            found.look(search, &points, &origins, codes, near.most);
         }
-        let is_last = (best[K - 1] | code_mask).bitcast::<f32x16<S>>();
-        let mut holds = is_last.simd_lt(self.border(simd, norm));
         for rank in 0..K {
-            let after = if rank + 1 < K { best[rank + 1] } else { next };
-            holds &= (best[rank] | code_mask).simd_lt(after | code_mask);
+            store(found.best[rank], &mut self.best[rank], register);
         }
-        for code in &mut best {
-            let index = *code & ((1 << index_bits) - 1);
-            *code = (*code & code_mask) >> index_bits | index << INDEX_SHIFT;
-        }
-        Nearest {
-            codes: best,
-            holds: holds.to_bitmask(),
-        }
+        store(found.next, &mut self.next, register);
     }
 
-    /// For each axis, the terms of the distances to the own cell, the nearer and the other neighbor, in steps.
+    /// Makes the hashes of the nearer neighbors: early, so that the processor knows in time how many points to expect.
     #[inline(always)]
-    fn gaps<M: Norm>(&self, simd: S, norm: M) -> [[f32x16<S>; 3]; N] {
-        let mut gaps = [[f32x16::splat(simd, 0.0); 3]; N];
-        for axis in 0..N {
-            let below = self.steps[axis];
-            let above = i32x16::splat(simd, STEPS) - below;
-            gaps[axis][1] = norm.terms(below.min(above).to_float());
-            gaps[axis][2] = norm.terms(below.max(above).to_float());
-        }
-        gaps
-    }
-
-    /// Beyond the neighbors, keys are no smaller than this, in steps.
-    #[inline(always)]
-    fn border<M: Norm>(&self, simd: S, norm: M) -> f32x16<S> {
-        let mut nearest = i32x16::splat(simd, STEPS);
-        for axis in 0..N {
-            let above = i32x16::splat(simd, STEPS) - self.steps[axis];
-            nearest = nearest.min(self.steps[axis]).min(above);
-        }
-        norm.terms((nearest + STEPS).to_float())
-    }
-
-    /// The hashes of the rows of cells: of all axes but the first.
-    #[inline(always)]
-    fn rows(&self, simd: S, lattice: &Lattice<N>) -> [CellHashes<S>; 27] {
-        let mut rows = [CellHashes::splat(simd, lattice.root); 27];
-        let mut n_rows = 1;
-        for axis in (1..N).rev() {
-            for digit in (0..3).rev() {
-                let [low, high] = self.cells[axis][digit];
-                for row in 0..n_rows {
-                    rows[digit * n_rows + row] = rows[row].axis(low, high);
-                }
-            }
-            n_rows *= 3;
-        }
-        rows
-    }
-
-    /// The places, in steps from the lower corners of one of the neighbors.
-    #[inline(always)]
-    fn origins(&self, simd: S, cell: u32) -> [i32x16<S>; N] {
-        let mut origins = self.steps;
-        for axis in 0..N {
-            let shift = self.nearer[axis] * i32x16::splat(simd, STEPS);
-            match digit(cell, axis) {
-                1 => origins[axis] -= shift,
-                2 => origins[axis] += shift,
-                _ => {}
-            }
-        }
-        origins
-    }
-
-    /// The points of a rank.
-    #[inline(always)]
-    pub(crate) fn points<const K: usize>(
-        &self,
+    fn hash_near<S: Simd, const C: usize>(
+        &mut self,
         simd: S,
         lattice: &Lattice<N>,
-        nearest: &Nearest<S, K>,
-        rank: usize,
-    ) -> Points<S, N> {
-        let code = nearest.codes[rank];
-        let mut hashes = CellHashes::splat(simd, lattice.root);
-        let mut origins = self.steps;
-        for axis in (0..N).rev() {
-            let digit = (code >> (2 * axis as u32)) & 3;
-            let [is_near, is_far] = [1, 2].map(|which| digit.simd_eq(which));
-            let [own, near, far] = self.cells[axis];
-            let low = is_near.select(near[0], is_far.select(far[0], own[0]));
-            let high = is_near.select(near[1], is_far.select(far[1], own[1]));
-            hashes = hashes.axis(low, high);
-            let shift = self.nearer[axis] * i32x16::splat(simd, STEPS);
-            let zero = i32x16::splat(simd, 0);
-            origins[axis] -= is_near.select(shift, is_far.select(zero - shift, zero));
-        }
-        let index = code >> INDEX_SHIFT;
-        let points: [_; N] = SixteenCells::new(simd, lattice, hashes).steps(index, lattice.jitter);
-        let mut vectors = [f32x16::splat(simd, 0.0); N];
+        places: &Places<S, N>,
+    ) {
+        let mut cells = [[places.cells[0]; 2]; N];
         for axis in 0..N {
-            let ahead = origins[axis] - points[axis].bitcast::<i32x16<S>>();
-            vectors[axis] = ahead.to_float::<f32x16<S>>() * STEP;
+            let nearer = places.nearer(simd, axis);
+            let zero = i32x16::splat(simd, 0);
+            cells[axis] = [
+                places.shifted(lattice, axis, zero),
+                places.shifted(lattice, axis, nearer),
+            ];
         }
-        let [high, low] = hashes.at(index + IDS);
-        Points {
-            vectors,
-            ids: [low, high],
+        let rows = rows(simd, lattice, &cells);
+        for first in (0..1 << N).step_by(C) {
+            let mut hashes = [rows[0]; C];
+            let mut words = [cells[0][0]; C];
+            for i in 0..C {
+                (hashes[i], words[i]) = (rows[(first + i) >> 1], cells[0][(first + i) & 1]);
+            }
+            let hashes = CellHashes::axis_each(hashes, words);
+            let cells = SixteenCells::new_each(simd, lattice, hashes);
+            for i in 0..C {
+                let near = &mut self.near[first + i];
+                for which in 0..2 {
+                    store(cells[i].words[which], &mut near.words[which], 0);
+                }
+                store(cells[i].counts, &mut near.counts, 0);
+                near.most = cells[i].most(lattice);
+            }
+        }
+    }
+
+    /// Visits up to sixteen cells of the list.
+    #[inline(always)]
+    fn visit_far<S: Simd, M: Norm>(&mut self, simd: S, search: Search<'_, M, N>) {
+        let (visits, n_visits) = self.visits.take();
+        let mut cells = [[[0; LANES]; 2]; N];
+        let mut steps = [[0; LANES]; N];
+        let mut reach = [0; LANES];
+        for lane in 0..LANES {
+            let place = place(visits[lane]);
+            for axis in 0..N {
+                cells[axis][0][lane] = self.cells[axis][0][place];
+                cells[axis][1][lane] = self.cells[axis][1][place];
+                steps[axis][lane] = self.steps[axis][place];
+            }
+            reach[lane] = self.best[K - 1][place];
+        }
+        let places = Places::load(simd, &cells, &steps, 0);
+        let neighbors = u32x16::from_slice(simd, &visits) & ((1 << PLACE_SHIFT) - 1);
+        let [cells] = Places::neighbors_each(simd, search.lattice, &[places], [neighbors]);
+        let is_there = mask32x16::from_bitmask(simd, u64::MAX >> (64 - n_visits));
+        let mut points = SixteenCells::new(simd, search.lattice, cells.hashes);
+        points.counts = is_there.select(points.counts, u32x16::splat(simd, 0));
+        let mut found = Found::<S, K>::new(simd);
+        let codes = neighbors << search.index_bits;
+        let most = points.most(search.lattice);
+        found.look(search, &points, &cells.origins, codes, most);
+        let reach = u32x16::from_slice(simd, &reach) | search.code_mask;
+        let mut matters = found.best[0].simd_le(reach).to_bitmask();
+        let mut best = [[0; LANES]; K];
+        let mut next = [0; LANES];
+        for rank in 0..K {
+            store(found.best[rank], &mut best[rank], 0);
+        }
+        store(found.next, &mut next, 0);
+        while matters != 0 {
+            let lane = matters.trailing_zeros() as usize;
+            let place = place(visits[lane]);
+            for best in &best {
+                self.insert(place, best[lane]);
+            }
+            self.insert(place, next[lane]);
+            matters &= matters - 1;
+        }
+    }
+
+    /// Sorts the key of a point in.
+    #[inline(always)]
+    fn insert(&mut self, place: usize, mut coded: u32) {
+        for best in &mut self.best {
+            let larger = best[place].max(coded);
+            best[place] = best[place].min(coded);
+            coded = larger;
+        }
+        self.next[place] = self.next[place].min(coded);
+    }
+
+    /// The lanes of a register whose nearest points are known for certain, as bits.
+    #[inline(always)]
+    fn holds<S: Simd, M: Norm>(&self, simd: S, search: Search<'_, M, N>, register: usize) -> u64 {
+        let mask = search.code_mask;
+        let last = load(simd, &self.best[K - 1], register) | mask;
+        let places = Places::load(simd, &self.cells, &self.steps, register);
+        let border = border(simd, search.norm, &places);
+        let mut holds = last.bitcast::<f32x16<S>>().simd_lt(border);
+        for rank in 0..K {
+            let after = if rank + 1 < K {
+                &self.best[rank + 1]
+            } else {
+                &self.next
+            };
+            let best = load(simd, &self.best[rank], register) | mask;
+            holds &= best.simd_lt(load(simd, after, register) | mask);
+        }
+        holds.to_bitmask()
+    }
+
+    /// Looks up `C` registers of the nearest points, from one on: first all ranks of the first register, then of the
+    /// second, and so on.
+    #[inline(always)]
+    fn finish<S: Simd, M: Norm, const C: usize>(
+        &mut self,
+        simd: S,
+        search: Search<'_, M, N>,
+        first: usize,
+    ) {
+        let lattice = search.lattice;
+        let mut places = [Places::load(simd, &self.cells, &self.steps, first / K); C];
+        let [mut neighbors, mut index] = [[u32x16::splat(simd, 0); C]; 2];
+        for i in 0..C {
+            let (register, rank) = ((first + i) / K, (first + i) % K);
+            places[i] = Places::load(simd, &self.cells, &self.steps, register);
+            let code = load(simd, &self.best[rank], register) & search.code_mask;
+            neighbors[i] = code >> search.index_bits;
+            index[i] = code & ((1 << search.index_bits) - 1);
+        }
+        let cells = Places::neighbors_each(simd, lattice, &places, neighbors);
+        let mut hashes = [cells[0].hashes; C];
+        let mut counters = index;
+        for i in 0..C {
+            hashes[i] = cells[i].hashes;
+            counters[i] += IDS;
+        }
+        let ids = CellHashes::at_each(hashes, counters);
+        let points = SixteenCells::new_each(simd, lattice, hashes);
+        let points = SixteenCells::steps_each(points, index, lattice.jitter);
+        for i in 0..C {
+            let (register, rank) = ((first + i) / K, (first + i) % K);
+            let vector = vector(&cells[i].origins, &points[i]);
+            self.points[rank].put(search.norm, register, vector, ids[i]);
         }
     }
 }
 
-/// The cells of sixteen coordinates, and the steps from their lower edges: as [`split`].
-#[inline(always)]
-fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>) {
-    let halves = [&coordinates[..8], &coordinates[8..]].map(|half| f64x8::from_slice(simd, half));
-    let is_near = |half: f64x8<S>| half.abs().simd_lt(WHOLE / 4.0).all_true();
-    if !(is_near(halves[0]) && is_near(halves[1])) {
-        return split_each(simd, coordinates);
+impl<const N: usize> Points<N> {
+    /// Puts a register of points: their vectors in steps, and the high and low words of their ids.
+    #[inline(always)]
+    fn put<S: Simd, M: Norm>(
+        &mut self,
+        norm: M,
+        register: usize,
+        mut vector: [f32x16<S>; N],
+        [high, low]: Words<S>,
+    ) {
+        let from = register * LANES;
+        let (middle, to) = (from + LANES / 2, from + LANES);
+        for axis in 0..N {
+            vector[axis] *= STEP;
+            let (first, second) = vector[axis].widen();
+            first.store_slice(&mut self.vectors[axis][from..middle]);
+            second.store_slice(&mut self.vectors[axis][middle..to]);
+        }
+        norm.distances(norm.keys(vector))
+            .store_slice(&mut self.distances[from..to]);
+        let [first, second] = [low.zip_low(high), low.zip_high(high)];
+        let [first, second]: [u64x8<S>; 2] = [first.bitcast(), second.bitcast()];
+        first.store_slice(&mut self.ids[from..middle]);
+        second.store_slice(&mut self.ids[middle..to]);
     }
-    let mut cells = [u32x16::splat(simd, 0); 2];
-    let mut steps = halves;
-    for half in 0..2 {
-        let floor = halves[half].floor();
-        steps[half] = ((halves[half] - floor) * f64::from(STEPS)).floor();
-        let whole = (floor + WHOLE).bitcast::<u64x8<S>>() - WHOLE.to_bits();
-        cells[half] = whole.bitcast();
+}
+
+impl Visits {
+    /// Puts some of sixteen visits on the list.
+    #[inline(always)]
+    fn push<S: Simd>(&mut self, visits: u32x16<S>, which: mask32x16<S>) {
+        let visits = visits.compress(which);
+        visits.store_slice(&mut self.list[self.len..][..LANES]);
+        self.len += which.to_bitmask().count_ones() as usize;
     }
-    let [a, b] = cells;
-    let steps: i32x16<S> = steps[0].narrow(steps[1]).to_int();
-    // Just below a whole number the difference can be rounded up to a whole cell.
-    let carries = steps.simd_eq(STEPS);
-    let cell = [a.unzip_low(b), a.unzip_high(b)];
-    let [low, high] = next(cell);
-    let cell = [carries.select(low, cell[0]), carries.select(high, cell[1])];
-    (cell, carries.select(i32x16::splat(simd, 0), steps))
-}
 
-/// The same one by one, for coordinates that are very large, or not finite.
-#[inline(never)]
-fn split_each<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>) {
-    let mut words = [[0; LANES]; 2];
-    let mut steps = [0; LANES];
-    for (lane, &coordinate) in coordinates.iter().enumerate() {
-        let (cell, within) = split(coordinate).unwrap_or((0, 0));
-        (words[0][lane], words[1][lane]) = (cell as u32, (cell >> 32) as u32);
-        steps[lane] = within;
+    /// Takes up to sixteen visits from the list, and tells how many they are; what follows them are old ones.
+    #[inline(always)]
+    fn take(&mut self) -> ([u32; LANES], usize) {
+        let n_visits = self.len.min(LANES);
+        self.len -= n_visits;
+        let mut visits = [0; LANES];
+        visits.copy_from_slice(&self.list[self.len..][..LANES]);
+        (visits, n_visits)
     }
-    let [low, high] = words;
-    let words = [
-        u32x16::from_slice(simd, &low),
-        u32x16::from_slice(simd, &high),
-    ];
-    (words, i32x16::from_slice(simd, &steps))
 }
 
-/// The next cells.
+/// The place of a visit.
 #[inline(always)]
-fn next<S: Simd>([low, high]: Words<S>) -> Words<S> {
-    let next = low + 1;
-    let carries = next.simd_eq(0);
-    [next, carries.select(high + 1, high)]
+fn place(visit: u32) -> usize {
+    // There are no others; this tells the compiler.
+    (visit >> PLACE_SHIFT) as usize % GROUP
 }
 
-/// The cells before.
+/// The nearest points of sixteen places.
+struct Found<S: Simd, const K: usize> {
+    best: [u32x16<S>; K],
+    /// The smallest key of all others.
+    next: u32x16<S>,
+}
+
+impl<S: Simd, const K: usize> Found<S, K> {
+    #[inline(always)]
+    fn new(simd: S) -> Self {
+        let nothing = u32x16::splat(simd, NOTHING);
+        Self {
+            best: [nothing; K],
+            next: nothing,
+        }
+    }
+
+    /// Looks at the points of a cell in each lane, where the places are seen from it, and their codes without index; no
+    /// cell has more points than `most`.
+    #[inline(always)]
+    fn look<M: Norm, const N: usize>(
+        &mut self,
+        search: Search<'_, M, N>,
+        points: &SixteenCells<S>,
+        origins: &[i32x16<S>; N],
+        codes: u32x16<S>,
+        most: u32,
+    ) {
+        let simd = codes.token();
+        for index in 0..most {
+            let index = u32x16::splat(simd, index);
+            let point: [_; N] = points.steps(index, search.lattice.jitter);
+            let key = search.norm.keys(vector(origins, &point));
+            let coded = (key.bitcast::<u32x16<S>>() & !search.code_mask) | (codes | index);
+            let is_there = points.counts.simd_gt(index);
+            let mut coded = is_there.select(coded, u32x16::splat(simd, NOTHING));
+            for best in &mut self.best {
+                let larger = best.max(coded);
+                *best = best.min(coded);
+                coded = larger;
+            }
+            self.next = self.next.min(coded);
+        }
+    }
+}
+
+/// The way from a point to the place, in steps, where both are seen from the lower corner of the point's cell.
 #[inline(always)]
-fn previous<S: Simd>([low, high]: Words<S>) -> Words<S> {
-    let borrows = low.simd_eq(0);
-    [low - 1, borrows.select(high - 1, high)]
+fn vector<S: Simd, const N: usize>(
+    origins: &[i32x16<S>; N],
+    point: &[u32x16<S>; N],
+) -> [f32x16<S>; N] {
+    let mut vector = [origins[0].to_float(); N];
+    for axis in 0..N {
+        vector[axis] = (origins[axis] - point[axis].bitcast::<i32x16<S>>()).to_float();
+    }
+    vector
 }
 
-/// The cells that cells repeat.
-#[inline(never)]
-fn wrap<S: Simd, const N: usize>(
+/// For each axis, the terms of the distances to the own cell, the nearer and the other neighbor, in steps.
+#[inline(always)]
+fn gaps<S: Simd, M: Norm, const N: usize>(
+    simd: S,
+    norm: M,
+    places: &Places<S, N>,
+) -> [[f32x16<S>; 3]; N] {
+    let mut gaps = [[f32x16::splat(simd, 0.0); 3]; N];
+    for axis in 0..N {
+        let below = places.steps[axis];
+        let above = i32x16::splat(simd, STEPS) - below;
+        gaps[axis][1] = norm.terms(below.min(above).to_float());
+        gaps[axis][2] = norm.terms(below.max(above).to_float());
+    }
+    gaps
+}
+
+/// Beyond the neighbors, keys are no smaller than this, in steps.
+#[inline(always)]
+fn border<S: Simd, M: Norm, const N: usize>(simd: S, norm: M, places: &Places<S, N>) -> f32x16<S> {
+    let mut nearest = i32x16::splat(simd, STEPS);
+    for axis in 0..N {
+        let above = i32x16::splat(simd, STEPS) - places.steps[axis];
+        nearest = nearest.min(places.steps[axis]).min(above);
+    }
+    norm.terms((nearest + STEPS).to_float())
+}
+
+/// The bits of the neighbors that are not on the nearer side, along any axis.
+const FARTHER: u32 = 0b1010_1010;
+
+/// Where a neighbor that is on the nearer sides lies in [`Group::near`]: one bit for each axis, the first lowest.
+#[inline(always)]
+fn near_index<const N: usize>(neighbor: u32) -> usize {
+    (0..N).fold(0, |index, axis| index | digit(neighbor, axis) << axis)
+}
+
+/// The hashes of the rows of own cells and nearer neighbors, with one bit for each axis but the first.
+#[inline(always)]
+fn rows<S: Simd, const N: usize>(
+    simd: S,
     lattice: &Lattice<N>,
-    axis: usize,
-    [mut low, mut high]: Words<S>,
-) -> Words<S> {
-    for lane in 0..LANES {
-        let cell = i64::from(high[lane].cast_signed()) << 32 | i64::from(low[lane]);
-        let cell = lattice.wrap(axis, cell);
-        (low[lane], high[lane]) = (cell as u32, (cell >> 32) as u32);
-    }
-    [low, high]
-}
-
-/// Where the index of a point begins in its code; below are two bits for each axis, 0 for the own cell, 1 for the
-/// nearer neighbor, 2 for the other.
-const INDEX_SHIFT: u32 = 8;
-
-/// Which neighbor it is along an axis.
-#[inline(always)]
-pub(crate) fn digit(cell: u32, axis: usize) -> usize {
-    (cell >> (2 * axis) & 3) as usize
-}
-
-/// The row of a cell in [`Places::rows`].
-#[inline(always)]
-fn row_index<const N: usize>(cell: u32) -> usize {
-    (1..N).fold(0, |index, axis| index * 3 + digit(cell, axis))
-}
-
-/// The own cell and its neighbors, those that are nearer on average first.
-pub(crate) fn cells_by_distance<const N: usize>() -> &'static [u8] {
-    const TWO: [u8; 9] = sorted_cells(2);
-    const THREE: [u8; 27] = sorted_cells(3);
-    const FOUR: [u8; 81] = sorted_cells(4);
-    match N {
-        2 => &TWO,
-        3 => &THREE,
-        _ => &FOUR,
-    }
-}
-
-/// All cells with these axes, in the order of the mean of their squared distance.
-const fn sorted_cells<const LEN: usize>(n_axes: u32) -> [u8; LEN] {
-    let mut cells = [0; LEN];
-    let mut len = 0;
-    let mut wanted = 0;
-    // The mean squares of the distances to the nearer and to the other neighbor, 1/12 and 7/12, are as 1 to 7.
-    while len < LEN {
-        let mut cell = 0_u32;
-        while cell < 1 << (2 * n_axes) {
-            let mut distance = 0;
-            let mut axis = 0;
-            while axis < n_axes {
-                distance += [0, 1, 7, 1000][(cell >> (2 * axis) & 3) as usize];
-                axis += 1;
-            }
-            if distance == wanted {
-                cells[len] = cell as u8;
-                len += 1;
-            }
-            cell += 1;
+    cells: &[[Words<S>; 2]; N],
+) -> [CellHashes<S>; MOST_NEAR / 2] {
+    let mut rows = [CellHashes::splat(simd, lattice.root); MOST_NEAR / 2];
+    let mut n_rows = 1;
+    for axis in (1..N).rev() {
+        for row in (0..n_rows).rev() {
+            let [own, near] = CellHashes::axis_each([rows[row]; 2], cells[axis]);
+            [rows[2 * row], rows[2 * row + 1]] = [own, near];
         }
-        wanted += 1;
+        n_rows *= 2;
     }
-    cells
+    rows
 }
+
+/// The numbers of the lanes.
+const ASCENDING: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];

@@ -5,8 +5,9 @@
 
 use crate::fixed::{Place, STEPS, cells};
 use crate::lattice::{Lattice, SixteenCells};
-use crate::many::{LANES, NOTHING, cells_by_distance, digit};
+use crate::many::NOTHING;
 use crate::metric::Norm;
+use crate::places::{LANES, cells_by_distance, digit};
 use crate::search::{Hit, Name, border, hit};
 use dapple_hash::CellHashes;
 use fearless_simd::{f32x16, i32x16, mask32x16, prelude::*, u32x16};

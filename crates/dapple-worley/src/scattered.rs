@@ -1,10 +1,9 @@
 //! The door for many scattered positions, such as the shading points of a renderer.
 
-use crate::fixed::FARTHEST;
-use crate::many::{LANES, Nearest, Places};
+use crate::many::{GROUP, Group, Points, Search};
 use crate::metric::{Chebyshev, Euclidean, Manhattan, Norm};
 use crate::{Axes, Feature, LIMIT, Metric, Space, Vector, Worley, WorleyError, simd};
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{Level, dispatch};
 
 impl<const N: usize> Worley<N>
 where
@@ -46,83 +45,61 @@ where
     ) -> Result<(), WorleyError> {
         const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
         WorleyError::check_length(features.len(), positions.len())?;
-        let chunks = positions.chunks(LANES).zip(features.chunks_mut(LANES));
-        for (positions, features) in chunks {
+        let mut group = Group::new();
+        let groups = positions.chunks(GROUP).zip(features.chunks_mut(GROUP));
+        for (positions, features) in groups {
             let holds = match self.metric {
                 // One at a time it would be, in any case.
                 _ if self.lattice.density.is_some() => 0,
                 Metric::Minkowski(_) => 0,
-                Metric::Euclidean => self.sixteen(level, Euclidean, positions, features),
-                Metric::Manhattan => self.sixteen(level, Manhattan, positions, features),
-                Metric::Chebyshev => self.sixteen(level, Chebyshev, positions, features),
+                Metric::Euclidean => self.search(level, Euclidean, positions, &mut group),
+                Metric::Manhattan => self.search(level, Manhattan, positions, &mut group),
+                Metric::Chebyshev => self.search(level, Chebyshev, positions, &mut group),
             };
+            if holds != 0 {
+                put(group.points(), features);
+            }
             let mut again = u64::MAX >> (64 - positions.len()) & !holds;
             while again != 0 {
-                let lane = again.trailing_zeros() as usize;
-                features[lane] = self.sample(positions[lane]);
+                let place = again.trailing_zeros() as usize;
+                features[place] = self.sample(positions[place]);
                 again &= again - 1;
             }
         }
         Ok(())
     }
 
-    /// Up to sixteen positions; tells for which of them it holds.
-    fn sixteen<M: Norm, const K: usize>(
+    /// Up to a group of positions; tells for which of them it holds.
+    fn search<M: Norm, const K: usize>(
         &self,
         level: Level,
         norm: M,
         positions: &[Vector<N>],
-        features: &mut [[Feature<Vector<N>>; K]],
+        group: &mut Group<N, K>,
     ) -> u64 {
-        let mut coordinates = [[0.0; LANES]; N];
-        let mut is_finite = 0;
-        for (lane, &position) in positions.iter().enumerate() {
-            let position: [f64; N] = position.into();
-            let mut has_place = true;
-            for axis in 0..N {
-                coordinates[axis][lane] = position[axis];
-                has_place &= position[axis].abs() <= FARTHEST;
-            }
-            is_finite |= u64::from(has_place) << lane;
-        }
-        is_finite & dispatch!(level, simd => self.fill(simd, norm, &coordinates, features))
+        let search = Search::new(norm, &self.lattice);
+        dispatch!(level, simd => group.search(simd, search, positions))
     }
+}
 
-    #[inline(always)]
-    fn fill<S: Simd, M: Norm, const K: usize>(
-        &self,
-        simd: S,
-        norm: M,
-        coordinates: &[[f64; LANES]; N],
-        features: &mut [[Feature<Vector<N>>; K]],
-    ) -> u64 {
-        let places = Places::new(simd, &self.lattice, coordinates);
-        let nearest: Nearest<S, K> = places.nearest(simd, norm, &self.lattice);
-        for rank in 0..K {
-            let points = places.points(simd, &self.lattice, &nearest, rank);
-            let mut distances = [0.0; LANES];
-            norm.distances(norm.keys(points.vectors))
-                .store_slice(&mut distances);
-            let mut vectors = [[0.0; LANES]; N];
+/// Writes what was found, place by place.
+fn put<const N: usize, const K: usize>(
+    points: &[Points<N>; K],
+    features: &mut [[Feature<Vector<N>>; K]],
+) where
+    Axes: Space<N>,
+{
+    for (place, features) in features.iter_mut().enumerate() {
+        for (feature, points) in features.iter_mut().zip(points) {
+            let mut vector = [0.0; N];
             for axis in 0..N {
-                points.vectors[axis].store_slice(&mut vectors[axis]);
+                vector[axis] = points.vectors[axis][place];
             }
-            let mut ids = [[0; LANES]; 2];
-            for half in 0..2 {
-                points.ids[half].store_slice(&mut ids[half]);
-            }
-            for (lane, features) in features.iter_mut().enumerate() {
-                let mut vector = [0.0; N];
-                for axis in 0..N {
-                    vector[axis] = f64::from(vectors[axis][lane]);
-                }
-                features[rank] = Feature {
-                    distance: distances[lane],
-                    vector: vector.into(),
-                    id: u64::from(ids[1][lane]) << 32 | u64::from(ids[0][lane]),
-                };
-            }
+            *feature = Feature {
+                distance: points.distances[place],
+                vector: vector.into(),
+                id: points.ids[place],
+            };
         }
-        nearest.holds
     }
 }

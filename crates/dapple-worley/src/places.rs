@@ -1,0 +1,280 @@
+//! Sixteen places side by side, one in each lane, and the neighbors of their cells.
+//!
+//! Neighbors are told apart by two bits for each axis: 0 for the own cell, 1 for the neighbor on the nearer side, 2 for
+//! the other.
+
+use crate::fixed::{STEPS, split};
+use crate::lattice::Lattice;
+use dapple_hash::CellHashes;
+use fearless_simd::{f64x8, i32x16, prelude::*, u32x16, u64x8};
+
+/// The places of a register.
+pub(crate) const LANES: usize = 16;
+
+/// The low and the high word of sixteen whole numbers.
+pub(crate) type Words<S> = [u32x16<S>; 2];
+
+/// Sixteen places, axis by axis.
+#[derive(Clone, Copy)]
+pub(crate) struct Places<S: Simd, const N: usize> {
+    /// The own cells.
+    pub(crate) cells: [Words<S>; N],
+    /// The steps within the cells.
+    pub(crate) steps: [i32x16<S>; N],
+}
+
+/// A cell for each of sixteen places.
+#[derive(Clone, Copy)]
+pub(crate) struct Cells<S: Simd, const N: usize> {
+    pub(crate) hashes: CellHashes<S>,
+    /// The places, in steps from the lower corners of the cells.
+    pub(crate) origins: [i32x16<S>; N],
+}
+
+/// `f64` has whole numbers only between this and twice this, and their difference from this is in the low bits.
+const WHOLE: f64 = (3_u64 << 51) as f64;
+
+impl<S: Simd, const N: usize> Places<S, N> {
+    /// The places of a register of positions, and which lanes have one, as bits; the others get any.
+    #[inline(always)]
+    pub(crate) fn new<const LEN: usize>(
+        simd: S,
+        positions: &[[f64; LEN]; N],
+        register: usize,
+    ) -> (Self, u64) {
+        let mut places = Self {
+            cells: [[u32x16::splat(simd, 0); 2]; N],
+            steps: [i32x16::splat(simd, 0); N],
+        };
+        let mut has_place = u64::MAX >> (64 - LANES);
+        for axis in 0..N {
+            let coordinates = &positions[axis].as_chunks().0[register];
+            let splittable;
+            (places.cells[axis], places.steps[axis], splittable) = split_lanes(simd, coordinates);
+            has_place &= splittable;
+        }
+        (places, has_place)
+    }
+
+    /// The places of a register of the memory.
+    #[inline(always)]
+    pub(crate) fn load<const LEN: usize>(
+        simd: S,
+        cells: &[[[u32; LEN]; 2]; N],
+        steps: &[[i32; LEN]; N],
+        register: usize,
+    ) -> Self {
+        let mut places = Self {
+            cells: [[u32x16::splat(simd, 0); 2]; N],
+            steps: [i32x16::splat(simd, 0); N],
+        };
+        for axis in 0..N {
+            for half in 0..2 {
+                places.cells[axis][half] = load(simd, &cells[axis][half], register);
+            }
+            places.steps[axis] =
+                i32x16::from_slice(simd, &steps[axis][register * LANES..][..LANES]);
+        }
+        places
+    }
+
+    #[inline(always)]
+    pub(crate) fn store<const LEN: usize>(
+        &self,
+        cells: &mut [[[u32; LEN]; 2]; N],
+        steps: &mut [[i32; LEN]; N],
+        register: usize,
+    ) {
+        for axis in 0..N {
+            for half in 0..2 {
+                store(self.cells[axis][half], &mut cells[axis][half], register);
+            }
+            self.steps[axis].store_slice(&mut steps[axis][register * LANES..][..LANES]);
+        }
+    }
+
+    /// Where the neighbor on the nearer side is, along an axis: -1 or 1.
+    #[inline(always)]
+    pub(crate) fn nearer(&self, simd: S, axis: usize) -> i32x16<S> {
+        let [one, minus_one] = [i32x16::splat(simd, 1), i32x16::splat(simd, -1)];
+        self.steps[axis].simd_lt(STEPS / 2).select(minus_one, one)
+    }
+
+    /// The coordinates of the cells this far away along an axis, or of the cells that those repeat.
+    #[inline(always)]
+    pub(crate) fn shifted(&self, lattice: &Lattice<N>, axis: usize, shift: i32x16<S>) -> Words<S> {
+        let [low, high] = self.cells[axis];
+        let moved = low + shift.bitcast::<u32x16<S>>();
+        let sign = (shift >> 31).bitcast::<u32x16<S>>();
+        let carries = moved.simd_lt(shift.bitcast::<u32x16<S>>());
+        let high = high + sign;
+        let words = [moved, carries.select(high + 1, high)];
+        if lattice.period[axis] > 0 {
+            return wrap(lattice, axis, words);
+        }
+        words
+    }
+
+    /// For several registers in step, a neighbor of each place, or its own cell.
+    #[inline(always)]
+    pub(crate) fn neighbors_each<const C: usize>(
+        simd: S,
+        lattice: &Lattice<N>,
+        places: &[Self; C],
+        neighbors: [u32x16<S>; C],
+    ) -> [Cells<S, N>; C] {
+        let mut hashes = [CellHashes::splat(simd, lattice.root); C];
+        let mut cells = [Cells {
+            hashes: hashes[0],
+            origins: places[0].steps,
+        }; C];
+        for axis in (0..N).rev() {
+            let mut words = [places[0].cells[axis]; C];
+            for i in 0..C {
+                let digit = (neighbors[i] >> (2 * axis as u32)) & 3;
+                let nearer = places[i].nearer(simd, axis);
+                let zero = i32x16::splat(simd, 0);
+                let [is_near, is_far] = [digit.simd_eq(1), digit.simd_eq(2)];
+                let shift = is_near.select(nearer, is_far.select(zero - nearer, zero));
+                words[i] = places[i].shifted(lattice, axis, shift);
+                let from = shift * i32x16::splat(simd, STEPS);
+                cells[i].origins[axis] = places[i].steps[axis] - from;
+            }
+            hashes = CellHashes::axis_each(hashes, words);
+        }
+        for i in 0..C {
+            cells[i].hashes = hashes[i];
+        }
+        cells
+    }
+}
+
+/// A register of the memory.
+#[inline(always)]
+pub(crate) fn load<S: Simd>(simd: S, words: &[u32], register: usize) -> u32x16<S> {
+    u32x16::from_slice(simd, &words[register * LANES..][..LANES])
+}
+
+#[inline(always)]
+pub(crate) fn store<S: Simd>(lanes: u32x16<S>, words: &mut [u32], register: usize) {
+    lanes.store_slice(&mut words[register * LANES..][..LANES]);
+}
+
+/// The cells of sixteen coordinates, the steps from their lower edges, and which have these, as bits: as [`split`].
+#[inline(always)]
+fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>, u64) {
+    let halves = [&coordinates[..8], &coordinates[8..]].map(|half| f64x8::from_slice(simd, half));
+    let is_near = |half: f64x8<S>| half.abs().simd_lt(WHOLE / 4.0).all_true();
+    if !(is_near(halves[0]) && is_near(halves[1])) {
+        return split_each(simd, coordinates);
+    }
+    let mut cells = [u32x16::splat(simd, 0); 2];
+    let mut steps = halves;
+    for half in 0..2 {
+        let floor = halves[half].floor();
+        steps[half] = ((halves[half] - floor) * f64::from(STEPS)).floor();
+        let whole = (floor + WHOLE).bitcast::<u64x8<S>>() - WHOLE.to_bits();
+        cells[half] = whole.bitcast();
+    }
+    let [a, b] = cells;
+    let steps: i32x16<S> = steps[0].narrow(steps[1]).to_int();
+    // Just below a whole number the difference can be rounded up to a whole cell.
+    let carries = steps.simd_eq(STEPS);
+    let cell = [a.unzip_low(b), a.unzip_high(b)];
+    let [low, high] = next(cell);
+    let cell = [carries.select(low, cell[0]), carries.select(high, cell[1])];
+    (
+        cell,
+        carries.select(i32x16::splat(simd, 0), steps),
+        u64::MAX,
+    )
+}
+
+/// The same one by one, for coordinates that are very large, or not finite.
+#[inline(never)]
+fn split_each<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>, u64) {
+    let mut words = [[0; LANES]; 2];
+    let mut steps = [0; LANES];
+    let mut has_place = 0;
+    for (lane, &coordinate) in coordinates.iter().enumerate() {
+        let Some((cell, within)) = split(coordinate) else {
+            continue;
+        };
+        has_place |= 1 << lane;
+        (words[0][lane], words[1][lane]) = (cell as u32, (cell >> 32) as u32);
+        steps[lane] = within;
+    }
+    let [low, high] = words;
+    let words = [
+        u32x16::from_slice(simd, &low),
+        u32x16::from_slice(simd, &high),
+    ];
+    (words, i32x16::from_slice(simd, &steps), has_place)
+}
+
+/// The next cells.
+#[inline(always)]
+fn next<S: Simd>([low, high]: Words<S>) -> Words<S> {
+    let next = low + 1;
+    let carries = next.simd_eq(0);
+    [next, carries.select(high + 1, high)]
+}
+
+/// The cells that cells repeat.
+#[inline(never)]
+fn wrap<S: Simd, const N: usize>(
+    lattice: &Lattice<N>,
+    axis: usize,
+    [mut low, mut high]: Words<S>,
+) -> Words<S> {
+    for lane in 0..LANES {
+        let cell = i64::from(high[lane].cast_signed()) << 32 | i64::from(low[lane]);
+        let cell = lattice.wrap(axis, cell);
+        (low[lane], high[lane]) = (cell as u32, (cell >> 32) as u32);
+    }
+    [low, high]
+}
+
+/// Which neighbor it is along an axis.
+#[inline(always)]
+pub(crate) fn digit(cell: u32, axis: usize) -> usize {
+    (cell >> (2 * axis) & 3) as usize
+}
+
+/// The own cell and its neighbors, those that are nearer on average first.
+pub(crate) fn cells_by_distance<const N: usize>() -> &'static [u8] {
+    const TWO: [u8; 9] = sorted_cells(2);
+    const THREE: [u8; 27] = sorted_cells(3);
+    const FOUR: [u8; 81] = sorted_cells(4);
+    match N {
+        2 => &TWO,
+        3 => &THREE,
+        _ => &FOUR,
+    }
+}
+
+/// All cells with these axes, in the order of the mean of their squared distance.
+const fn sorted_cells<const LEN: usize>(n_axes: u32) -> [u8; LEN] {
+    let mut cells = [0; LEN];
+    let mut len = 0;
+    let mut wanted = 0;
+    // The mean squares of the distances to the nearer and to the other neighbor, 1/12 and 7/12, are as 1 to 7.
+    while len < LEN {
+        let mut cell = 0_u32;
+        while cell < 1 << (2 * n_axes) {
+            let mut distance = 0;
+            let mut axis = 0;
+            while axis < n_axes {
+                distance += [0, 1, 7, 1000][(cell >> (2 * axis) & 3) as usize];
+                axis += 1;
+            }
+            if distance == wanted {
+                cells[len] = cell as u8;
+                len += 1;
+            }
+            cell += 1;
+        }
+        wanted += 1;
+    }
+    cells
+}
