@@ -119,7 +119,8 @@ pub(crate) struct ValueLanes<S: Simd, const K: usize> {
     weights: [f32x16<S>; K],
     /// Which weights are not zero.
     counts: [bool; K],
-    is_added: bool,
+    /// Whether values are added to what is there.
+    pub(crate) is_added: bool,
     weight: f32x16<S>,
 }
 

@@ -1,5 +1,6 @@
 //! A block: a few columns of a band, whose feature points are made once.
 
+use super::bins::Bins;
 use super::sheet::Sheet;
 use super::shortlist::Shortlist;
 use super::sieve::{Keep, PixelBox, PointList, Points};
@@ -56,8 +57,8 @@ pub(super) struct Memory<const N: usize> {
     pub(super) sheet: Sheet,
     pub(super) near: Vec<f32>,
     pub(super) runs: Vec<Range<usize>>,
-    /// The smallest keys of the pixels of a block.
-    pub(super) planes: [Vec<f32>; LIMIT],
+    /// The points in the order of the pixels that they are near to.
+    pub(super) bins: Bins,
     /// The coordinates of the columns of the block, in steps from the lower corner of the table, and those of the rows
     /// of the band along the other axes; the last one is repeated to fill a register.
     pub(super) lines: [Vec<i32>; N],
@@ -74,7 +75,7 @@ impl<const N: usize> Memory<N> {
             sheet: Sheet::new(),
             near: Vec::new(),
             runs: Vec::new(),
-            planes: core::array::from_fn(|_| Vec::new()),
+            bins: Bins::new(),
             lines: core::array::from_fn(|_| Vec::new()),
         }
     }
@@ -120,11 +121,6 @@ where
             return;
         };
         memory.wide_table.wants_ids = out.wants_ids();
-        // The picture before may be of the same cells.
-        if !memory.table.has(&cells, out.wants_ids()) {
-            memory.table.wants_ids = out.wants_ids();
-            dispatch!(self.level, simd => memory.table.fill(simd, lattice, cells));
-        }
         for axis in 0..N {
             let places = match axis {
                 0 => &self.columns.places[self.range.clone()],
@@ -141,8 +137,13 @@ where
         }
         let splat = splat.filter(|splat| splat.is_even(&memory.lines));
         if let (Output::Values(values, rows), Some(splat)) = (&mut *out, &splat) {
-            splat.render(self, (values, rows), memory);
+            splat.render(self, &cells, (values, rows), memory);
             return;
+        }
+        // The picture before may be of the same cells.
+        if !memory.table.has(&cells, out.wants_ids()) {
+            memory.table.wants_ids = out.wants_ids();
+            dispatch!(self.level, simd => memory.table.fill(simd, lattice, cells));
         }
         if matches!(out, Output::Values(..)) && self.sheet((depth, guess), (out, memory)) {
             return;

@@ -1,48 +1,51 @@
-//! Small cells: every feature point is put into the few pixels about it.
+//! Small cells: every feature point is compared at the few tiles about it.
 //!
 //! Where a cell has only a few pixels, looking for the points that matter to each tile takes longer than comparing
-//! them. So a block has planes for the `K` smallest keys of its pixels, and every point goes into a square of 8 × 8 or
-//! 16 × 16 pixels about it. All points nearer to a pixel than half of that square have been compared there then, and
-//! its keys are right if the `K`-th is smaller than that.
+//! them. So tiles have 4 × 4 pixels, a register, and each is compared with all points that lie in it or in the tiles
+//! about it ([`bins`](super::bins)). All points nearer to a pixel than the edge of these have been compared there
+//! then, and its keys are right if the `K`-th is smaller than that.
 
+use super::bins::{Bins, Grid, HALF, Point, Reach, TILE};
 use super::block::{Block, Memory};
 use super::kernel::{greater, lesser};
-use super::sieve::{Keep, Points};
+use super::table::CellBox;
 use super::{BLOCK_COLUMNS, LANES};
-use crate::fixed::STEP;
+use crate::fixed::{STEP, STEP_BITS};
 use crate::metric::{Norm, with_norm};
-use crate::sink::Values;
+use crate::sink::{ValueLanes, Values};
 use crate::{Axes, Space};
-use fearless_simd::{Level, dispatch, f32x8, f32x16, i32x8, i32x16, prelude::*};
-
-/// Half of the sides of the squares.
-const HALVES: [usize; 2] = [4, 8];
+use fearless_simd::{Level, dispatch, f32x4, f32x16, i32x4, prelude::*};
 
 /// By how much of a pixel a pixel may lie beside its place: well below what [`SURE`] leaves.
 const UNEVEN: f32 = 0.001;
 
-/// Squares may begin this many pixels before those of the block.
-const MARGIN: usize = 2 * HALVES[1];
-
-/// The numbers from a row of a plane to the next.
-const STRIDE: usize = BLOCK_COLUMNS + 2 * MARGIN;
-
-/// The numbers of a plane from the first to the last pixel of a square.
-const SPAN_8: usize = 7 * STRIDE + 8;
-const SPAN_16: usize = 15 * STRIDE + 16;
-
-/// The largest part of half a square that is relied upon: the place of a point among the pixels is rounded.
+/// The largest part of the distance from a tile to the edge of those about it that is relied upon: the place of a
+/// point among the pixels is rounded.
 const SURE: f32 = 0.999;
 
-/// By how many cells the distance of a point from a block of up to 1000 cells may be rounded, and more.
-const ROUNDING: f32 = 0.001;
+/// Where the tiles about a tile reach further than this, in cells, there are better ways;
+const FARTHEST: f32 = 3.5;
+
+/// and also where they reach further than so many times the distance that is needed.
+const MOST_WASTE: f32 = 4.0;
+
+/// The tiles about a tile that points are taken from, on either side.
+const NEAR: usize = 1;
+const WIDE: usize = 2;
+
+/// More half tiles above and below a tile than this are too many.
+const MOST_HALVES: usize = 8;
+
+/// How many times as far as the guess points are taken from along the axes across the picture: searching a pixel on its
+/// own takes as long as comparing hundreds.
+const SPARE: f32 = 1.1;
 
 /// How a block is filled.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Splat {
-    /// Half of the side of a square, in pixels.
-    half: usize,
-    /// The same in cells, or a little less.
+    /// The tiles and half tiles about a tile that points are taken from.
+    around: [usize; 2],
+    /// The distance from any pixel within which no point is left out, in cells.
     pub(super) reach: f32,
     /// Steps from one column to the next, and from one row to the next along the axis that goes with the rows.
     pixel: [f32; 2],
@@ -60,7 +63,8 @@ impl Splat {
         let [u, v]: [[f64; N]; 2] = [plane.u.into(), plane.v.into()];
         let mut row_axes = (1..N).filter(|&axis| v[axis] != 0.0);
         let row_axis = row_axes.next()?;
-        if row_axes.next().is_some() {
+        // The terms of the axes across the picture are joined before those of the rows.
+        if row_axes.next().is_some() || (N == 4 && row_axis != 1) {
             return None;
         }
         let window = block.picture.window;
@@ -69,25 +73,32 @@ impl Splat {
             (u[0] * window.pixel.x * frequency) as f32,
             (v[row_axis] * window.pixel.y * frequency) as f32,
         ];
-        let smaller = pixel[0].abs().min(pixel[1].abs());
-        let larger = pixel[0].abs().max(pixel[1].abs());
-        for half in HALVES {
-            let reach = half as f32 * smaller * SURE;
-            // Pixels far from square make squares of pixels that reach too far along one axis.
-            if reach >= distance && larger <= 2.0 * smaller && reach < 3.0 {
-                let pixel = pixel.map(|cells| cells / STEP);
-                return Some(Self {
-                    half,
-                    reach,
-                    pixel,
-                    row_axis,
-                });
-            }
+        // A tile begins half a pixel before its first pixel.
+        let reach = |pixel: f32, pixels: usize| (pixels as f32 + 0.5) * pixel.abs() * SURE;
+        let useful = distance..FARTHEST.min(MOST_WASTE * distance);
+        for tiles in [NEAR, WIDE] {
+            let along_row = reach(pixel[0], TILE * tiles);
+            let halves = (0..MOST_HALVES).find(|halves| reach(pixel[1], HALF * halves) >= distance);
+            let Some(halves) = halves.filter(|_| useful.contains(&along_row)) else {
+                continue;
+            };
+            let along = along_row.min(reach(pixel[1], HALF * halves));
+            let across = if N > 2 {
+                distance * SPARE
+            } else {
+                f32::INFINITY
+            };
+            return Some(Self {
+                around: [tiles, halves],
+                reach: along.min(across),
+                pixel: pixel.map(|cells| cells / STEP),
+                row_axis,
+            });
         }
         None
     }
 
-    /// Whether pixels are as evenly spaced as squares need it: far from zero, `f64` may not tell them apart.
+    /// Whether pixels are as evenly spaced as tiles need it: far from zero, `f64` may not tell them apart.
     pub(super) fn is_even<const N: usize>(&self, lines: &[Vec<i32>; N]) -> bool {
         let is_even = |axis: usize, pixel: f32| {
             let line = &lines[axis][..lines[axis].len() - LANES];
@@ -99,209 +110,240 @@ impl Splat {
         is_even(0, self.pixel[0]) && is_even(self.row_axis, self.pixel[1])
     }
 
-    /// Fills the pixels of a block whose table is made.
+    /// Fills the pixels of a block; its lines are counted from the corner of `cells`.
     pub(super) fn render<const N: usize>(
         &self,
         block: &Block<'_, N>,
+        cells: &CellBox<N>,
         (values, out): (&Values, &mut [&mut [f32]]),
         memory: &mut Memory<N>,
     ) where
         Axes: Space<N>,
     {
-        let (level, depth) = (block.level, values.tone.depth());
-        with_norm!(block.picture.worley.metric, norm => match depth {
-            1 => self.render_with::<_, N, 1>(level, norm, block, (values, out), memory),
-            2 => self.render_with::<_, N, 2>(level, norm, block, (values, out), memory),
-            _ => self.render_with::<_, N, 4>(level, norm, block, (values, out), memory),
+        let origin = cells.first;
+        let cells = self.cells(block, origin, memory);
+        let Memory { bins, lines, .. } = memory;
+        let lattice = &block.picture.worley.lattice;
+        let grid = Grid {
+            origin,
+            first: lines.each_ref().map(|line| line[0]),
+            size: [block.range.len(), block.n_rows],
+            pixel: self.pixel,
+            row_axis: self.row_axis,
+        };
+        let [tiles, halves] = self.around;
+        with_norm!(block.picture.worley.metric, norm => {
+            let reach = Reach {
+                tiles,
+                halves,
+                key: norm.key_along_one_axis(self.reach),
+            };
+            bins.clear(&lines[0][..block.range.len()], block.n_rows, reach);
+            dispatch!(block.level, simd => bins.collect(simd, norm, lattice, &cells, (&grid, reach)));
+            bins.count();
+            let rows = &lines[self.row_axis];
+            if tiles == NEAR {
+                let mut points = core::mem::take(&mut bins.near);
+                dispatch!(block.level, simd => bins.sort(simd, norm, &mut points));
+                let runs = Runs::new(bins, reach, rows, &points);
+                fill_block::<_, N, 12, 3>(norm, (block, reach), runs, (values, out));
+                bins.near = points;
+            } else {
+                let mut points = core::mem::take(&mut bins.wide);
+                dispatch!(block.level, simd => bins.sort(simd, norm, &mut points));
+                let runs = Runs::new(bins, reach, rows, &points);
+                fill_block::<_, N, 20, 5>(norm, (block, reach), runs, (values, out));
+                bins.wide = points;
+            }
         });
     }
 
-    fn render_with<M: Norm, const N: usize, const K: usize>(
+    /// The cells with points within reach.
+    fn cells<const N: usize>(
         &self,
-        level: Level,
-        norm: M,
         block: &Block<'_, N>,
-        (values, out): (&Values, &mut [&mut [f32]]),
-        memory: &mut Memory<N>,
-    ) where
+        origin: [i64; N],
+        memory: &Memory<N>,
+    ) -> CellBox<N>
+    where
         Axes: Space<N>,
     {
         let pixels = memory.pixel_box(0..block.range.len(), 0..block.n_rows);
-        let Memory {
-            table,
-            list,
-            near,
-            runs,
-            lines,
-            planes,
-            ..
-        } = memory;
-        let all = table.cells;
-        let last = core::array::from_fn(|axis| (all.last[axis] - all.first[axis]) as i32);
-        table.runs([[0; N], last], runs);
-        let points = Points {
-            steps: &table.steps,
-            numbers: None,
-            runs,
-            wants_numbers: false,
-        };
-        let n_rows = block.n_rows + 2 * MARGIN;
-        for plane in planes.iter_mut().take(K) {
-            plane.clear();
-            plane.resize(STRIDE * n_rows, f32::INFINITY);
-        }
-        let planes: &mut [Vec<f32>; K] = (&mut planes[..K]).try_into().expect("K is at most 4");
-        let key = norm.key_along_one_axis(self.reach);
-        let generous = norm.key_along_one_axis(self.reach + ROUNDING);
-        dispatch!(level, simd => {
-            list.sift(simd, norm, points, (&pixels, Keep::Within(generous)), near);
-            let row_axis = &lines[self.row_axis];
-            for first in (0..list.len).step_by(LANES) {
-                let lefts = self.corners(simd, 0, &list.steps[0][first..], lines[0][0]);
-                let tops = self.corners(simd, 1, &list.steps[self.row_axis][first..], row_axis[0]);
-                for lane in 0..LANES.min(list.len - first) {
-                    let mut point = [0; N];
-                    for axis in 0..N {
-                        point[axis] = list.steps[axis][first + lane];
-                    }
-                    let corner = [lefts[lane], tops[lane]];
-                    if self.half == HALVES[0] {
-                        self.put::<_, _, N, K, 8, SPAN_8>(simd, norm, (point, corner, lines), planes);
-                    } else {
-                        self.put::<_, _, N, K, 16, SPAN_16>(simd, norm, (point, corner, lines), planes);
-                    }
-                }
-            }
-        });
-        let limit = norm.tightened(key);
-        for (row, out) in out.iter_mut().enumerate() {
-            let first = (row + MARGIN) * STRIDE + MARGIN;
-            let keys = planes
-                .each_ref()
-                .map(|plane| &plane[first..first + BLOCK_COLUMNS]);
-            let out = &mut out[block.range.clone()];
-            let unknown = dispatch!(level, simd => resolve(simd, norm, (values, limit), keys, out));
-            for (column, before) in unknown {
-                let place = block
-                    .picture
-                    .place(block.range.start + column, block.first + row);
-                out[column] = before;
-                values.put_one(block.picture.worley, place, &mut out[column]);
-            }
+        let reach = (self.reach / STEP) as i32 + 1;
+        let cell = |axis: usize, steps: i32| origin[axis] + i64::from(steps >> STEP_BITS);
+        CellBox {
+            first: core::array::from_fn(|axis| cell(axis, pixels.low[axis] - reach)),
+            last: core::array::from_fn(|axis| cell(axis, pixels.high[axis] + reach)),
         }
     }
+}
 
-    /// The first column or row of the squares about sixteen points, from their coordinates and that of the first pixel.
-    #[inline(always)]
-    fn corners<S: Simd>(&self, simd: S, along: usize, points: &[i32], first: i32) -> [i32; LANES] {
-        let ahead = i32x16::from_slice(simd, &points[..LANES]) - first;
-        let pixels = ahead.to_float::<f32x16<S>>() * self.pixel[along].recip();
-        let corner = pixels.floor().to_int::<i32x16<S>>() - (self.half as i32 - 1);
-        let mut corners = [0; LANES];
-        corner.store_slice(&mut corners);
-        corners
-    }
-
-    /// Puts a point into the `W × W` pixels from `corner` on; these span `SPAN` numbers of a plane.
-    #[inline(always)]
-    fn put<S: Simd, M: Norm, const N: usize, const K: usize, const W: usize, const SPAN: usize>(
-        &self,
-        simd: S,
-        norm: M,
-        (point, [left, top], lines): ([i32; N], [i32; 2], &[Vec<i32>; N]),
-        planes: &mut [Vec<f32>; K],
-    ) {
-        // What lies further out than the margin touches no pixel.
-        let margin = MARGIN as i32;
-        if left < -margin || top < -margin || (left + margin) as usize + W > STRIDE {
-            return;
-        }
-        let first = (top + margin) as usize * STRIDE + (left + margin) as usize;
-        if first + SPAN > planes[0].len() {
-            return;
-        }
-        let mut row_terms = [0.0; W];
-        for part in 0..W / 8 {
-            let mut key = f32x8::splat(simd, 0.0);
-            for axis in (1..N).rev() {
-                let steps = if axis == self.row_axis {
-                    load(simd, &lines[axis], top + 8 * part as i32)
-                } else {
-                    i32x8::splat(simd, lines[axis][0])
-                };
-                let term = norm.terms((steps - point[axis]).to_float::<f32x8<S>>() * STEP);
-                key = if axis == N - 1 {
-                    term
-                } else {
-                    norm.joins(term, key)
-                };
+/// Fills the pixels of a block from its points.
+fn fill_block<M: Norm, const N: usize, const W: usize, const TILES: usize>(
+    norm: M,
+    (block, reach): (&Block<'_, N>, Reach),
+    runs: Runs<'_, W>,
+    (values, out): (&Values, &mut [&mut [f32]]),
+) where
+    Axes: Space<N>,
+{
+    let range = block.range.clone();
+    let n_tiles = range.len().div_ceil(TILE);
+    let limit = norm.tightened(reach.key);
+    let mut whole_tiles = [[0.0; BLOCK_COLUMNS]; TILE];
+    let mut unknown = [0; BLOCK_COLUMNS / TILE];
+    for (tile_row, out) in out.chunks_mut(TILE).enumerate() {
+        let is_whole = out.len() == TILE && range.len() % TILE == 0;
+        if !is_whole {
+            for (pixels, out) in whole_tiles.iter_mut().zip(&*out) {
+                pixels[..range.len()].copy_from_slice(&out[range.clone()]);
             }
-            key.store_slice(&mut row_terms[part * 8..part * 8 + 8]);
         }
-        let spans = planes.each_mut().map(|plane| -> &mut [f32; SPAN] {
-            (&mut plane[first..first + SPAN])
-                .try_into()
-                .expect("as many as were cut out")
+        let mut out_rows = out.iter_mut();
+        let pixels = whole_tiles.each_mut().map(|pixels| match out_rows.next() {
+            Some(out) if is_whole => &mut out[range.clone()],
+            _ => &mut pixels[..n_tiles * TILE],
         });
-        for part in 0..W / 8 {
-            let steps = load(simd, &lines[0], left + 8 * part as i32);
-            let terms = norm.terms((steps - point[0]).to_float::<f32x8<S>>() * STEP);
-            for row in 0..W {
-                let at = row * STRIDE + part * 8;
-                let mut key = norm.joins(terms, f32x8::splat(simd, row_terms[row]));
-                for rank in 0..K {
-                    let best = f32x8::from_slice(simd, &spans[rank][at..at + 8]);
-                    lesser(best, key).store_slice(&mut spans[rank][at..at + 8]);
-                    key = greater(best, key);
+        let unknown = &mut unknown[..n_tiles];
+        let (from, limit, to) = ((runs, tile_row), (values, limit), (pixels, &mut *unknown));
+        if N == 2 {
+            fill_by_depth::<_, W, TILES, false>(block.level, norm, from, limit, to);
+        } else {
+            fill_by_depth::<_, W, TILES, true>(block.level, norm, from, limit, to);
+        }
+        if !is_whole {
+            for (pixels, out) in whole_tiles.iter().zip(&mut *out) {
+                out[range.clone()].copy_from_slice(&pixels[..range.len()]);
+            }
+        }
+        for (tile, &unknown) in unknown.iter().enumerate() {
+            let mut rest = unknown;
+            while rest != 0 {
+                let lane = rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                let [column, row] = [range.start + tile * TILE + lane % TILE, lane / TILE];
+                if column < range.end && row < out.len() {
+                    let row_of_band = tile_row * TILE + row;
+                    let place = block.picture.place(column, block.first + row_of_band);
+                    values.put_one(block.picture.worley, place, &mut out[row][column]);
                 }
             }
         }
     }
 }
 
-/// Turns keys into values; returns the pixels whose last key is not below the limit, and what was there before.
+/// The points of a block in the order of their places.
+#[derive(Clone, Copy, Debug)]
+struct Runs<'a, const W: usize> {
+    starts: &'a [u32],
+    n_halves: usize,
+    /// The half tiles above and below a tile that its points come from.
+    halves: usize,
+    points: &'a [Point<W>],
+    /// The coordinates of the rows.
+    rows: &'a [i32],
+}
+
+impl<'a, const W: usize> Runs<'a, W> {
+    fn new(bins: &'a Bins, reach: Reach, rows: &'a [i32], points: &'a [Point<W>]) -> Self {
+        Self {
+            starts: &bins.starts,
+            n_halves: bins.n_halves,
+            halves: reach.halves,
+            points,
+            rows,
+        }
+    }
+}
+
+/// Fills a row of tiles, but for the pixels whose keys reach the limit, which are put down in `unknown`.
+///
+/// `DEEP`, if there are axes across the picture.
+fn fill_by_depth<M: Norm, const W: usize, const TILES: usize, const DEEP: bool>(
+    level: Level,
+    norm: M,
+    from: (Runs<'_, W>, usize),
+    (values, limit): (&Values, f32),
+    to: ([&mut [f32]; TILE], &mut [u16]),
+) {
+    let limit = (values, limit);
+    match values.tone.depth() {
+        1 => dispatch!(level, simd => fill::<_, _, 1, W, TILES, DEEP>(simd, norm, from, limit, to)),
+        2 => dispatch!(level, simd => fill::<_, _, 2, W, TILES, DEEP>(simd, norm, from, limit, to)),
+        _ => dispatch!(level, simd => fill::<_, _, 4, W, TILES, DEEP>(simd, norm, from, limit, to)),
+    }
+}
+
+/// The tiles that the points of one column of tiles matter to are held in registers.
 #[inline(always)]
-fn resolve<S: Simd, M: Norm, const K: usize>(
+fn fill<S: Simd, M: Norm, const K: usize, const W: usize, const TILES: usize, const DEEP: bool>(
     simd: S,
     norm: M,
+    (runs, tile_row): (Runs<'_, W>, usize),
     (values, limit): (&Values, f32),
-    planes: [&[f32]; K],
-    out: &mut [f32],
-) -> Vec<(usize, f32)> {
-    let mut unknown = Vec::new();
+    (mut pixels, unknown): ([&mut [f32]; TILE], &mut [u16]),
+) {
     let values = values.lanes::<S, K>(simd);
-    for (at, out) in (0..).step_by(LANES).zip(out.chunks_mut(LANES)) {
-        let mut keys = [f32x16::splat(simd, 0.0); K];
-        for rank in 0..K {
-            keys[rank] = f32x16::from_slice(simd, &planes[rank][at..at + LANES]);
+    let empty = [f32x16::splat(simd, f32::INFINITY); K];
+    let mut best = [empty; TILES];
+    let rows = i32x4::from_slice(simd, &runs.rows[tile_row * TILE..][..TILE]);
+    let first = tile_row * TILE / HALF;
+    let last = first + TILE / HALF + 2 * runs.halves;
+    for column in 0..unknown.len() + TILES - 1 {
+        let starts = &runs.starts[column * runs.n_halves..];
+        for point in &runs.points[starts[first] as usize..starts[last] as usize] {
+            let ahead = (rows - point.row).to_float::<f32x4<S>>() * STEP;
+            let mut rows = norm.terms(ahead);
+            if DEEP {
+                rows = norm.joins(rows, f32x4::splat(simd, point.across));
+            }
+            // Each of the four numbers four times.
+            let rows = f32x16::block_splat(rows);
+            let rows = rows.zip_low(rows);
+            let rows = rows.zip_low(rows);
+            for tile in 0..TILES {
+                let columns = f32x4::from_slice(simd, &point.terms[tile * TILE..][..TILE]);
+                let mut key = norm.joins(f32x16::block_splat(columns), rows);
+                for rank in 0..K {
+                    let smaller = lesser(best[tile][rank], key);
+                    key = greater(best[tile][rank], key);
+                    best[tile][rank] = smaller;
+                }
+            }
         }
-        let mut wrong = !keys[K - 1].simd_lt(limit).to_bitmask() & (u64::MAX >> (64 - out.len()));
-        while wrong != 0 {
-            let lane = wrong.trailing_zeros() as usize;
-            unknown.push((at + lane, out[lane]));
-            wrong &= wrong - 1;
+        if let Some(tile) = (column + 1).checked_sub(TILES) {
+            unknown[tile] = put(norm, best[0], (&values, limit), (&mut pixels, tile));
         }
-        if out.len() == LANES {
-            values.put(norm, keys, out);
-        } else {
-            values.put_part(norm, keys, out);
+        for tile in 1..TILES {
+            best[tile - 1] = best[tile];
         }
+        best[TILES - 1] = empty;
     }
-    unknown
 }
 
-/// Eight numbers of a line that goes on beyond its ends.
+/// Puts the values of a tile; returns which of its keys reach the limit.
 #[inline(always)]
-fn load<S: Simd>(simd: S, line: &[i32], first: i32) -> i32x8<S> {
-    if first >= 0 && first as usize + 8 <= line.len() {
-        return i32x8::from_slice(simd, &line[first as usize..][..8]);
-    }
-    // Pixels beyond the ends are not looked at; any place will do.
-    let mut steps = [line[0]; 8];
-    for (lane, steps) in steps.iter_mut().enumerate() {
-        if let Ok(at) = usize::try_from(first + lane as i32) {
-            *steps = line[at.min(line.len() - 1)];
+fn put<S: Simd, M: Norm, const K: usize>(
+    norm: M,
+    keys: [f32x16<S>; K],
+    (values, limit): (&ValueLanes<S, K>, f32),
+    (pixels, tile): (&mut [&mut [f32]; TILE], usize),
+) -> u16 {
+    let left = tile * TILE;
+    let is_known = keys[K - 1].simd_lt(limit);
+    let unknown = !is_known.to_bitmask() as u16;
+    let mut lanes = [0.0; LANES];
+    if values.is_added || unknown != 0 {
+        for row in 0..TILE {
+            lanes[row * TILE..][..TILE].copy_from_slice(&pixels[row][left..left + TILE]);
         }
     }
-    i32x8::from_slice(simd, &steps)
+    let before = f32x16::from_slice(keys[0].simd, &lanes);
+    values.put(norm, keys, &mut lanes);
+    let after = f32x16::from_slice(keys[0].simd, &lanes);
+    is_known.select(after, before).store_slice(&mut lanes);
+    for row in 0..TILE {
+        pixels[row][left..left + TILE].copy_from_slice(&lanes[row * TILE..][..TILE]);
+    }
+    unknown
 }

@@ -29,6 +29,26 @@ impl<const N: usize> CellBox<N> {
         }
     }
 
+    /// The rows of cells along the first axis: the hash that those of the row begin with, and the first cell.
+    pub(super) fn rows<'a>(
+        &'a self,
+        lattice: &'a Lattice<N>,
+    ) -> impl Iterator<Item = (CellHash, [i64; N])> + 'a {
+        let n_rows: usize = (1..N).map(|axis| self.side(axis)).product();
+        (0..n_rows).map(move |mut index| {
+            let mut hash = lattice.root;
+            let mut cell = self.first;
+            let mut rest = n_rows;
+            for axis in (1..N).rev() {
+                rest /= self.side(axis);
+                cell[axis] += (index / rest) as i64;
+                index %= rest;
+                hash = hash.axis(lattice.wrap(axis, cell[axis]));
+            }
+            (hash, cell)
+        })
+    }
+
     /// How many cells there are.
     pub(super) fn n_cells(&self) -> u128 {
         let sides = self.first.iter().zip(self.last);
@@ -87,20 +107,10 @@ impl<const N: usize> Table<N> {
         let columns: Vec<[u32; 2]> = (0..side.next_multiple_of(LANES) as i64)
             .map(|column| words(lattice.wrap(0, cells.first[0] + column)))
             .collect();
-        let n_rows: usize = (1..N).map(|axis| cells.side(axis)).product();
         let mut scratch = Vec::new();
-        for row in 0..n_rows {
-            let mut hash = lattice.root;
-            let mut corner = [0; N];
-            let mut rest = n_rows;
-            let mut index = row;
-            for axis in (1..N).rev() {
-                rest /= cells.side(axis);
-                let along = index / rest;
-                index %= rest;
-                corner[axis] = (along as i32) << STEP_BITS;
-                hash = hash.axis(lattice.wrap(axis, cells.first[axis] + along as i64));
-            }
+        for (hash, cell) in cells.rows(lattice) {
+            let mut corner: [i32; N] =
+                core::array::from_fn(|axis| ((cell[axis] - cells.first[axis]) as i32) << STEP_BITS);
             for (chunk, columns) in columns.chunks_exact(LANES).enumerate() {
                 let first = chunk * LANES;
                 corner[0] = (first as i32) << STEP_BITS;
@@ -137,20 +147,10 @@ impl<const N: usize> Table<N> {
             u32x16::from_slice(simd, &high),
         );
         let cells = SixteenCells::new(simd, lattice, hashes);
-        let mut numbers = [0; LANES];
-        match &lattice.density {
-            None => cells.counts.store_slice(&mut numbers),
-            Some(_) => {
-                for (lane, number) in numbers.iter_mut().enumerate() {
-                    let cell = core::array::from_fn(|axis| {
-                        let along = i64::from(corner[axis] >> STEP_BITS);
-                        let lane = if axis == 0 { lane as i64 } else { 0 };
-                        self.cells.first[axis] + along + lane
-                    });
-                    *number = lattice.count(cell, cells.words[0][lane]);
-                }
-            }
-        }
+        let cell = core::array::from_fn(|axis| {
+            self.cells.first[axis] + i64::from(corner[axis] >> STEP_BITS)
+        });
+        let numbers = numbers(lattice, &cells, cell);
         let most = numbers[..n_cells].iter().copied().fold(0, u32::max);
         scratch.resize(most.max(USUAL as u32) as usize * N * LANES, 0);
         for index in 0..most {
@@ -253,6 +253,25 @@ impl<const N: usize> Table<N> {
         let first = row * self.cells.side(0);
         self.starts[first + columns.start] as usize..self.starts[first + columns.end] as usize
     }
+}
+
+/// How many points each of sixteen cells has, the first of which is `cell`.
+#[inline(always)]
+pub(super) fn numbers<S: Simd, const N: usize>(
+    lattice: &Lattice<N>,
+    cells: &SixteenCells<S>,
+    mut cell: [i64; N],
+) -> [u32; LANES] {
+    let mut numbers = [0; LANES];
+    if lattice.density.is_none() {
+        cells.counts.store_slice(&mut numbers);
+        return numbers;
+    }
+    for (lane, number) in numbers.iter_mut().enumerate() {
+        *number = lattice.count(cell, cells.words[0][lane]);
+        cell[0] += 1;
+    }
+    numbers
 }
 
 /// The low and the high half.

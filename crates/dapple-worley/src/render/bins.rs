@@ -1,0 +1,301 @@
+//! Feature points in the order of the pixels that they are near to.
+//!
+//! The pixels of a block are covered by tiles of 4 × 4. A point lies in a column of tiles, and in a row of half tiles:
+//! points are sorted by these, column by column, so that those near to a tile are a run in each of the columns about
+//! it. The terms of a point are made once, for the columns of all the tiles that it may matter to.
+
+use super::LANES;
+use super::table::{CellBox, numbers, words};
+use crate::fixed::{STEP, STEP_BITS};
+use crate::lattice::{Lattice, SixteenCells};
+use crate::metric::Norm;
+use dapple_hash::CellHashes;
+use fearless_simd::{f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x16, prelude::*, u32x16};
+
+/// The columns and rows of a tile.
+pub(super) const TILE: usize = 4;
+
+/// The rows of half a tile.
+pub(super) const HALF: usize = TILE / 2;
+
+/// Which points a tile is compared with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach {
+    /// Those in so many columns of tiles on either side.
+    pub(super) tiles: usize,
+    /// Those in so many rows of half tiles on either side.
+    pub(super) halves: usize,
+    /// Those as far away as this, along the axes across the picture together, as a key.
+    pub(super) key: f32,
+}
+
+/// Where the pixels lie.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grid<const N: usize> {
+    /// The lower corner of the cell from which coordinates are counted.
+    pub(super) origin: [i64; N],
+    /// The coordinates of the first pixel.
+    pub(super) first: [i32; N],
+    /// How many columns and rows there are.
+    pub(super) size: [usize; 2],
+    /// Steps from one column to the next, and from one row to the next.
+    pub(super) pixel: [f32; 2],
+    /// The axis that goes with the rows.
+    pub(super) row_axis: usize,
+}
+
+impl<const N: usize> Grid<N> {
+    /// The axis that goes with the rows; where there is only one, this is known when the code is compiled.
+    #[inline(always)]
+    fn row_axis(&self) -> usize {
+        if N == 2 { 1 } else { self.row_axis }
+    }
+}
+
+/// A point, with so many terms.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Point<const W: usize> {
+    /// The terms at the columns of the tiles about it.
+    pub(super) terms: [f32; W],
+    /// The coordinate along the axis of the rows.
+    pub(super) row: i32,
+    /// The joined terms along the axes across the picture.
+    pub(super) across: f32,
+}
+
+/// The feature points near to the pixels of a block.
+#[derive(Debug)]
+pub(super) struct Bins {
+    /// How many points there are.
+    len: usize,
+    /// In the order of the cells: the coordinates along the axes of the picture,
+    steps: [Vec<i32>; 2],
+    /// the joined terms along the others,
+    across: Vec<f32>,
+    /// and the column of tiles and the row of half tiles, in the upper and the lower half.
+    places: Vec<u32>,
+    /// The rows of half tiles with points.
+    pub(super) n_halves: usize,
+    /// Where the points of each place begin, and where those of the last end.
+    pub(super) starts: Vec<u32>,
+    /// In the order of the places, if they are compared with 3 or with 5 columns of tiles.
+    pub(super) near: Vec<Point<12>>,
+    pub(super) wide: Vec<Point<20>>,
+    /// The coordinates of the columns, with those of the tiles about them.
+    columns: Vec<i32>,
+}
+
+impl Bins {
+    pub(super) fn new() -> Self {
+        Self {
+            len: 0,
+            steps: [Vec::new(), Vec::new()],
+            across: Vec::new(),
+            places: Vec::new(),
+            n_halves: 0,
+            starts: Vec::new(),
+            near: Vec::new(),
+            wide: Vec::new(),
+            columns: Vec::new(),
+        }
+    }
+
+    /// Begins with the columns of another block and how many rows it has.
+    pub(super) fn clear(&mut self, columns: &[i32], height: usize, reach: Reach) {
+        let width = columns.len();
+        let n_tiles = width.div_ceil(TILE) + 2 * reach.tiles;
+        self.n_halves = 2 * height.div_ceil(TILE) + 2 * reach.halves;
+        self.starts.clear();
+        self.starts.resize(n_tiles * self.n_halves + 2, 0);
+        // Whatever lies beyond the ends is not looked at.
+        let more = 2 * TILE * reach.tiles;
+        self.columns.clear();
+        self.columns.resize(more, 0);
+        self.columns.extend_from_slice(columns);
+        let end = width.next_multiple_of(TILE) + 2 * more;
+        self.columns.resize(end, 0);
+    }
+
+    /// Makes the points of `cells` that some tile is compared with.
+    #[inline(always)]
+    pub(super) fn collect<S: Simd, M: Norm, const N: usize>(
+        &mut self,
+        simd: S,
+        norm: M,
+        lattice: &Lattice<N>,
+        cells: &CellBox<N>,
+        (grid, reach): (&Grid<N>, Reach),
+    ) {
+        self.len = 0;
+        let side = cells.side(0);
+        let padded = side.next_multiple_of(LANES) as i64;
+        let columns = (0..padded).map(|column| words(lattice.wrap(0, cells.first[0] + column)));
+        let (low, high): (Vec<u32>, Vec<u32>) = columns.map(|[low, high]| (low, high)).unzip();
+        for (hash, mut cell) in cells.rows(lattice) {
+            for first in (0..side).step_by(LANES) {
+                let hashes = CellHashes::splat(simd, hash).axis(
+                    u32x16::from_slice(simd, &low[first..first + LANES]),
+                    u32x16::from_slice(simd, &high[first..first + LANES]),
+                );
+                let sixteen = SixteenCells::new(simd, lattice, hashes);
+                cell[0] = cells.first[0] + first as i64;
+                let mut numbers = numbers(lattice, &sixteen, cell);
+                numbers[LANES.min(side - first)..].fill(0);
+                self.add(
+                    simd,
+                    norm,
+                    lattice,
+                    (&sixteen, cell, &numbers),
+                    (grid, reach),
+                );
+            }
+        }
+    }
+
+    /// Adds the points of sixteen cells that some tile is compared with.
+    #[inline(always)]
+    fn add<S: Simd, M: Norm, const N: usize>(
+        &mut self,
+        simd: S,
+        norm: M,
+        lattice: &Lattice<N>,
+        (cells, cell, numbers): (&SixteenCells<S>, [i64; N], &[u32; LANES]),
+        (grid, reach): (&Grid<N>, Reach),
+    ) {
+        let numbers = u32x16::from_slice(simd, numbers);
+        let most = numbers.reduce_max();
+        let room = self.len + (most as usize + 1) * LANES;
+        if self.places.len() < room {
+            let room = room.next_power_of_two();
+            self.places.resize(room, 0);
+            for steps in &mut self.steps {
+                steps.resize(room, 0);
+            }
+            self.across.resize(room, 0.0);
+        }
+        let lanes = i32x16::from_slice(simd, &ASCENDING) << STEP_BITS;
+        let n_tiles = (grid.size[0].div_ceil(TILE) + 2 * reach.tiles) as u32;
+        for index in 0..most {
+            let steps: [u32x16<S>; N] = cells.steps(u32x16::splat(simd, index), lattice.jitter);
+            let mut points = [lanes; N];
+            for axis in 0..N {
+                let corner = ((cell[axis] - grid.origin[axis]) as i32) << STEP_BITS;
+                let steps = steps[axis].bitcast::<i32x16<S>>() + corner;
+                points[axis] = if axis == 0 { steps + lanes } else { steps };
+            }
+            let row = points[grid.row_axis()];
+            let ahead = [points[0] - grid.first[0], row - grid.first[grid.row_axis()]];
+            let column = bin(ahead[0], grid.pixel[0], (TILE, reach.tiles));
+            let half = bin(ahead[1], grid.pixel[1], (HALF, reach.halves));
+            let mut matters = numbers.simd_gt(index)
+                & column.simd_lt(n_tiles)
+                & half.simd_lt(self.n_halves as u32);
+            let mut across = f32x16::splat(simd, 0.0);
+            for axis in (1..N).rev().filter(|&axis| axis != grid.row_axis()) {
+                let ahead = points[axis] - grid.first[axis];
+                let terms = norm.terms(ahead.to_float::<f32x16<S>>() * STEP);
+                across = norm.joins(terms, across);
+            }
+            if N > 2 {
+                matters &= across.simd_le(reach.key);
+            }
+            self.push::<S, N>(matters, [points[0], row], across, column << 16 | half);
+        }
+    }
+
+    /// Takes in some of sixteen points.
+    #[inline(always)]
+    fn push<S: Simd, const N: usize>(
+        &mut self,
+        matters: mask32x16<S>,
+        [column, row]: [i32x16<S>; 2],
+        across: f32x16<S>,
+        place: u32x16<S>,
+    ) {
+        let to = self.len..self.len + LANES;
+        let [columns, rows] = &mut self.steps;
+        column
+            .compress(matters)
+            .store_slice(&mut columns[to.clone()]);
+        row.compress(matters).store_slice(&mut rows[to.clone()]);
+        if N > 2 {
+            let across = across.compress(matters);
+            across.store_slice(&mut self.across[to.clone()]);
+        }
+        place.compress(matters).store_slice(&mut self.places[to]);
+        self.len += matters.to_bitmask().count_ones() as usize;
+    }
+
+    /// Finds out where the points of each place go.
+    pub(super) fn count(&mut self) {
+        for &place in &self.places[..self.len] {
+            self.starts[index(place, self.n_halves) + 2] += 1;
+        }
+        let mut end = 0;
+        for start in &mut self.starts {
+            end += *start;
+            *start = end;
+        }
+    }
+
+    /// Puts the points in the order of the places, and makes their terms.
+    #[inline(always)]
+    pub(super) fn sort<S: Simd, M: Norm, const W: usize>(
+        &mut self,
+        simd: S,
+        norm: M,
+        points: &mut Vec<Point<W>>,
+    ) {
+        if points.len() < self.len {
+            let none = Point {
+                terms: [0.0; W],
+                row: 0,
+                across: 0.0,
+            };
+            points.resize(self.len, none);
+        }
+        let [columns, rows] = &self.steps;
+        let from = columns[..self.len]
+            .iter()
+            .zip(&rows[..self.len])
+            .zip(&self.across[..self.len]);
+        for (((&column, &row), &across), &place) in from.zip(&self.places[..self.len]) {
+            let start = &mut self.starts[index(place, self.n_halves) + 1];
+            let point = &mut points[*start as usize];
+            *start += 1;
+            let columns = &self.columns[TILE * (place >> 16) as usize..][..W];
+            let mut at = 0;
+            while at + 8 <= W {
+                let ahead = i32x8::from_slice(simd, &columns[at..at + 8]) - column;
+                let terms = norm.terms(ahead.to_float::<f32x8<S>>() * STEP);
+                terms.store_slice(&mut point.terms[at..at + 8]);
+                at += 8;
+            }
+            let ahead = i32x4::from_slice(simd, &columns[at..at + 4]) - column;
+            let terms = norm.terms(ahead.to_float::<f32x4<S>>() * STEP);
+            terms.store_slice(&mut point.terms[at..at + 4]);
+            point.row = row;
+            point.across = across;
+        }
+    }
+}
+
+/// The numbers of the lanes.
+const ASCENDING: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+
+/// In which groups of so many pixels sixteen points lie, from their distances to the middle of the first pixel; the
+/// first `around` groups lie before it. What lies before those may come out as the first one or as very many.
+#[inline(always)]
+fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, (pixels, around): (usize, usize)) -> u32x16<S> {
+    let group = pixels as f32;
+    let bins =
+        ahead.to_float::<f32x16<S>>() * (pixel * group).recip() + (around as f32 + 0.5 / group);
+    bins.to_int::<i32x16<S>>().bitcast()
+}
+
+/// The number of a place.
+#[inline(always)]
+fn index(place: u32, n_halves: usize) -> usize {
+    (place >> 16) as usize * n_halves + (place & 0xFFFF) as usize
+}
