@@ -37,6 +37,8 @@ pub struct Octaves {
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-gain.md"))]
     pub gain: f64,
     /// Whether the octaves are one field.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/octave-seeds.md"))]
     pub seeds: OctaveSeeds,
 }
 

@@ -14,9 +14,10 @@ pub(super) fn encode(bytes: &[u8]) -> String {
         let byte = |index: usize| u32::from(group.get(index).copied().unwrap_or(0));
         let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
         for letter in 0..4 {
-            text.push(match letter <= group.len() {
-                true => char::from(ALPHABET[(bits >> (18 - 6 * letter)) as usize & 63]),
-                false => '=',
+            text.push(if letter <= group.len() {
+                char::from(ALPHABET[(bits >> (18 - 6 * letter)) as usize & 63])
+            } else {
+                '='
             });
         }
     }

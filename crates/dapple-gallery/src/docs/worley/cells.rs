@@ -51,7 +51,7 @@ pub(super) const EDGE_DISTANCE: Strip = Strip {
         let joint = |value: f32| if value < 0.04 { 0.0 } else { 1.0 };
         Ok(vec![
             gray("the distance to the edge", CELLS, |at| {
-                worley.edge_distance(at) / 0.5
+                worley.edge_distance(at) / 0.4
             })?,
             gray_with_edges("joints of F2 − F1", CELLS, |at| joint(cracks.value(at)))?,
             gray_with_edges("joints of the distance to the edge", CELLS, |at| {

@@ -62,7 +62,7 @@ fn combined(label: &str, combination: Combination) -> anyhow::Result<Panel> {
 
 pub(super) const METRIC: Strip = Strip {
     name: "metric",
-    caption: "F1 above the same feature points, black where it is 0",
+    caption: "F1 of the same feature points, black where it is 0",
     render: || {
         let metrics = [
             ("Euclidean", Metric::Euclidean),
