@@ -13,7 +13,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What all pictures of a crate may have together, in bytes of Markdown: a user downloads them with the source.
-const BYTES_MAX: u64 = 300 * 1024;
+const BYTES_MAX: u64 = 300_000;
 
 fn folder(documented: &Documented, name: &str) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

@@ -4,6 +4,9 @@
 //! place, so that only the option differs. `cargo xtask gallery --docs` writes each as `docs/<name>.md` into the folder of
 //! its crate, where the source includes it as a part of a doc comment. So the pictures are there without a network, and
 //! part of the published package. A test compares the files with the strips, pixel by pixel.
+//!
+//! The source includes them under `cfg(doc)`: rustdoc shows them, also for a crate that another one depends on, and editors
+//! do not. Where another crate's documentation takes an item in (`#[doc(inline)]`), they are left out.
 
 mod base64;
 mod worley;

@@ -119,13 +119,13 @@ pub(super) const CHANNELS: Strip = Strip {
     render: || {
         let [f1, cracks] = [Combination::F1, Combination::F2_MINUS_F1]
             .map(|combination| basis().combine(combination));
-        let [thin, wide, pit] = [0.05, 0.2, 0.2].map(Profile::channels);
+        let [thin, wide, pit] = [0.05, 0.1, 0.2].map(Profile::channels);
         let [thin, wide, pit] = [thin?, wide?, pit?];
         Ok(vec![
             gray("width 0.05 of F2 − F1", CELLS, |at| {
                 thin.height(cracks.value(at))
             })?,
-            gray("width 0.2 of F2 − F1", CELLS, |at| {
+            gray("width 0.1 of F2 − F1", CELLS, |at| {
                 wide.height(cracks.value(at))
             })?,
             gray("width 0.2 of F1", CELLS, |at| pit.height(f1.value(at)))?,
