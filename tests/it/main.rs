@@ -1,6 +1,7 @@
 //! Workspace-wide tests, one binary.
 
 mod chain;
+mod docs;
 mod figures;
 mod golden;
 mod readme;

@@ -18,6 +18,7 @@ Usage: cargo xtask <command>
       --check             compare with crates/dapple-gallery/figures.lock instead
       --bless             accept the figures as they are now into figures.lock
       --list              print the names of the figures
+      --docs              rewrite the pictures in the documentation, crates/*/docs/*.md
   bench [filter...]     measure beside the peers, and print a table
       --json FILE         write the rows to a file, too
       --check             fail when a row misses its bar

@@ -21,6 +21,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [`docs`] makes the small pictures that the crates show in their own documentation.
+//!
 //! Figures are deterministic: the same bits on every machine and for any number of threads.
 
 #![forbid(unsafe_code)]
@@ -29,6 +31,7 @@ mod figure;
 mod figures;
 mod panel;
 
+pub mod docs;
 pub mod draw;
 pub mod lock;
 pub mod page;

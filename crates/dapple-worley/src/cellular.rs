@@ -62,6 +62,8 @@ where
     /// The gradient of the value at a position, per cell: the sum of the gradients of the distances.
     ///
     /// On the borders between cells it jumps. All NaN if the position has no place.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/gradient.md"))]
     #[must_use]
     pub fn gradient(&self, position: impl Into<Vector<N>>) -> Vector<N> {
         let place = Place::new(position.into().into());
@@ -153,6 +155,8 @@ where
     /// [the combinations that have a name](Combination::NAMED), the default density, and every metric but Minkowski's.
     /// One value in a thousand lies below 0, and one above 1.
     ///
+    #[cfg_attr(doc, doc = include_str!("../docs/normalized.md"))]
+    ///
     /// # Errors
     ///
     /// [`NoRange`](crate::WorleyErrorKind::NoRange) for any other, and where a range was set before; use [`measure_range`](Self::measure_range) and
@@ -168,6 +172,8 @@ where
     }
 
     /// The same texture with its values mapped so that `range` becomes 0 to 1. Values beyond it are not clamped.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/with-range.md"))]
     ///
     /// # Errors
     ///

@@ -24,26 +24,48 @@ pub struct Combination {
 
 impl Combination {
     /// The distance to the nearest feature point: cones that meet in valleys.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/combination-f1.md"))]
     pub const F1: Self = Self::new([1.0, 0.0, 0.0, 0.0]);
     /// The distance to the second nearest feature point.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/combination-f2.md"))]
     pub const F2: Self = Self::new([0.0, 1.0, 0.0, 0.0]);
     /// The distance to the third nearest feature point.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/combination-f3.md"))]
     pub const F3: Self = Self::new([0.0, 0.0, 1.0, 0.0]);
     /// The distance to the fourth nearest feature point.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/combination-f4.md"))]
     pub const F4: Self = Self::new([0.0, 0.0, 0.0, 1.0]);
     /// Zero on the borders of the Voronoi cells: cracks, veins, flagstones.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/combination-f2-minus-f1.md"))]
     pub const F2_MINUS_F1: Self = Self::new([-1.0, 1.0, 0.0, 0.0]);
     /// `F1 + F2`.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/combination-f1-plus-f2.md"))]
     pub const F1_PLUS_F2: Self = Self::new([1.0, 1.0, 0.0, 0.0]);
     /// `F3 − F1`.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/combination-f3-minus-f1.md"))]
     pub const F3_MINUS_F1: Self = Self::new([-1.0, 0.0, 1.0, 0.0]);
     /// `F3 − F2`.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/combination-f3-minus-f2.md"))]
     pub const F3_MINUS_F2: Self = Self::new([0.0, -1.0, 1.0, 0.0]);
     /// `F4 − F1`.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/combination-f4-minus-f1.md"))]
     pub const F4_MINUS_F1: Self = Self::new([-1.0, 0.0, 0.0, 1.0]);
     /// `F4 − F3`.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/combination-f4-minus-f3.md"))]
     pub const F4_MINUS_F3: Self = Self::new([0.0, 0.0, -1.0, 1.0]);
     /// `2·F3 − F2 − F1`, which the paper names.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/combination-two-f3-minus-f2-minus-f1.md"))]
     pub const TWO_F3_MINUS_F2_MINUS_F1: Self = Self::new([-1.0, -1.0, 2.0, 0.0]);
 
     /// The combinations that have a name, which are those whose range is known: see
@@ -63,6 +85,8 @@ impl Combination {
     ];
 
     /// The combination with these coefficients, of F1 to F4 in their order.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/combination-new.md"))]
     #[must_use]
     pub const fn new(coefficients: [f32; 4]) -> Self {
         Self { coefficients }

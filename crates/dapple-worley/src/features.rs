@@ -8,6 +8,8 @@ use dapple_raster::{RasterError, RasterViewMut, Window};
 
 /// Where to put what a picture shows of one of the nearest feature points; what is `None` is not made.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/feature.md"))]
+///
 /// # Examples
 ///
 /// ```
@@ -138,6 +140,8 @@ where
 {
     /// The gradients at the pixel centers of a window of a plane, into memory of its size: what
     /// [`gradient`](Self::gradient) gives there, bit for bit.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/gradient.md"))]
     ///
     /// # Errors
     ///

@@ -25,16 +25,26 @@ use glam::DVec2;
 )]
 pub struct Octaves {
     /// How many: from 1 to 32; 6 by default.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/octaves-count.md"))]
     pub count: u32,
     /// How much finer each is than the one before: from 1 to 16; 2 by default.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/octaves-lacunarity.md"))]
     pub lacunarity: f64,
     /// How much lower each is than the one before: from -1 to 1; ½ by default.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/octaves-gain.md"))]
     pub gain: f64,
     /// Whether the octaves are one field.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/octave-seeds.md"))]
     pub seeds: OctaveSeeds,
 }
 
 /// Whether the octaves of a fractal sum are one field.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/octave-seeds.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -62,6 +72,8 @@ impl Default for Octaves {
 }
 
 /// A fractal sum of a scalar texture.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/fractal.md"))]
 ///
 /// # Examples
 ///

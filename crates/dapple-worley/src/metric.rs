@@ -11,6 +11,8 @@ use crate::{WorleyError, WorleyErrorKind};
 use fearless_simd::{f32x16, prelude::*};
 
 /// How the distance between two positions is measured.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/metric.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",

@@ -5,6 +5,8 @@ use glam::DVec2;
 
 /// A plane through space: where the picture lies. Its position `[x, y]` is `origin + x·u + y·v`.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/plane.md"))]
+///
 /// # Examples
 ///
 /// ```

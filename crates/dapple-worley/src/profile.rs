@@ -34,12 +34,16 @@ use crate::{WorleyError, WorleyErrorKind};
 pub enum Profile {
     /// A dome, 1 high where the value is 0, and 0 from `radius` on: `(1 − (value / radius)²)²`. Of F1, a raised spot
     /// about every feature point.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/profile-spots.md"))]
     Spots {
         /// Half of the width of a spot, in the units of the value: above 0.
         radius: f32,
     },
     /// A channel, 0 high where the value is 0, and 1 from `width` on: `3 t² − 2 t³` with `t = value / width`. Of
     /// F2 − F1, channels between raised stones; of F1, round pits.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/profile-channels.md"))]
     Channels {
         /// Half of the width of a channel, in the units of the value: above 0.
         width: f32,

@@ -20,6 +20,8 @@ use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 /// How many cells a radial texture has.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/radial-cells.md"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RadialCells {
@@ -32,6 +34,8 @@ pub struct RadialCells {
 }
 
 /// A scalar texture over cells in azimuth, polar angle and radius.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/radial.md"))]
 ///
 /// # Examples
 ///

@@ -25,16 +25,22 @@ use dapple_hash::PoissonCounts;
 pub enum Scatter {
     /// Worley's: a Poisson-distributed number of points with a uniform position each. The number is clamped to
     /// 1 to 9, as in the paper, which moves its mean; see [`Scatter::mean`].
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/scatter-poisson.md"))]
     Poisson {
         /// Feature points per cell on average, before clamping: from 1/64 to 64.
         density: f64,
     },
     /// The same without clamping: a cell may be empty, and the points have no trace of the grid.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/scatter-unclamped.md"))]
     Unclamped {
         /// Feature points per cell on average: from 1/64 to 64.
         density: f64,
     },
     /// One point in each cell, as most other libraries have it. The grid can be seen.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/scatter-jittered.md"))]
     Jittered {
         /// How far the point leaves the middle: from 0, a regular grid, to 1, anywhere in its cell. It is rounded to
         /// a multiple of 1/1024.

@@ -16,6 +16,8 @@ const POINTS_PER_BIN: f64 = 2.0;
 
 /// Feature points that the caller has placed.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/feature-set.md"))]
+///
 /// # Examples
 ///
 /// ```

@@ -17,6 +17,8 @@ where
     /// It is Euclidean, whatever the metric of the basis: the smallest distance to a plane halfway between the nearest
     /// feature point and another. Unlike F2 − F1, it measures the same on wide and on narrow cells. NaN where
     /// [`sample`](Self::sample) is.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/edge-distance.md"))]
     #[must_use]
     pub fn edge_distance(&self, position: impl Into<Vector<N>>) -> f32 {
         let Some(place) = Place::new(position.into().into()) else {
@@ -42,6 +44,8 @@ where
     /// in cells: half of the distance from that point to its own nearest neighbor, in the metric of the basis.
     ///
     /// NaN where [`sample`](Self::sample) is.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/sphere-radius.md"))]
     #[must_use]
     pub fn sphere_radius(&self, position: impl Into<Vector<N>>) -> f32 {
         let Some(place) = Place::new(position.into().into()) else {
@@ -67,6 +71,8 @@ where
     /// points. So it lies between F1 − `radius` and F1, is F1 where no second point is within `radius` of it, and has
     /// two continuous derivatives wherever the distances have. Only points nearer than F1 + `radius` count, and they
     /// are summed in the order of their distances and ids. NaN where [`sample`](Self::sample) is.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/smooth-f1.md"))]
     ///
     /// # Errors
     ///

@@ -27,6 +27,8 @@ pub type Worley4 = Worley<4>;
 /// F1 is the distance to the nearest feature point, F2 to the second nearest, up to F4. All are exact: no neighbor is
 /// missed, whatever the metric, the density or the number of axes. Positions are in cells.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/worley.md"))]
+///
 /// # Examples
 ///
 /// ```
@@ -46,6 +48,8 @@ pub struct Worley<const N: usize> {
 }
 
 /// A feature point as it is seen from a position.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/feature.md"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feature<V> {
     /// How far away it is, in cells: zero or more. NaN if the position has no place, see [`Worley::sample`].
@@ -59,6 +63,8 @@ pub struct Feature<V> {
 
 impl<V> Feature<V> {
     /// A random number in `[0, 1)` that belongs to the feature point: the same all over its Voronoi cell.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/cell-value.md"))]
     #[must_use]
     pub fn cell_value(&self) -> f32 {
         unit_f32((self.id >> 32) as u32)
@@ -91,6 +97,8 @@ where
     }
 
     /// The same basis with other feature points.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/with-seed.md"))]
     #[must_use]
     pub fn with_seed(&self, seed: Seed) -> Self {
         let lattice = Lattice {
@@ -124,6 +132,8 @@ where
 
     /// Scatters `density` feature points per cell on average, clamped to 1 to 9: [`Scatter::Poisson`].
     ///
+    #[cfg_attr(doc, doc = include_str!("../docs/scatter-poisson.md"))]
+    ///
     /// # Errors
     ///
     /// [`Range`](crate::WorleyErrorKind::Range) if the density is not from 1/64 to 64.
@@ -136,6 +146,8 @@ where
     /// `density` is asked at the middle of each cell, and gives the feature points per cell on average; what it gives
     /// is clamped to 1/64 to 64, and a number that is not one counts as 1/64. The numbers of points are not clamped,
     /// so the mean is the density itself. The search goes as far as it must; it is slower than with one density.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/with-varying-density.md"))]
     ///
     /// # Examples
     ///
@@ -178,6 +190,8 @@ where
     ///
     /// The repeat is exact, and nothing is blended. Repeats of a point are points of their own with one id, so with a
     /// period of 1 F1 and F2 may belong to the same id.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/with-period.md"))]
     ///
     /// # Errors
     ///
@@ -231,6 +245,8 @@ where
     }
 
     /// The feature points of a cell, in no particular order: what everything else is computed from.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/cell-points.md"))]
     #[must_use]
     pub fn cell_points(&self, cell: [i64; N]) -> Vec<CellPoint<Vector<N>>> {
         let mut points = Vec::new();

@@ -1,6 +1,7 @@
 //! Renders the figures of the papers into a folder with a page, or checks them against `figures.lock`.
 
 mod check;
+mod docs;
 mod export;
 mod ranges;
 
@@ -44,6 +45,10 @@ struct Arguments {
     /// Prints the ranges of the combinations of Worley's basis, as the table in `dapple-worley` has them.
     #[arg(long, conflicts_with_all = ["list", "check", "bless", "out", "open", "size"])]
     ranges: bool,
+
+    /// Rewrites the pictures in the documentation of the crates: `docs/*.md` in their folders.
+    #[arg(long, conflicts_with_all = ["filter", "list", "check", "bless", "out", "open", "size", "ranges"])]
+    docs: bool,
 }
 
 fn main() -> anyhow::Result<()> {
@@ -57,6 +62,8 @@ fn main() -> anyhow::Result<()> {
     if arguments.ranges {
         say(&ranges::table()?);
         Ok(())
+    } else if arguments.docs {
+        docs::write()
     } else if arguments.list {
         figures.iter().for_each(|figure| say(&figure.name()));
         Ok(())

@@ -1,0 +1,165 @@
+//! The strips of `dapple-worley`.
+
+mod cells;
+mod combinations;
+mod fractals;
+mod placing;
+mod scatters;
+mod spaces;
+
+use super::Documented;
+use crate::Panel;
+use crate::draw::shrink;
+use dapple_color::{Code, LinearRgb};
+use dapple_raster::{Raster, Window};
+use dapple_worley::{Axes, Cellular, Space, Worley2, WorleyError, hash::Seed};
+use glam::DVec2;
+
+/// The crate with its strips, in the order of its documentation.
+pub(super) const DOCUMENTED: Documented = Documented {
+    package: "dapple-worley",
+    strips: &[
+        spaces::AXES,
+        scatters::SEED,
+        scatters::POISSON,
+        scatters::UNCLAMPED,
+        scatters::JITTERED,
+        scatters::VARYING,
+        scatters::PERIOD,
+        scatters::CELL_POINTS,
+        combinations::METRIC,
+        combinations::F1,
+        combinations::F2,
+        combinations::F3,
+        combinations::F4,
+        combinations::F2_MINUS_F1,
+        combinations::F1_PLUS_F2,
+        combinations::F3_MINUS_F1,
+        combinations::F3_MINUS_F2,
+        combinations::F4_MINUS_F1,
+        combinations::F4_MINUS_F3,
+        combinations::TWO_F3_MINUS_F2_MINUS_F1,
+        combinations::NEW,
+        combinations::NORMALIZED,
+        combinations::RANGE,
+        combinations::GRADIENT,
+        cells::FEATURE,
+        cells::CELL_VALUE,
+        cells::EDGE_DISTANCE,
+        cells::SPHERE_RADIUS,
+        cells::SMOOTH_F1,
+        cells::SPOTS,
+        cells::CHANNELS,
+        fractals::FRACTAL,
+        fractals::COUNT,
+        fractals::LACUNARITY,
+        fractals::GAIN,
+        fractals::SEEDS,
+        spaces::PLANE,
+        placing::RADIAL,
+        placing::RADIAL_CELLS,
+        placing::FEATURE_SET,
+    ],
+};
+
+/// Pixels along a side.
+const SIDE: u32 = 92;
+
+/// Samples along the side of a pixel, where a picture has edges.
+const SAMPLES: u32 = 3;
+
+/// How many shades a gray picture has: few, since a file with all 256 is twice as large.
+const SHADES: f32 = 32.0;
+
+/// How many shades a picture with edges has, and each channel of one in color.
+const SHADES_WITH_EDGES: f32 = 16.0;
+
+/// How many positions a range is measured at.
+const N_POSITIONS: u32 = 4000;
+
+/// The basis that most strips show.
+fn basis() -> Worley2 {
+    Worley2::new(Seed(3))
+}
+
+/// A square of so many cells from the origin.
+fn square(cells: f64) -> anyhow::Result<Window> {
+    Ok(Window::new(DVec2::ZERO, DVec2::splat(cells), [SIDE; 2])?)
+}
+
+/// A picture of smooth values from 0 to 1.
+fn gray(label: &str, cells: f64, value: impl Fn(DVec2) -> f32 + Sync) -> anyhow::Result<Panel> {
+    let raster = Raster::from_window(&square(cells)?, value)?;
+    Ok(shaded(label, &raster, SHADES))
+}
+
+/// A picture of values with edges, from 0 to 1.
+fn gray_with_edges(
+    label: &str,
+    cells: f64,
+    value: impl Fn(DVec2) -> f32 + Sync,
+) -> anyhow::Result<Panel> {
+    let fine = Raster::from_window(&fine(cells)?, value)?;
+    Ok(shaded(label, &shrink(&fine, SAMPLES)?, SHADES_WITH_EDGES))
+}
+
+/// A picture of colors with edges.
+fn color_with_edges(
+    label: &str,
+    cells: f64,
+    value: impl Fn(DVec2) -> LinearRgb + Sync,
+) -> anyhow::Result<Panel> {
+    let fine = Raster::from_window(&fine(cells)?, value)?;
+    let colors = shrink(&fine, SAMPLES)?.map(|color| {
+        let codes = color.to_srgb::<u8>().map(|code| {
+            let shade = rounded(f32::from(code) / 255.0, SHADES_WITH_EDGES);
+            u8::from_unit(shade)
+        });
+        LinearRgb::from_srgb(codes)
+    });
+    Ok(Panel::color(label, colors))
+}
+
+fn fine(cells: f64) -> anyhow::Result<Window> {
+    let size = [SIDE * SAMPLES; 2];
+    Ok(Window::new(DVec2::ZERO, DVec2::splat(cells), size)?)
+}
+
+/// A gray picture with so many shades.
+fn shaded(label: &str, raster: &Raster<f32>, shades: f32) -> Panel {
+    Panel::gray(label, raster.map(|&value| rounded(value, shades)))
+}
+
+/// The nearest of so many shades from 0 to 1.
+fn rounded(value: f32, shades: f32) -> f32 {
+    let last = shades - 1.0;
+    (value.clamp(0.0, 1.0) * last).round() / last
+}
+
+/// The texture with its range as 0 to 1.
+fn ranged<const N: usize>(texture: Cellular<N>) -> Result<Cellular<N>, WorleyError>
+where
+    Axes: Space<N>,
+{
+    let range = texture.measure_range(Seed(1), N_POSITIONS)?;
+    texture.with_range(range)
+}
+
+/// The Voronoi cells of a basis in flat grays, with its feature points as black dots.
+fn flat(label: &str, cells: f64, worley: &Worley2) -> anyhow::Result<Panel> {
+    let dot = 1.6 * cells as f32 / SIDE as f32;
+    gray_with_edges(label, cells, |at| {
+        let [nearest] = worley.sample(at);
+        if nearest.distance < dot {
+            0.0
+        } else {
+            0.4 + 0.6 * nearest.cell_value()
+        }
+    })
+}
+
+/// A direction as a color: red grows to the right and green downward, and a vector of nothing is gray.
+fn color_of(vector: DVec2, longest: f64) -> LinearRgb {
+    let code = |part: f64| (128.0 + 120.0 * (part / longest).clamp(-1.0, 1.0)).round() as u8;
+    LinearRgb::from_srgb([code(vector.x), code(vector.y), 128])
+}

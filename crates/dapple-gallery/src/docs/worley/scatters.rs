@@ -1,0 +1,120 @@
+//! How feature points are spread: seeds, densities, jitter, periods.
+
+use super::{SIDE, flat, gray_with_edges};
+use crate::Panel;
+use crate::docs::Strip;
+use dapple_worley::{Scatter, Worley2, hash::Seed};
+use glam::DVec2;
+
+/// Cells along a side.
+const CELLS: f64 = 4.0;
+
+/// Densities that are shown.
+const DENSITIES: [f64; 3] = [1.0, 3.0, 8.0];
+
+fn scattered(label: &str, scatter: Scatter) -> anyhow::Result<Panel> {
+    flat(label, CELLS, &Worley2::new(Seed(3)).with_scatter(scatter)?)
+}
+
+pub(super) const SEED: Strip = Strip {
+    name: "with-seed",
+    caption: "Feature points and their Voronoi cells in 4 by 4 unit cells",
+    render: || {
+        let panels = [3, 4].into_iter().map(|seed| {
+            let worley = Worley2::new(Seed(3)).with_seed(Seed(seed));
+            flat(&format!("seed {seed}"), CELLS, &worley)
+        });
+        panels.collect()
+    },
+};
+
+pub(super) const POISSON: Strip = Strip {
+    name: "scatter-poisson",
+    caption: "Feature points and their Voronoi cells in 4 by 4 unit cells, clamped",
+    render: || {
+        let panels = DENSITIES.into_iter().map(|density| {
+            let label = format!("density {density}");
+            scattered(&label, Scatter::Poisson { density })
+        });
+        panels.collect()
+    },
+};
+
+pub(super) const UNCLAMPED: Strip = Strip {
+    name: "scatter-unclamped",
+    caption: "Feature points and their Voronoi cells in 4 by 4 unit cells, not clamped",
+    render: || {
+        let panels = DENSITIES.into_iter().map(|density| {
+            let label = format!("density {density}");
+            scattered(&label, Scatter::Unclamped { density })
+        });
+        panels.collect()
+    },
+};
+
+pub(super) const JITTERED: Strip = Strip {
+    name: "scatter-jittered",
+    caption: "Feature points and their Voronoi cells in 4 by 4 unit cells",
+    render: || {
+        let panels = [0.0, 0.5, 1.0].into_iter().map(|jitter| {
+            let label = format!("jitter {jitter}");
+            scattered(&label, Scatter::Jittered { jitter })
+        });
+        panels.collect()
+    },
+};
+
+pub(super) const VARYING: Strip = Strip {
+    name: "with-varying-density",
+    caption: "Feature points and their Voronoi cells in 8 by 8 unit cells",
+    render: || {
+        let worley = Worley2::new(Seed(3));
+        let ramp = worley.with_varying_density(|at| 0.25 + 0.12 * at.x * at.x);
+        let disk = worley.with_varying_density(|at| {
+            let from_middle = (at - DVec2::splat(4.0)).length_squared();
+            if from_middle < 6.25 { 8.0 } else { 0.5 }
+        });
+        Ok(vec![
+            flat("a density that grows to the right", 8.0, &ramp)?,
+            flat("density 8 in a disk and 0.5 around it", 8.0, &disk)?,
+        ])
+    },
+};
+
+pub(super) const PERIOD: Strip = Strip {
+    name: "with-period",
+    caption: "Feature points and their Voronoi cells in 4 by 4 unit cells",
+    render: || {
+        let periods = [
+            ("no period", [None, None]),
+            ("a period of 2 along x", [Some(2), None]),
+            ("a period of 2 along both axes", [Some(2), Some(2)]),
+        ];
+        let panels = periods.into_iter().map(|(label, period)| {
+            let worley = Worley2::new(Seed(3)).with_period(period)?;
+            flat(label, CELLS, &worley)
+        });
+        panels.collect()
+    },
+};
+
+pub(super) const CELL_POINTS: Strip = Strip {
+    name: "cell-points",
+    caption: "The feature points of 4 by 4 unit cells, which are outlined",
+    render: || {
+        let worley = Worley2::new(Seed(3));
+        let pixel = CELLS / f64::from(SIDE);
+        let panel = gray_with_edges("unit cells and their points", CELLS, |at| {
+            let [nearest] = worley.sample(at);
+            let to_line = at - at.round();
+            if f64::from(nearest.distance) < 1.6 * pixel {
+                0.0
+            } else if to_line.abs().min_element() < 0.5 * pixel {
+                0.7
+            } else {
+                1.0
+            }
+        })?;
+        Ok(vec![panel])
+    },
+};
