@@ -129,11 +129,10 @@ where
     /// Renders all slices.
     fn render(&self, image: &mut Raster<f32>) {
         let bands = image.view_mut().bands(self.window.size[1]);
-        for (plane, band) in self.slices.iter().zip(bands) {
-            self.cellular
-                .render_plane(plane, &self.window, band)
-                .expect("a band has the window's size");
-        }
+        let slices = self.slices.iter().copied().zip(bands);
+        self.cellular
+            .render_slices(&self.window, slices.collect())
+            .expect("a band has the window's size");
     }
 
     /// A side that renders the raster.

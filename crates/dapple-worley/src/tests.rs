@@ -10,6 +10,7 @@ pub(crate) mod oracle;
 mod properties;
 #[cfg(feature = "serde")]
 mod serialized;
+mod sheet;
 mod stability;
 mod statistics;
 mod threads;
