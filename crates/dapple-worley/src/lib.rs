@@ -23,7 +23,8 @@
 //!
 //! There are three doors, and they give the same bits: one position ([`Worley::sample`], [`Cellular::value`]), many
 //! scattered positions ([`Worley::sample_many`]), and a window of a [`Plane`] ([`Cellular::render_plane`],
-//! [`Worley::render_features`], [`Cellular::render_gradient`]), which is by far the fastest.
+//! [`Worley::render_features`], [`Cellular::render_gradient`]), which is by far the fastest. A volume is filled slice by
+//! slice ([`Cellular::render_slices`]).
 //!
 //! On top of F1 to F4 are [`Combination`]s, [`Fractal`] sums, [`Profile`]s for bumps, [`Radial`] cells for spheres, and
 //! what the Voronoi cells give: [`Worley::edge_distance`], [`Worley::smooth_f1`], [`Worley::sphere_radius`],

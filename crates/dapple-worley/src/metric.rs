@@ -100,6 +100,9 @@ pub(crate) trait Norm: Copy + Send + Sync {
     /// What a key is multiplied by before it serves as a bound.
     const LOOSE: f32 = 1.0;
 
+    /// Whether terms are joined by adding them, each rounded once at most.
+    const IS_SUM: bool = false;
+
     fn term(self, difference: f32) -> f32;
     fn join(self, term: f32, rest: f32) -> f32;
     fn distance(self, key: f32) -> f32;
@@ -127,6 +130,12 @@ pub(crate) trait Norm: Copy + Send + Sync {
         key
     }
 
+    /// See [`IS_SUM`](Self::IS_SUM).
+    #[inline(always)]
+    fn is_sum(self) -> bool {
+        Self::IS_SUM
+    }
+
     /// The key of a vector of this length along one axis.
     #[inline(always)]
     fn key_along_one_axis(self, length: f32) -> f32 {
@@ -144,6 +153,8 @@ pub(crate) trait Norm: Copy + Send + Sync {
 pub(crate) struct Euclidean;
 
 impl Norm for Euclidean {
+    const IS_SUM: bool = true;
+
     #[inline(always)]
     fn term(self, difference: f32) -> f32 {
         difference * difference
@@ -179,6 +190,8 @@ impl Norm for Euclidean {
 pub(crate) struct Manhattan;
 
 impl Norm for Manhattan {
+    const IS_SUM: bool = true;
+
     #[inline(always)]
     fn term(self, difference: f32) -> f32 {
         difference.abs()

@@ -66,6 +66,14 @@ where
         parts(self) == parts(other)
     }
 
+    /// The only axis that goes with the rows, if there is only one, and it is not the first.
+    pub(crate) fn row_axis(&self) -> Option<usize> {
+        let v: [f64; N] = self.v.into();
+        let mut axes = (0..N).filter(|&axis| v[axis] != 0.0);
+        axes.next()
+            .filter(|&axis| axis > 0 && axes.next().is_none())
+    }
+
     /// Whether the first axis, and no other, goes with the columns.
     pub(crate) fn is_upright(&self) -> bool {
         let [u, v]: [[f64; N]; 2] = [self.u.into(), self.v.into()];

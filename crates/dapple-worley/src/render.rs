@@ -2,10 +2,11 @@
 //!
 //! The window is cut into bands of rows, which threads share out, and blocks of columns. The feature points of a block
 //! and its neighborhood are made once ([`table`]); then, for each tile of up to 32 × 32 pixels, those that matter to it
-//! are picked out ([`sieve`]), and only those are compared at its pixels, sixteen side by side ([`kernel`]; [`track`],
-//! where it matters which points they are). Where a tile needs points further away than its neighborhood reaches, the
-//! neighborhood grows; where that would not be exact, single positions are searched. Where cells have few
-//! pixels, points are sorted by the pixels near to them ([`bins`]), and compared at all of these ([`splat`]).
+//! are picked out ([`sieve`], then [`thin`]), and only those are compared at its pixels, sixteen side by side
+//! ([`kernel`]; [`track`], where it matters which points they are). The most usual pictures go a shorter way through the
+//! same stages ([`sheet`]). Where a tile needs points further away than its neighborhood reaches, the
+//! neighborhood grows; where that would not be exact, single positions are searched. Where cells have few pixels, points
+//! are sorted by the pixels near to them ([`bins`]), and compared at all of these ([`splat`]).
 //!
 //! What runs in registers are stages with nothing but memory between them, so that each is compiled only for what it
 //! depends on.

@@ -6,6 +6,7 @@ use super::shortlist::Shortlist;
 use super::sieve::{Keep, PixelBox, PointList, Points};
 use super::splat::Splat;
 use super::table::{CellBox, Table};
+use super::thin::Rivals;
 use super::tile::{Guess, Tile};
 use super::{LANES, Line, Output, Picture};
 use crate::fixed::{STEP, STEPS};
@@ -53,6 +54,9 @@ pub(super) struct Memory<const N: usize> {
     pub(super) lists: [(PointList<N>, f32); SQUARES.len()],
     /// Those that matter to a tile.
     pub(super) list: PointList<N>,
+    /// The same, thinned.
+    pub(super) thinned: PointList<N>,
+    pub(super) rivals: Rivals,
     pub(super) shortlist: Shortlist<N>,
     pub(super) sheet: Sheet,
     pub(super) near: Vec<f32>,
@@ -71,6 +75,8 @@ impl<const N: usize> Memory<N> {
             wide_table: Table::new(),
             lists: core::array::from_fn(|_| (PointList::new(), 0.0)),
             list: PointList::new(),
+            thinned: PointList::new(),
+            rivals: Rivals::new(),
             shortlist: Shortlist::new(),
             sheet: Sheet::new(),
             near: Vec::new(),

@@ -104,17 +104,7 @@ impl<const N: usize> PointList<N> {
         (pixels, keep): (&PixelBox<N>, Keep),
         near: &mut Vec<f32>,
     ) {
-        let slots = points.runs.iter().map(|run| run.len().div_ceil(LANES));
-        let room = (slots.sum::<usize>() + 1) * LANES;
-        for steps in &mut self.steps {
-            if steps.len() < room {
-                steps.resize(room.next_power_of_two(), 0);
-            }
-        }
-        if points.wants_numbers && self.numbers.len() < room {
-            self.numbers.resize(room.next_power_of_two(), 0);
-        }
-        self.len = 0;
+        let room = self.make_room(points);
         match keep {
             Keep::Within(bound) => {
                 for run in points.runs {
@@ -163,9 +153,25 @@ impl<const N: usize> PointList<N> {
         }
     }
 
+    /// Empties the list, and makes room for some points; returns for how many.
+    pub(super) fn make_room(&mut self, points: Points<'_, N>) -> usize {
+        self.len = 0;
+        let slots = points.runs.iter().map(|run| run.len().div_ceil(LANES));
+        let room = (slots.sum::<usize>() + 1) * LANES;
+        for steps in &mut self.steps {
+            if steps.len() < room {
+                steps.resize(room.next_power_of_two(), 0);
+            }
+        }
+        if points.wants_numbers && self.numbers.len() < room {
+            self.numbers.resize(room.next_power_of_two(), 0);
+        }
+        room
+    }
+
     /// Takes in some of sixteen points.
     #[inline(always)]
-    fn push<S: Simd>(
+    pub(super) fn push<S: Simd>(
         &mut self,
         simd: S,
         points: Points<'_, N>,
@@ -195,7 +201,7 @@ const ASCENDING: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 1
 
 /// The first lanes, at most sixteen.
 #[inline(always)]
-fn lanes_before<S: Simd>(simd: S, n: usize) -> mask32x16<S> {
+pub(super) fn lanes_before<S: Simd>(simd: S, n: usize) -> mask32x16<S> {
     mask32x16::from_bitmask(simd, u64::MAX >> (64 - n.min(LANES)))
 }
 

@@ -61,10 +61,9 @@ impl Splat {
     {
         let plane = block.picture.plane;
         let [u, v]: [[f64; N]; 2] = [plane.u.into(), plane.v.into()];
-        let mut row_axes = (1..N).filter(|&axis| v[axis] != 0.0);
-        let row_axis = row_axes.next()?;
+        let row_axis = plane.row_axis()?;
         // The terms of the axes across the picture are joined before those of the rows.
-        if row_axes.next().is_some() || (N == 4 && row_axis != 1) {
+        if N == 4 && row_axis != 1 {
             return None;
         }
         let window = block.picture.window;

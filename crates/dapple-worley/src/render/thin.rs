@@ -1,14 +1,146 @@
 //! Which feature points are nearer than others in a whole rectangle of pixels.
 //!
-//! The difference of the squared distances to two points is linear, so its smallest value in a rectangle about `m` with
-//! sides of `2h` is known: `|a − m|² − |b − m|² − 2h·|a − b|`, where the last product goes axis by axis. If it is above
-//! zero, `b` is nearer than `a` in the whole rectangle, and is *preferred*. A point to which `K` others are preferred
-//! is not among the `K` nearest of any pixel.
+//! Where terms are added up, what a point is nearer than another is a sum over the axes, and along each axis it grows or
+//! shrinks all the way, since terms are convex. So its smallest value in a rectangle is the sum of the smaller ones of
+//! two ends. If that is above zero, the one point is *preferred* to the other: it is nearer in the whole rectangle. A
+//! point to which `K` others are preferred is not among the `K` nearest of any pixel.
 //!
 //! This leaves about half of the points that are left by bounds for each point alone.
 
 use super::LANES;
-use fearless_simd::{f32x16, mask32x16, prelude::*, u32x16};
+use super::sieve::{PixelBox, PointList, Points, lanes_before};
+use crate::fixed::STEP;
+use crate::metric::Norm;
+use fearless_simd::{f32x16, i32x16, mask32x16, prelude::*, u32x16};
+
+/// A rectangle of pixels along two axes, in cells.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rectangle {
+    pub(super) low: [f32; 2],
+    pub(super) high: [f32; 2],
+}
+
+/// Which points are not kept.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Thinning {
+    /// Those to which so many others are preferred,
+    pub(super) depth: usize,
+    /// if those others are about this near to the middle of the rectangle: farther ones are preferred to few.
+    pub(super) distance: f32,
+}
+
+impl Thinning {
+    /// Those that are near have no larger keys than this at the far corner.
+    #[inline(always)]
+    fn nearby<M: Norm>(&self, norm: M, rectangle: &Rectangle) -> f32 {
+        let [width, height] = [0, 1].map(|axis| rectangle.high[axis] - rectangle.low[axis]);
+        let diagonal = norm.distance(norm.key([width, height]));
+        norm.key_along_one_axis(self.distance + diagonal / 2.0)
+    }
+}
+
+/// What is to spare of the larger one of two keys: there are fewer than 64 roundings in the two and in what compares
+/// them, and none of them is of more than 2⁻²⁴ of that.
+const SPARE: f32 = 128.0 / (1 << 24) as f32;
+
+/// Sixteen points, as seen from a rectangle.
+#[derive(Clone, Copy)]
+struct Seen<S: Simd> {
+    /// Along the two axes, their terms at the low and at the high end.
+    ends: [[f32x16<S>; 2]; 2],
+    /// What the other axes add.
+    rest: f32x16<S>,
+    /// The largest keys that they have.
+    far: f32x16<S>,
+}
+
+impl<S: Simd> Seen<S> {
+    #[inline(always)]
+    fn new<M: Norm>(
+        norm: M,
+        rectangle: &Rectangle,
+        places: [f32x16<S>; 2],
+        rest: f32x16<S>,
+    ) -> Self {
+        let mut ends = [[rest; 2]; 2];
+        let mut far = rest;
+        for axis in 0..2 {
+            ends[axis][0] = norm.terms(places[axis] - rectangle.low[axis]);
+            ends[axis][1] = norm.terms(places[axis] - rectangle.high[axis]);
+            far += ends[axis][0].max(ends[axis][1]);
+        }
+        Self { ends, rest, far }
+    }
+}
+
+/// Points that may be preferred to others.
+#[derive(Debug)]
+pub(super) struct Rivals {
+    len: usize,
+    /// Along the two axes, their terms at the low and at the high end.
+    ends: [[Vec<f32>; 2]; 2],
+    /// What the other axes add.
+    rest: Vec<f32>,
+}
+
+impl Rivals {
+    pub(super) fn new() -> Self {
+        let ends = || [Vec::new(), Vec::new()];
+        Self {
+            len: 0,
+            ends: [ends(), ends()],
+            rest: Vec::new(),
+        }
+    }
+
+    /// Takes all away, and makes room for so many and a register more.
+    #[inline(always)]
+    fn clear(&mut self, n: usize) {
+        self.len = 0;
+        let room = n + LANES;
+        if self.rest.len() < room {
+            let ends = self.ends.as_flattened_mut().iter_mut();
+            for numbers in ends.chain([&mut self.rest]) {
+                numbers.resize(room.next_power_of_two(), 0.0);
+            }
+        }
+    }
+
+    /// Takes in some of sixteen points.
+    #[inline(always)]
+    fn push<S: Simd>(&mut self, seen: &Seen<S>, mask: mask32x16<S>) {
+        let to = self.len..self.len + LANES;
+        for axis in 0..2 {
+            for end in 0..2 {
+                let terms = seen.ends[axis][end].compress(mask);
+                terms.store_slice(&mut self.ends[axis][end][to.clone()]);
+            }
+        }
+        seen.rest
+            .compress(mask)
+            .store_slice(&mut self.rest[to.clone()]);
+        self.len += mask.to_bitmask().count_ones() as usize;
+    }
+
+    /// How many are preferred to each of sixteen points.
+    #[inline(always)]
+    fn preferred<S: Simd>(&self, seen: &Seen<S>) -> u32x16<S> {
+        let mut number = u32x16::splat(seen.far.simd, 0);
+        let n = self.len;
+        let [[left, right], [top, bottom]] = &self.ends;
+        let (left, right, rest) = (&left[..n], &right[..n], &self.rest[..n]);
+        let (top, bottom) = (&top[..n], &bottom[..n]);
+        let [across, down] = seen.ends;
+        let lowered = seen.rest - seen.far * SPARE;
+        for rival in 0..n {
+            let across = (across[0] - left[rival]).min(across[1] - right[rival]);
+            let down = (down[0] - top[rival]).min(down[1] - bottom[rival]);
+            let nearer = across + down + (lowered - rest[rival]);
+            number = nearer.simd_gt(0.0).select(number + 1, number);
+        }
+        number
+    }
+}
 
 /// Feature points in the plane of the picture.
 #[derive(Debug)]
@@ -44,113 +176,113 @@ impl FlatPoints {
         }
     }
 
-    /// Takes those of some points to which fewer than `depth` others are preferred.
+    /// Keeps some of the points that are seen from a rectangle. Only for metrics whose terms are added up.
     #[inline(always)]
-    pub(super) fn thin<S: Simd>(
+    pub(super) fn thin<S: Simd, M: Norm>(
         &mut self,
         simd: S,
-        points: &Self,
-        (view, depth): (&View, u32),
-        rivals: &mut Self,
+        norm: M,
+        (points, rectangle): (&Self, &Rectangle),
+        (thinning, rivals): (&Thinning, &mut Rivals),
     ) {
         self.clear(points.len);
         rivals.clear(points.len);
+        let nearby = thinning.nearby(norm, rectangle);
         for start in (0..points.len).step_by(LANES) {
-            let seen = view.see(simd, points, start);
-            let numbers = [seen.ways[0], seen.ways[1], seen.squares];
-            rivals.push(numbers, seen.is_nearby);
+            let [x, y, rest] = points.lanes(simd, start);
+            let seen = Seen::new(norm, rectangle, [x, y], rest);
+            let is_there = lanes_before(simd, points.len - start);
+            rivals.push(&seen, seen.far.simd_le(nearby) & is_there);
         }
         for start in (0..points.len).step_by(LANES) {
-            let seen = view.see(simd, points, start);
-            let matters = seen.is_there & preferred(seen, rivals).simd_lt(depth);
-            let numbers = [&points.x, &points.y, &points.rest]
-                .map(|numbers| f32x16::from_slice(simd, &numbers[start..start + LANES]));
-            self.push(numbers, matters);
+            let [x, y, rest] = points.lanes(simd, start);
+            let seen = Seen::new(norm, rectangle, [x, y], rest);
+            let matters = rivals.preferred(&seen).simd_lt(thinning.depth as u32);
+            let mask = matters & lanes_before(simd, points.len - start);
+            let to = self.len..self.len + LANES;
+            x.compress(mask).store_slice(&mut self.x[to.clone()]);
+            y.compress(mask).store_slice(&mut self.y[to.clone()]);
+            rest.compress(mask).store_slice(&mut self.rest[to]);
+            self.len += mask.to_bitmask().count_ones() as usize;
         }
     }
 
-    /// Takes in some of sixteen.
+    /// Sixteen points.
     #[inline(always)]
-    fn push<S: Simd>(&mut self, numbers: [f32x16<S>; 3], mask: mask32x16<S>) {
-        let to = self.len..self.len + LANES;
-        let [x, y, rest] = numbers;
-        x.compress(mask).store_slice(&mut self.x[to.clone()]);
-        y.compress(mask).store_slice(&mut self.y[to.clone()]);
-        rest.compress(mask).store_slice(&mut self.rest[to]);
-        self.len += mask.to_bitmask().count_ones() as usize;
-    }
-}
-
-/// What is to spare of the sum of the squared distance of a point and that of the corners of the rectangle. There are
-/// fewer than 64 roundings in two keys and in what compares them, and none of them is of more than 2⁻²⁴ of that.
-const SPARE: f32 = 128.0 / (1 << 24) as f32;
-
-/// A rectangle of pixels.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct View {
-    /// Its middle and its sides, in cells.
-    middle: [f32; 2],
-    sides: [f32; 2],
-    /// The square of the distance from the middle to the corners.
-    corner: f32,
-    /// Points with larger squared distances from the middle are not tried as preferred ones.
-    nearby: f32,
-}
-
-/// Sixteen points, as seen from the middle of a rectangle.
-#[derive(Clone, Copy)]
-struct Seen<S: Simd> {
-    is_there: mask32x16<S>,
-    /// The ways to them times the sides of the rectangle.
-    ways: [f32x16<S>; 2],
-    /// The squares of their distances.
-    squares: f32x16<S>,
-    /// The same without what there is to spare.
-    lowered: f32x16<S>,
-    is_nearby: mask32x16<S>,
-}
-
-impl View {
-    pub(super) fn new([low, high]: [[f32; 2]; 2], nearby: f32) -> Self {
-        let sides = [high[0] - low[0], high[1] - low[1]];
-        Self {
-            middle: [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0],
-            sides,
-            corner: (sides[0] * sides[0] + sides[1] * sides[1]) / 4.0,
-            nearby,
-        }
-    }
-
-    /// Sees sixteen points.
-    #[inline(always)]
-    fn see<S: Simd>(&self, simd: S, points: &FlatPoints, start: usize) -> Seen<S> {
-        let n_lanes = (points.len - start).min(LANES);
-        let is_there = mask32x16::from_bitmask(simd, u64::MAX >> (64 - n_lanes));
+    fn lanes<S: Simd>(&self, simd: S, start: usize) -> [f32x16<S>; 3] {
         let at = start..start + LANES;
-        let x = f32x16::from_slice(simd, &points.x[at.clone()]) - self.middle[0];
-        let y = f32x16::from_slice(simd, &points.y[at.clone()]) - self.middle[1];
-        let rest = f32x16::from_slice(simd, &points.rest[at]);
-        let squares = x * x + (y * y + rest);
-        Seen {
-            is_there,
-            ways: [x * self.sides[0], y * self.sides[1]],
-            squares,
-            lowered: squares - (squares + self.corner) * SPARE,
-            is_nearby: squares.simd_le(self.nearby) & is_there,
+        [
+            f32x16::from_slice(simd, &self.x[at.clone()]),
+            f32x16::from_slice(simd, &self.y[at.clone()]),
+            f32x16::from_slice(simd, &self.rest[at]),
+        ]
+    }
+}
+
+impl<const N: usize> PointList<N> {
+    /// As [`FlatPoints::thin`], for pixels that differ along the first axis and `row_axis` only.
+    #[inline(always)]
+    pub(super) fn thin<S: Simd, M: Norm>(
+        &mut self,
+        simd: S,
+        norm: M,
+        (points, pixels, row_axis): (Points<'_, N>, &PixelBox<N>, usize),
+        (thinning, rivals): (&Thinning, &mut Rivals),
+    ) {
+        rivals.clear(self.make_room(points));
+        let extent = [0, row_axis].map(|axis| (pixels.high[axis] - pixels.low[axis]) as f32 * STEP);
+        let rectangle = Rectangle {
+            low: [0.0; 2],
+            high: extent,
+        };
+        let nearby = thinning.nearby(norm, &rectangle);
+        for run in points.runs {
+            for start in run.clone().step_by(LANES) {
+                let seen = see(
+                    simd,
+                    norm,
+                    points.steps,
+                    start,
+                    (pixels, row_axis, &rectangle),
+                );
+                let is_there = lanes_before(simd, run.end - start);
+                rivals.push(&seen, seen.far.simd_le(nearby) & is_there);
+            }
+        }
+        for run in points.runs {
+            for start in run.clone().step_by(LANES) {
+                let seen = see(
+                    simd,
+                    norm,
+                    points.steps,
+                    start,
+                    (pixels, row_axis, &rectangle),
+                );
+                let matters = rivals.preferred(&seen).simd_lt(thinning.depth as u32);
+                let is_there = lanes_before(simd, run.end - start);
+                self.push(simd, points, start, matters & is_there);
+            }
         }
     }
 }
 
-/// How many of some points are preferred to each of sixteen.
+/// Sixteen points of a list.
 #[inline(always)]
-fn preferred<S: Simd>(seen: Seen<S>, rivals: &FlatPoints) -> u32x16<S> {
-    let mut number = u32x16::splat(seen.squares.simd, 0);
-    let n = rivals.len;
-    let (x, y, squares) = (&rivals.x[..n], &rivals.y[..n], &rivals.rest[..n]);
-    for rival in 0..n {
-        let apart = (seen.ways[0] - x[rival]).abs() + (seen.ways[1] - y[rival]).abs();
-        let is_preferred = (seen.lowered - squares[rival]).simd_gt(apart);
-        number = is_preferred.select(number + 1, number);
+fn see<S: Simd, M: Norm, const N: usize>(
+    simd: S,
+    norm: M,
+    steps: &[Vec<i32>; N],
+    start: usize,
+    (pixels, row_axis, rectangle): (&PixelBox<N>, usize, &Rectangle),
+) -> Seen<S> {
+    let mut rest = f32x16::splat(simd, 0.0);
+    let mut places = [rest; N];
+    for axis in 0..N {
+        let steps = i32x16::from_slice(simd, &steps[axis][start..start + LANES]);
+        places[axis] = (steps - pixels.low[axis]).to_float::<f32x16<S>>() * STEP;
+        if axis != 0 && axis != row_axis {
+            rest += norm.terms(places[axis]);
+        }
     }
-    number
+    Seen::new(norm, rectangle, [places[0], places[row_axis]], rest)
 }

@@ -4,6 +4,7 @@ use super::block::{Block, Memory};
 use super::kernel::Rows;
 use super::sieve::{Keep, PixelBox, Points};
 use super::table::CellBox;
+use super::thin::Thinning;
 use super::track::{Found, TrackedRows};
 use super::{LANES, Output};
 use crate::fixed::{STEP, STEPS};
@@ -259,6 +260,8 @@ where
         let Memory {
             lists,
             list,
+            thinned,
+            rivals,
             shortlist,
             near,
             table,
@@ -269,6 +272,7 @@ where
         let limit = *limit;
         let run = 0..larger.len;
         let points = larger.points(&run, table.wants_ids);
+        let row_axis = self.block.picture.plane.row_axis();
         let lines = core::array::from_fn(|axis| match axis {
             0 => &lines[0][..],
             _ => &lines[axis][self.rows.start..],
@@ -277,6 +281,17 @@ where
         with_norm!(self.block.picture.worley.metric, norm => {
             dispatch!(self.block.level, simd => {
                 list.sift(simd, norm, points, (pixels, Keep::Nearest(self.depth)), near);
+                if let Some(row_axis) = row_axis.filter(|_| norm.is_sum()) {
+                    let run = 0..list.len;
+                    let points = list.points(&run, table.wants_ids);
+                    let thinning = Thinning {
+                        depth: self.depth,
+                        distance: self.guess.distance,
+                    };
+                    let how = (&thinning, &mut *rivals);
+                    thinned.thin(simd, norm, (points, pixels, row_axis), how);
+                    core::mem::swap(thinned, list);
+                }
                 shortlist.fill(simd, norm, (&*list, pixels), rows);
             });
         });
