@@ -114,11 +114,9 @@ where
     }
 
     /// The coordinates of the columns; those of the picture before, if they are the same.
-    fn columns(&self, before: Option<&Shelf<'_, N>>) -> Arc<Line> {
+    fn columns(&self, before: Option<(&Self, &Arc<Line>)>) -> Arc<Line> {
         match before {
-            Some(before) if before.picture.plane.is_same_along(0, self.plane) => {
-                before.columns.clone()
-            }
+            Some((before, columns)) if before.plane.is_same_along(0, self.plane) => columns.clone(),
             _ => Arc::new(self.line(0, self.window.size[0], |column| {
                 DVec2::new(self.window.column_x(column), 0.0)
             })),
@@ -170,16 +168,24 @@ const STACK: usize = 16;
 /// Fills the bands of pictures of the same basis, frequency and window, on all cores where the feature `rayon` is on.
 pub(crate) fn render_stack<'a, const N: usize>(
     level: Level,
-    mut stack: Vec<(Picture<'a, N>, Vec<Output<'a, N>>)>,
+    stack: Vec<(Picture<'a, N>, Vec<Output<'a, N>>)>,
 ) where
     Axes: Space<N>,
 {
+    let mut pictures: Vec<(Picture<'a, N>, Arc<Line>, Vec<Output<'a, N>>)> = Vec::new();
+    for (picture, bands) in stack {
+        let before = pictures.last();
+        let columns = picture.columns(before.map(|(before, columns, _)| (before, columns)));
+        pictures.push((picture, columns, bands));
+    }
     let mut jobs = Vec::new();
-    for pictures in stack.chunks_mut(STACK) {
+    for pictures in pictures.chunks_mut(STACK) {
         for band in (0..pictures[0].0.n_bands()).rev() {
-            let bands = pictures.iter_mut();
-            let outputs = bands.filter_map(|(picture, bands)| Some((*picture, bands.pop()?)));
-            jobs.push((band, outputs.collect()));
+            let bands = pictures.iter_mut().filter_map(|(picture, columns, bands)| {
+                let out = bands.pop()?;
+                Some((*picture, columns.clone(), out))
+            });
+            jobs.push((band, bands.collect()));
         }
     }
     #[cfg(feature = "rayon")]
@@ -189,38 +195,37 @@ pub(crate) fn render_stack<'a, const N: usize>(
         // Memory goes from job to job, since it takes time to be had anew.
         let pool = Mutex::new(Vec::new());
         let lock = || pool.lock().unwrap_or_else(PoisonError::into_inner);
-        jobs.into_par_iter().for_each(|(band, outputs)| {
+        jobs.into_par_iter().for_each(|(band, pictures)| {
             let mut memory = lock().pop().unwrap_or_else(Memory::new);
-            render_band(level, band, outputs, &mut memory);
+            render_band(level, band, pictures, &mut memory);
             lock().push(memory);
         });
     }
     #[cfg(not(feature = "rayon"))]
     {
         let mut memory = Memory::new();
-        for (band, outputs) in jobs {
-            render_band(level, band, outputs, &mut memory);
+        for (band, pictures) in jobs {
+            render_band(level, band, pictures, &mut memory);
         }
     }
 }
 
-/// Fills the same band of several pictures.
+/// Fills the same band of several pictures, each with its columns.
 fn render_band<const N: usize>(
     level: Level,
     band: usize,
-    outputs: Vec<(Picture<'_, N>, Output<'_, N>)>,
+    pictures: Vec<(Picture<'_, N>, Arc<Line>, Output<'_, N>)>,
     memory: &mut Memory<N>,
 ) where
     Axes: Space<N>,
 {
     let first = band * BAND_ROWS;
-    let mut shelves: Vec<Shelf<'_, N>> = Vec::with_capacity(outputs.len());
-    for (picture, out) in outputs {
+    let mut shelves: Vec<Shelf<'_, N>> = Vec::with_capacity(pictures.len());
+    for (picture, columns, out) in pictures {
         let n_rows = BAND_ROWS.min(picture.window.size[1] as usize - first);
-        let before = shelves.last();
         shelves.push(Shelf {
-            columns: picture.columns(before),
-            rows: picture.rows([first, n_rows], before),
+            columns,
+            rows: picture.rows([first, n_rows], shelves.last()),
             picture,
             out,
         });
