@@ -45,7 +45,23 @@ where
     ) -> Result<(), WorleyError> {
         const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
         WorleyError::check_length(features.len(), positions.len())?;
-        let mut group = Group::new();
+        match K {
+            1 => self.fill_groups::<1, K>(level, positions, features),
+            2 => self.fill_groups::<2, K>(level, positions, features),
+            // Hardly faster for three than for four, but as much to compile.
+            _ => self.fill_groups::<4, K>(level, positions, features),
+        }
+        Ok(())
+    }
+
+    /// From the `D` nearest, at least as many as are asked for.
+    fn fill_groups<const D: usize, const K: usize>(
+        &self,
+        level: Level,
+        positions: &[Vector<N>],
+        features: &mut [[Feature<Vector<N>>; K]],
+    ) {
+        let mut group = Group::<N, D>::new();
         let groups = positions.chunks(GROUP).zip(features.chunks_mut(GROUP));
         for (positions, features) in groups {
             let holds = match self.metric {
@@ -66,16 +82,15 @@ where
                 again &= again - 1;
             }
         }
-        Ok(())
     }
 
     /// Up to a group of positions; tells for which of them it holds.
-    fn search<M: Norm, const K: usize>(
+    fn search<M: Norm, const D: usize>(
         &self,
         level: Level,
         norm: M,
         positions: &[Vector<N>],
-        group: &mut Group<N, K>,
+        group: &mut Group<N, D>,
     ) -> u64 {
         let search = Search::new(norm, &self.lattice);
         dispatch!(level, simd => group.search(simd, search, positions))
@@ -83,8 +98,8 @@ where
 }
 
 /// Writes what was found, place by place.
-fn put<const N: usize, const K: usize>(
-    points: &[Points<N>; K],
+fn put<const N: usize, const D: usize, const K: usize>(
+    points: &[Points<N>; D],
     features: &mut [[Feature<Vector<N>>; K]],
 ) where
     Axes: Space<N>,

@@ -76,7 +76,7 @@ where
         origin[..2].fill(0.0);
         let plane = Plane::slice(Vector::<N>::from(origin));
         for zoom in [6, 9, 12, 16, 20] {
-            let pixel = DVec2::new(1.0, 1.25) * 0.5_f64.powi(zoom);
+            let pixel = DVec2::new(1.0, 1.25) / f64::from(1 << zoom);
             let window = Window {
                 origin: DVec2::new(at[0], at[1]) - 24.0 * pixel,
                 pixel,
