@@ -187,6 +187,14 @@ where
             };
             sum += self.tone.at(&octave.worley, place) * octave.weight;
         }
+        self.value_of(sum)
+    }
+
+    /// The value of a sum of octaves. What is not a number has the same bits everywhere.
+    fn value_of(&self, sum: f32) -> f32 {
+        if sum.is_nan() {
+            return f32::NAN;
+        }
         self.range.of(&[sum])
     }
 
@@ -260,11 +268,7 @@ where
         }
         let rows = slices.iter_mut().flat_map(|(_, out)| out.rows_mut());
         for value in rows.flatten() {
-            *value = if value.is_nan() {
-                f32::NAN
-            } else {
-                self.range.of(&[*value])
-            };
+            *value = self.value_of(*value);
         }
         Ok(())
     }

@@ -130,8 +130,9 @@ where
                 before.rows[axis].clone()
             }
             _ => {
-                // Where all rows are at the same place, the first one does for all.
-                let is_level = self.plane.v.into()[axis] == 0.0;
+                // Where all rows are at the same place, the first one does for all. (Zero times infinity is no place.)
+                let last = self.window.row_y((first + n) as u32 - 1);
+                let is_level = self.plane.v.into()[axis] == 0.0 && last.is_finite();
                 let mut line = self.line(axis, if is_level { 1 } else { n as u32 }, |row| {
                     DVec2::new(0.0, self.window.row_y(first as u32 + row))
                 });

@@ -34,7 +34,8 @@ impl Tone {
         let weights = self.weights.coefficients().map(|weight| weight / extent);
         Ok(Self {
             weights: Combination::new(weights),
-            shift: (self.shift - low) / extent,
+            // Not -0: adding nothing to that would make a difference.
+            shift: (self.shift - low) / extent + 0.0,
         })
     }
 
@@ -130,7 +131,7 @@ impl<S: Simd, const K: usize> ValueLanes<S, K> {
     pub(crate) fn put<M: Norm>(&self, norm: M, keys: [f32x16<S>; K], out: &mut [f32]) {
         let mut values = self.shift;
         for rank in 0..K {
-            // The last one of one or two is never zero.
+            // The last one of one or two is zero in a combination of nothing only, where it adds zero.
             if (rank + 1 == K && K <= 2) || self.counts[rank] {
                 values += norm.distances(keys[rank]) * self.weights[rank];
             }

@@ -114,14 +114,16 @@ where
     /// Fills the pixels of the block; `out` has the rows of the band.
     pub(super) fn render(&self, out: &mut Output<'_, N>, memory: &mut Memory<N>) {
         let lattice = &self.picture.worley.lattice;
-        // The inner loops know one, two and four.
-        let depth = match out.depth() {
-            3 => 4,
-            depth => depth,
+        // The inner loops know one, two and four; those that tell which points they are, two and four.
+        let depth = match (&*out, out.depth()) {
+            (Output::Values(..), 1) => 1,
+            (_, ..=2) => 2,
+            _ => 4,
         };
         let guess = Guess::new(lattice, self.middle(), depth);
         let splat = Splat::new(self, guess.distance).filter(|_| matches!(out, Output::Values(..)));
-        let ring = splat.map_or(guess.ring, |splat| splat.reach.ceil() as i32);
+        let reach = splat.map_or(0, |splat| splat.reach.ceil() as i32);
+        let ring = guess.ring.max(reach);
         let Some(cells) = self.cells(ring) else {
             self.one_by_one(0..self.n_rows, self.range.clone(), out);
             return;

@@ -77,7 +77,7 @@ impl Splat {
         let useful = distance..FARTHEST.min(MOST_WASTE * distance);
         for tiles in [NEAR, WIDE] {
             let along_row = reach(pixel[0], TILE * tiles);
-            let halves = (0..MOST_HALVES).find(|halves| reach(pixel[1], HALF * halves) >= distance);
+            let halves = (1..MOST_HALVES).find(|halves| reach(pixel[1], HALF * halves) >= distance);
             let Some(halves) = halves.filter(|_| useful.contains(&along_row)) else {
                 continue;
             };

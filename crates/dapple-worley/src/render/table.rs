@@ -49,12 +49,12 @@ impl<const N: usize> CellBox<N> {
         })
     }
 
-    /// How many cells there are.
+    /// How many cells there are; as many as can be counted, if there are more.
     pub(super) fn n_cells(&self) -> u128 {
         let sides = self.first.iter().zip(self.last);
         sides
             .map(|(&first, last)| (i128::from(last) - i128::from(first) + 1) as u128)
-            .product()
+            .fold(1, u128::saturating_mul)
     }
 }
 

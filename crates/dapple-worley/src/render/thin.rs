@@ -39,8 +39,9 @@ impl Thinning {
     }
 }
 
-/// What is to spare of the larger one of two keys: there are fewer than 64 roundings in the two and in what compares
-/// them, and none of them is of more than 2⁻²⁴ of that.
+/// What is to spare of the largest key of a point: there are fewer than 64 roundings in its key, in that of another
+/// point, and in what compares them, and none of them is of more than 2⁻²⁴ of that. (Another point with larger terms is
+/// not preferred in any case.)
 const SPARE: f32 = 128.0 / (1 << 24) as f32;
 
 /// Sixteen points, as seen from a rectangle.

@@ -1,10 +1,11 @@
-//! Values with the Euclidean metric, where points are thinned and slices are filled together.
+//! Pictures where points are thinned, and where slices are filled together.
 
 use crate::{
-    Axes, Combination, Octaves, Plane, Space, Vector, Worley, Worley2, Worley3, WorleyError,
+    Axes, Combination, FeatureView, Metric, Octaves, Plane, Scatter, Space, Vector, Worley,
+    Worley2, Worley3, WorleyError,
 };
 use dapple_hash::Seed;
-use dapple_raster::{Raster, RasterErrorKind, Window};
+use dapple_raster::{Field, Raster, RasterErrorKind, Window};
 use glam::{DVec2, DVec3};
 
 /// A position that is as near to its nearest point as to the second one, to within a hair: on the way from `at` to
@@ -70,7 +71,8 @@ where
 {
     let combinations = [Combination::F1, Combination::F2, Combination::F2_MINUS_F1];
     for seed in 0..6 {
-        let worley = Worley::<N>::new(Seed(seed));
+        let metric = [Metric::Euclidean, Metric::Manhattan][seed as usize % 2];
+        let worley = Worley::<N>::new(Seed(seed)).with_metric(metric)?;
         let at = middle_ground(&worley, [0.3 + seed as f64; N]);
         let mut origin = at;
         origin[..2].fill(0.0);
@@ -174,5 +176,78 @@ fn slices_of_another_size_are_refused_before_anything_is_drawn() -> Result<(), W
         assert!(right.pixels().iter().all(|&value| value == -1.0));
     }
     texture.render_slices(&window, Vec::new())?;
+    Ok(())
+}
+
+/// Pictures that lie where hardly anybody goes, and their values one by one.
+#[test]
+fn odd_planes_and_windows_hold_what_values_are() -> Result<(), WorleyError> {
+    let up = |v: DVec3| Plane {
+        v,
+        ..Plane::<3>::default()
+    };
+    let nearly_everything = Window::new(DVec2::splat(-4.6e18), DVec2::splat(9.2e18), [20, 18])?;
+    let worley = Worley3::new(Seed(1));
+    for v in [DVec3::Y, DVec3::new(0.0, 1.0, 1.0)] {
+        picture_equals_value(&worley, Combination::F1, &up(v), &nearly_everything)?;
+    }
+    // Rows that lie upon one another, but for those whose coordinate is infinite.
+    let beyond_numbers = Window::new(DVec2::Y * 1e308, DVec2::new(1.0, 1e308), [4, 4])?;
+    let texture = worley.combine(Combination::F1);
+    let mut picture = Raster::filled([4, 4], -1.0)?;
+    texture.render_plane(&up(DVec3::ZERO), &beyond_numbers, picture.view_mut())?;
+    assert!(picture.row(0).iter().all(|value| value.is_finite()));
+    assert!(picture.row(3).iter().all(|value| value.is_nan()));
+    Ok(())
+}
+
+/// Zeros with a sign, and what is not a number, have the same bits in pictures as alone.
+#[test]
+fn values_of_nothing_have_the_same_bits_in_pictures() -> Result<(), WorleyError> {
+    let window = Window::new(DVec2::ZERO, DVec2::ONE, [20, 20])?;
+    let nothing = Worley2::new(Seed(1)).combine(Combination::new([0.0; 4]));
+    let nothing = nothing.with_range([1e-30, 1e38])?;
+    let picture = nothing.to_raster(&window)?;
+    let value = nothing.value(window.position(3, 3));
+    assert_eq!(picture.row(3)[3].to_bits(), value.to_bits());
+
+    // Hardly any cell has a point, so that most positions have neither a nearest nor a second one.
+    let empty = Worley2::new(Seed(1))
+        .with_scatter(Scatter::Unclamped {
+            density: 1.0 / 64.0,
+        })?
+        .with_period([Some(1); 2])?;
+    let sums = empty
+        .combine(Combination::F2_MINUS_F1)
+        .fractal(Octaves::default())?;
+    let picture = sums.to_raster(&window)?;
+    for (row, column) in [(0, 0), (3, 3), (19, 19)] {
+        let value = sums.value(window.position(column, row));
+        assert_eq!(
+            picture.row(row)[column as usize].to_bits(),
+            value.to_bits(),
+            "{value}"
+        );
+    }
+    Ok(())
+}
+
+/// Where one point is the nearest in a whole tile, its features are found in the tile, as the others are.
+#[test]
+fn features_of_f1_alone_are_those_of_samples() -> Result<(), WorleyError> {
+    let worley = Worley2::new(Seed(4));
+    let window = Window::new(DVec2::ZERO, DVec2::splat(0.25), [128, 96])?;
+    let mut ids = Raster::filled(window.size, 0)?;
+    let view = FeatureView {
+        id: Some(ids.view_mut()),
+        ..FeatureView::default()
+    };
+    worley.render_features(&Plane::default(), &window, [view])?;
+    for row in 0..window.size[1] {
+        for (column, &id) in (0..).zip(ids.row(row)) {
+            let [nearest] = worley.sample(window.position(column, row));
+            assert_eq!(id, nearest.id, "column {column} of row {row}");
+        }
+    }
     Ok(())
 }
