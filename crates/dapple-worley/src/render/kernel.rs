@@ -9,6 +9,9 @@ use crate::sink::Values;
 use core::ops::Range;
 use fearless_simd::{Level, dispatch, f32x16, i32x16, prelude::*};
 
+/// The columns of two registers.
+const TWICE: usize = 2 * LANES;
+
 /// Some rows of a tile.
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
@@ -54,10 +57,13 @@ impl Rows<'_> {
         norm: M,
         out: &mut [&mut [f32]],
     ) -> usize {
+        let has_few_registers = const { <S::f32s as SimdBase<S>>::LEN < LANES };
         match self.columns.len() {
-            32 if K == 1 => self.fill_groups::<S, M, K, 4, 2>(simd, norm, out),
-            32 => self.fill_groups::<S, M, K, 2, 2>(simd, norm, out),
-            16 => self.fill_groups::<S, M, K, 4, 1>(simd, norm, out),
+            TWICE if has_few_registers => self.fill_groups::<S, M, K, 1, 2>(simd, norm, out),
+            TWICE if K == 1 => self.fill_groups::<S, M, K, 4, 2>(simd, norm, out),
+            TWICE => self.fill_groups::<S, M, K, 2, 2>(simd, norm, out),
+            LANES if has_few_registers => self.fill_groups::<S, M, K, 2, 1>(simd, norm, out),
+            LANES => self.fill_groups::<S, M, K, 4, 1>(simd, norm, out),
             _ => self.fill_groups::<S, M, K, 1, 0>(simd, norm, out),
         }
     }

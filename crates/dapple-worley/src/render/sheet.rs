@@ -258,7 +258,6 @@ impl Tiles<'_> {
             tile,
             row_terms,
             unknown,
-            ..
         } = sheet;
         tile.thin(simd, norm, (square, &rectangle), (&self.thinning, rivals));
         if row_terms.len() < tile.len {

@@ -231,34 +231,26 @@ impl<const N: usize> PointList<N> {
         (thinning, rivals): (&Thinning, &mut Rivals),
     ) {
         rivals.clear(self.make_room(points));
-        let extent = [0, row_axis].map(|axis| (pixels.high[axis] - pixels.low[axis]) as f32 * STEP);
-        let rectangle = Rectangle {
-            low: [0.0; 2],
-            high: extent,
+        let view = ListView {
+            pixels,
+            row_axis,
+            rectangle: Rectangle {
+                low: [0.0; 2],
+                high: [0, row_axis]
+                    .map(|axis| (pixels.high[axis] - pixels.low[axis]) as f32 * STEP),
+            },
         };
-        let nearby = thinning.nearby(norm, &rectangle);
+        let nearby = thinning.nearby(norm, &view.rectangle);
         for run in points.runs {
             for start in run.clone().step_by(LANES) {
-                let seen = see(
-                    simd,
-                    norm,
-                    points.steps,
-                    start,
-                    (pixels, row_axis, &rectangle),
-                );
+                let seen = view.see(simd, norm, points.steps, start);
                 let is_there = lanes_before(simd, run.end - start);
                 rivals.push(&seen, seen.far.simd_le(nearby) & is_there);
             }
         }
         for run in points.runs {
             for start in run.clone().step_by(LANES) {
-                let seen = see(
-                    simd,
-                    norm,
-                    points.steps,
-                    start,
-                    (pixels, row_axis, &rectangle),
-                );
+                let seen = view.see(simd, norm, points.steps, start);
                 let matters = rivals.preferred(&seen).simd_lt(thinning.depth as u32);
                 let is_there = lanes_before(simd, run.end - start);
                 self.push(simd, points, start, matters & is_there);
@@ -267,23 +259,33 @@ impl<const N: usize> PointList<N> {
     }
 }
 
-/// Sixteen points of a list.
-#[inline(always)]
-fn see<S: Simd, M: Norm, const N: usize>(
-    simd: S,
-    norm: M,
-    steps: &[Vec<i32>; N],
-    start: usize,
-    (pixels, row_axis, rectangle): (&PixelBox<N>, usize, &Rectangle),
-) -> Seen<S> {
-    let mut rest = f32x16::splat(simd, 0.0);
-    let mut places = [rest; N];
-    for axis in 0..N {
-        let steps = i32x16::from_slice(simd, &steps[axis][start..start + LANES]);
-        places[axis] = (steps - pixels.low[axis]).to_float::<f32x16<S>>() * STEP;
-        if axis != 0 && axis != row_axis {
-            rest += norm.terms(places[axis]);
+/// From where the points of a list are seen: their coordinates are counted from the lower corner of the pixels.
+struct ListView<'a, const N: usize> {
+    pixels: &'a PixelBox<N>,
+    row_axis: usize,
+    rectangle: Rectangle,
+}
+
+impl<const N: usize> ListView<'_, N> {
+    /// Sixteen points.
+    #[inline(always)]
+    fn see<S: Simd, M: Norm>(
+        &self,
+        simd: S,
+        norm: M,
+        steps: &[Vec<i32>; N],
+        start: usize,
+    ) -> Seen<S> {
+        let mut rest = f32x16::splat(simd, 0.0);
+        let mut places = [rest; N];
+        for axis in 0..N {
+            let steps = i32x16::from_slice(simd, &steps[axis][start..start + LANES]);
+            places[axis] = (steps - self.pixels.low[axis]).to_float::<f32x16<S>>() * STEP;
+            if axis != 0 && axis != self.row_axis {
+                rest += norm.terms(places[axis]);
+            }
         }
+        let places = [places[0], places[self.row_axis]];
+        Seen::new(norm, &self.rectangle, places, rest)
     }
-    Seen::new(norm, rectangle, [places[0], places[row_axis]], rest)
 }
