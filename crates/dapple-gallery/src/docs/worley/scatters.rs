@@ -1,9 +1,9 @@
 //! How feature points are spread: seeds, densities, jitter, periods.
 
-use super::{SIDE, flat, gray_with_edges};
+use super::{SIDE, basis, flat, gray_with_edges};
 use crate::Panel;
 use crate::docs::Strip;
-use dapple_worley::{Scatter, Worley2, hash::Seed};
+use dapple_worley::{Scatter, hash::Seed};
 use glam::DVec2;
 
 /// Cells along a side.
@@ -12,8 +12,17 @@ const CELLS: f64 = 4.0;
 /// Densities that are shown.
 const DENSITIES: [f64; 3] = [1.0, 3.0, 8.0];
 
-fn scattered(label: &str, scatter: Scatter) -> anyhow::Result<Panel> {
-    flat(label, CELLS, &Worley2::new(Seed(3)).with_scatter(scatter)?)
+/// The scatters of some values.
+fn scattered(
+    what: &str,
+    values: [f64; 3],
+    scatter: impl Fn(f64) -> Scatter,
+) -> anyhow::Result<Vec<Panel>> {
+    let panels = values.into_iter().map(|value| {
+        let worley = basis().with_scatter(scatter(value))?;
+        flat(&format!("{what} {value}"), CELLS, &worley)
+    });
+    panels.collect()
 }
 
 pub(super) const SEED: Strip = Strip {
@@ -21,7 +30,7 @@ pub(super) const SEED: Strip = Strip {
     caption: "Feature points and their Voronoi cells in 4 by 4 unit cells",
     render: || {
         let panels = [3, 4].into_iter().map(|seed| {
-            let worley = Worley2::new(Seed(3)).with_seed(Seed(seed));
+            let worley = basis().with_seed(Seed(seed));
             flat(&format!("seed {seed}"), CELLS, &worley)
         });
         panels.collect()
@@ -31,24 +40,16 @@ pub(super) const SEED: Strip = Strip {
 pub(super) const POISSON: Strip = Strip {
     name: "scatter-poisson",
     caption: "Feature points and their Voronoi cells in 4 by 4 unit cells, clamped",
-    render: || {
-        let panels = DENSITIES.into_iter().map(|density| {
-            let label = format!("density {density}");
-            scattered(&label, Scatter::Poisson { density })
-        });
-        panels.collect()
-    },
+    render: || scattered("density", DENSITIES, |density| Scatter::Poisson { density }),
 };
 
 pub(super) const UNCLAMPED: Strip = Strip {
     name: "scatter-unclamped",
     caption: "Feature points and their Voronoi cells in 4 by 4 unit cells, not clamped",
     render: || {
-        let panels = DENSITIES.into_iter().map(|density| {
-            let label = format!("density {density}");
-            scattered(&label, Scatter::Unclamped { density })
-        });
-        panels.collect()
+        scattered("density", DENSITIES, |density| Scatter::Unclamped {
+            density,
+        })
     },
 };
 
@@ -56,11 +57,9 @@ pub(super) const JITTERED: Strip = Strip {
     name: "scatter-jittered",
     caption: "Feature points and their Voronoi cells in 4 by 4 unit cells",
     render: || {
-        let panels = [0.0, 0.5, 1.0].into_iter().map(|jitter| {
-            let label = format!("jitter {jitter}");
-            scattered(&label, Scatter::Jittered { jitter })
-        });
-        panels.collect()
+        scattered("jitter", [0.0, 0.5, 1.0], |jitter| Scatter::Jittered {
+            jitter,
+        })
     },
 };
 
@@ -68,7 +67,7 @@ pub(super) const VARYING: Strip = Strip {
     name: "with-varying-density",
     caption: "Feature points and their Voronoi cells in 8 by 8 unit cells",
     render: || {
-        let worley = Worley2::new(Seed(3));
+        let worley = basis();
         let ramp = worley.with_varying_density(|at| 0.25 + 0.12 * at.x * at.x);
         let disk = worley.with_varying_density(|at| {
             let from_middle = (at - DVec2::splat(4.0)).length_squared();
@@ -91,7 +90,7 @@ pub(super) const PERIOD: Strip = Strip {
             ("a period of 2 along both axes", [Some(2), Some(2)]),
         ];
         let panels = periods.into_iter().map(|(label, period)| {
-            let worley = Worley2::new(Seed(3)).with_period(period)?;
+            let worley = basis().with_period(period)?;
             flat(label, CELLS, &worley)
         });
         panels.collect()
@@ -102,7 +101,7 @@ pub(super) const CELL_POINTS: Strip = Strip {
     name: "cell-points",
     caption: "The feature points of 4 by 4 unit cells, which are outlined",
     render: || {
-        let worley = Worley2::new(Seed(3));
+        let worley = basis();
         let pixel = CELLS / f64::from(SIDE);
         let panel = gray_with_edges("unit cells and their points", CELLS, |at| {
             let [nearest] = worley.sample(at);
