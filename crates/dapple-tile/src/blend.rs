@@ -1,0 +1,1 @@
+//! Blending textures: all maps of several materials by weights.

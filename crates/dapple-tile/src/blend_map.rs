@@ -1,0 +1,1 @@
+//! Blend maps from a texture's own features.

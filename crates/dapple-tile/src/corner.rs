@@ -1,0 +1,1 @@
+//! Corner tiles: sets that fit in any order.

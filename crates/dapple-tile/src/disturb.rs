@@ -1,0 +1,1 @@
+//! Copies of a tile that differ inside and agree on their borders.

@@ -1,0 +1,1 @@
+//! The discrete Fourier transform of any length, with the same bits everywhere.

@@ -1,0 +1,1 @@
+//! Unlike tiles that fit beside each other.

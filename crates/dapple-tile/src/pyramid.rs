@@ -1,0 +1,1 @@
+//! Blending in bands, with a mask that is sharper where details are finer.

@@ -1,0 +1,1 @@
+//! How well a tile repeats, in numbers.

@@ -1,0 +1,122 @@
+//! The front door: an image in, a tile out, by one of several methods.
+
+use crate::map::check_planes;
+use crate::{Feather, Map, SoftCut, SplineProject, TileError, WrapGradient};
+use crate::{feather, mirror, periodic, poisson, soft_cut, spline_project};
+use dapple_color::LinearRgb;
+use dapple_raster::Raster;
+
+/// How an image is made to repeat.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum Method {
+    /// The periodic part of the image (Moisan 2011).
+    #[default]
+    Periodic,
+    /// The image whose gradients are nearest to the given ones, once around the torus.
+    Poisson(WrapGradient),
+    /// A margin is laid over the opposite side and cut along the line of least difference.
+    SoftCut(SoftCut),
+    /// The paper's blend tile: halved and doubled with periodic filters.
+    SplineProject(SplineProject),
+    /// First [`Periodic`](Self::Periodic), then [`SplineProject`](Self::SplineProject).
+    PeriodicThenProject(SplineProject),
+    /// The usual baseline: a crossfade.
+    Feather(Feather),
+    /// The other usual baseline: the image beside its mirror image, twice as large along each axis.
+    Mirror,
+}
+
+/// Makes images repeat along one or both axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
+pub struct Seamless {
+    /// How. By default [`Method::Periodic`].
+    pub method: Method,
+    /// Along which axes, x first. By default both.
+    pub axes: [bool; 2],
+}
+
+impl Default for Seamless {
+    fn default() -> Self {
+        Self::new(Method::default())
+    }
+}
+
+impl Seamless {
+    /// Repeats along both axes by a method.
+    #[must_use]
+    pub fn new(method: Method) -> Self {
+        Self {
+            method,
+            axes: [true; 2],
+        }
+    }
+
+    /// Repeats only along these axes, x first.
+    #[must_use]
+    pub fn with_axes(self, axes: [bool; 2]) -> Self {
+        Self { axes, ..self }
+    }
+
+    /// The tile of one raster.
+    ///
+    /// # Errors
+    ///
+    /// See [`apply_maps`](Self::apply_maps).
+    pub fn apply(&self, image: &Raster<f32>) -> Result<Raster<f32>, TileError> {
+        let mut planes = self.planes(core::slice::from_ref(image))?;
+        Ok(planes.swap_remove(0))
+    }
+
+    /// The tile of a color raster.
+    ///
+    /// # Errors
+    ///
+    /// See [`apply_maps`](Self::apply_maps).
+    pub fn apply_color(&self, image: &Raster<LinearRgb>) -> Result<Raster<LinearRgb>, TileError> {
+        let map = Map::Color(image.clone());
+        let [r, g, b] = [0, 1, 2];
+        let planes = self.planes(&map.planes())?;
+        let rg = planes[r].zip_map(&planes[g], |&r, &g| [r, g])?;
+        Ok(rg.zip_map(&planes[b], |&[r, g], &b| LinearRgb::new(r, g, b))?)
+    }
+
+    /// The tiles of all maps of a material, which are cut along the same lines.
+    ///
+    /// # Errors
+    ///
+    /// Maps of different sizes, pixels that are not finite, sizes or margins that the method cannot have.
+    pub fn apply_maps(&self, maps: &[Map]) -> Result<Vec<Map>, TileError> {
+        let planes: Vec<_> = maps.iter().flat_map(Map::planes).collect();
+        let mut tiles = self.planes(&planes)?.into_iter();
+        maps.iter()
+            .map(|map| {
+                let n_planes = map.planes().len();
+                map.with_planes(tiles.by_ref().take(n_planes).collect())
+            })
+            .collect()
+    }
+
+    fn planes(&self, planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
+        check_planes(planes)?;
+        match &self.method {
+            Method::Periodic => periodic::tile(planes, self.axes),
+            Method::Poisson(wrap) => poisson::tile(planes, *wrap, self.axes),
+            Method::SoftCut(cut) => soft_cut::tile(planes, cut, self.axes),
+            Method::SplineProject(project) => spline_project::tile(planes, project, self.axes),
+            Method::PeriodicThenProject(project) => {
+                let planes = periodic::tile(planes, self.axes)?;
+                spline_project::tile(&planes, project, self.axes)
+            }
+            Method::Feather(feather) => feather::tile(planes, feather, self.axes),
+            Method::Mirror => mirror::tile(planes, self.axes),
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! The periodic Fourier projector.

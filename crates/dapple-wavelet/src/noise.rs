@@ -1,0 +1,1 @@
+//! Wavelet noise at any position, in two and three dimensions.

@@ -1,0 +1,1 @@
+//! Seamless rasters of wavelet noise, weighted band by band.
