@@ -25,6 +25,8 @@ pub struct Image {
     pub file: String,
     /// The label of the panel.
     pub label: String,
+    /// What was measured on the picture, or nothing.
+    pub note: String,
     /// Columns and rows.
     pub size: [u32; 2],
 }
@@ -85,9 +87,13 @@ fn thumbnail(image: &Image, number: &str) -> String {
     let [width, height] = image.size;
     let alt = format!("{number} {label}");
     let alt = alt.trim_end();
+    let note = match image.note.trim_end() {
+        "" => String::new(),
+        note => format!("<pre class=\"note\">{}</pre>", escape(note)),
+    };
     format!(
         "<figure><a class=\"zoom\" href=\"{file}\"><img src=\"{file}\" alt=\"{alt}\" width=\"{width}\" height=\"{height}\" \
-         loading=\"lazy\"></a><figcaption>{label}</figcaption></figure>"
+         loading=\"lazy\"></a><figcaption>{label}</figcaption>{note}</figure>"
     )
 }
 
@@ -132,6 +138,7 @@ mod tests {
         let image = |file: String| Image {
             file,
             label: "a < b".into(),
+            note: "seam < 1\n".into(),
             size: [5, 4],
         };
         let entries: Vec<_> = figures()
@@ -155,8 +162,10 @@ mod tests {
             );
         }
         assert!(
-            page.contains("a &lt; b") && page.contains("1 ms"),
-            "label or time is missing"
+            page.contains("a &lt; b")
+                && page.contains(">seam &lt; 1</pre>")
+                && page.contains("1 ms"),
+            "label, note or time is missing"
         );
         let shell = html(&[], "");
         for foreign in ["http:", "https:", "//", "@import", "src="] {

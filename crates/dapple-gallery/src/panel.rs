@@ -8,6 +8,9 @@ use dapple_raster::Raster;
 pub struct Panel {
     /// What tells the picture from the figure's others; empty where there is one.
     pub label: String,
+    /// What was measured on the picture, as text in columns; empty where nothing was. The page shows it below, and the
+    /// lock leaves it out.
+    pub note: String,
     /// The pixels.
     pub picture: Picture,
 }
@@ -27,6 +30,7 @@ impl Panel {
     pub fn gray(label: impl Into<String>, raster: Raster<f32>) -> Self {
         Self {
             label: label.into(),
+            note: String::new(),
             picture: Picture::Gray(raster),
         }
     }
@@ -36,7 +40,17 @@ impl Panel {
     pub fn color(label: impl Into<String>, raster: Raster<LinearRgb>) -> Self {
         Self {
             label: label.into(),
+            note: String::new(),
             picture: Picture::Color(raster),
+        }
+    }
+
+    /// The same picture with what was measured on it.
+    #[must_use]
+    pub fn with_note(self, note: impl ToString) -> Self {
+        Self {
+            note: note.to_string(),
+            ..self
         }
     }
 

@@ -49,6 +49,7 @@ fn export_figure(figure: &'static Figure, size: u32, out: &Path) -> anyhow::Resu
         images.push(Image {
             file,
             label: panel.label.clone(),
+            note: panel.note.clone(),
             size: panel.size(),
         });
     }
