@@ -15,6 +15,15 @@ mod volume;
 
 mod bands;
 
+mod doubling;
+mod ends;
+mod kernel;
+mod pass;
+mod recursion;
+
+#[cfg(test)]
+mod oracle;
+
 mod noise;
 mod noise_tile;
 
