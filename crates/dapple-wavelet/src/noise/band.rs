@@ -38,17 +38,17 @@ impl<const N: usize> Band<N> {
 
     /// Where places of the noise are in this band.
     #[inline(always)]
-    pub(super) fn places(&self, period: Period, places: [Place; N]) -> [Place; N] {
-        // The first band is the noise as it is.
-        if self.frequency == 1.0 {
-            return places;
+    pub(super) fn places(&self, period: Period, mut places: [Place; N]) -> [Place; N] {
+        for axis in 0..N {
+            places[axis] = self.place(period, places[axis], axis);
         }
-        core::array::from_fn(|axis| self.place(period, places[axis], axis))
+        places
     }
 
     /// Where a place along an axis is in this band.
     #[inline(always)]
     pub(super) fn place(&self, period: Period, place: Place, axis: usize) -> Place {
+        // The first band is the noise as it is.
         if self.frequency == 1.0 {
             return place;
         }

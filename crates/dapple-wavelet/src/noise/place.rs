@@ -37,6 +37,7 @@ impl Period {
     /// The places of the coordinates of a position; none if it is not finite.
     #[inline(always)]
     pub(super) fn places<const N: usize>(self, mut position: [f64; N]) -> Option<[Place; N]> {
+        let mut places = [Place::ZERO; N];
         for coordinate in &mut position {
             // NaN is not near.
             let is_near = coordinate.abs() < FAR;
@@ -44,7 +45,10 @@ impl Period {
                 *coordinate = self.bring_near(*coordinate)?;
             }
         }
-        Some(position.map(|coordinate| self.place(coordinate)))
+        for axis in 0..N {
+            places[axis] = self.place(position[axis]);
+        }
+        Some(places)
     }
 
     #[inline(always)]

@@ -91,7 +91,11 @@ impl Tile<2> {
     #[inline(always)]
     fn rows(&self, [x, y]: [Place; 2]) -> [[f32; 3]; 3] {
         let at = y.index() * self.side + x.index();
-        [0, 1, 2].map(|row| self.three(at + row * self.side))
+        [
+            self.three(at),
+            self.three(at + self.side),
+            self.three(at + 2 * self.side),
+        ]
     }
 }
 
@@ -138,13 +142,23 @@ impl Tile<3> {
     fn rows(&self, weights: [f32; 3], [x, y, z]: [Place; 3]) -> [[f32; 3]; 3] {
         let area = self.side * self.side;
         let at = z.index() * area + y.index() * self.side + x.index();
-        [0, 1, 2].map(|row| {
-            let at = at + row * self.side;
-            down(
-                weights,
-                [0, 1, 2].map(|slice| self.three(at + slice * area)),
-            )
-        })
+        [
+            self.pillar(weights, at),
+            self.pillar(weights, at + self.side),
+            self.pillar(weights, at + 2 * self.side),
+        ]
+    }
+
+    /// Three coefficients of a row, blended from three slices.
+    #[inline(always)]
+    fn pillar(&self, weights: [f32; 3], at: usize) -> [f32; 3] {
+        let area = self.side * self.side;
+        let slices = [
+            self.three(at),
+            self.three(at + area),
+            self.three(at + 2 * area),
+        ];
+        down(weights, slices)
     }
 }
 
@@ -152,6 +166,7 @@ impl Tile<3> {
 fn blend(weights: [f32; 3], three: &[f32], sum: &mut [f32]) {
     let (first, others) = three.split_at(sum.len());
     let (second, third) = others.split_at(sum.len());
+    let third = &third[..sum.len()];
     for (i, sum) in sum.iter_mut().enumerate() {
         *sum = (weights[0] * first[i] + weights[1] * second[i]) + weights[2] * third[i];
     }
@@ -160,7 +175,11 @@ fn blend(weights: [f32; 3], three: &[f32], sum: &mut [f32]) {
 /// The weighted sum of three pieces of rows.
 #[inline(always)]
 fn down(weights: [f32; 3], [first, second, third]: [[f32; 3]; 3]) -> [f32; 3] {
-    [0, 1, 2].map(|i| across(weights, [first[i], second[i], third[i]]))
+    [
+        across(weights, [first[0], second[0], third[0]]),
+        across(weights, [first[1], second[1], third[1]]),
+        across(weights, [first[2], second[2], third[2]]),
+    ]
 }
 
 /// The weighted sum of a piece of a row.
