@@ -1,5 +1,6 @@
 //! A raster taken apart into bands of detail, and put together again.
 
+use crate::line::check_finite;
 use crate::{Border, SplineFilter, WaveletError};
 use dapple_raster::Raster;
 
@@ -13,32 +14,50 @@ pub struct Bands {
 }
 
 impl SplineFilter {
-    /// Takes a raster apart into `levels` details and a coarse rest.
+    /// Takes a raster apart into `levels` details and a coarse rest; with zero levels that is the raster itself.
     ///
     /// # Errors
     ///
-    /// As [`down`](Self::down).
+    /// As [`project`](Self::project).
     pub fn analyze(
         &self,
         raster: &Raster<f32>,
         levels: u32,
         borders: [Border; 2],
     ) -> Result<Bands, WaveletError> {
-        let _ = (raster, levels, borders);
-        todo!()
+        let sizes = self.sizes(raster.size(), levels, borders)?;
+        check_finite(raster.pixels())?;
+        let mut coarse = raster.clone();
+        let mut details = Vec::with_capacity(levels as usize);
+        for &size in &sizes[..levels as usize] {
+            let fine = coarse;
+            coarse = self.down(&fine, borders)?;
+            let kept = self.up(&coarse, size, borders)?;
+            details.push(fine.zip_map(&kept, |fine, kept| fine - kept)?);
+        }
+        Ok(Bands { details, coarse })
     }
 
-    /// The raster that the bands are of.
+    /// The raster that the bands are of, up to a rounding to `f32` per level.
     ///
     /// # Errors
     ///
-    /// As [`up`](Self::up).
+    /// As [`up`](Self::up): `Length` if a detail has not the size that its level needs.
     pub fn synthesize(
         &self,
         bands: &Bands,
         borders: [Border; 2],
     ) -> Result<Raster<f32>, WaveletError> {
-        let _ = (bands, borders);
-        todo!()
+        check_finite(bands.coarse.pixels())?;
+        let mut raster = bands.coarse.clone();
+        for detail in bands.details.iter().rev() {
+            check_finite(detail.pixels())?;
+            raster = self.up(&raster, detail.size(), borders)?;
+            raster = raster.zip_map(detail, |kept, detail| kept + detail)?;
+        }
+        Ok(raster)
     }
 }
+
+#[cfg(test)]
+mod tests;

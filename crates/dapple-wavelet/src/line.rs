@@ -1,16 +1,25 @@
 //! Lines in `f64`: halving by recursion, doubling, and both at once.
+//!
+//! Reference: Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
+//! <https://doi.org/10.1145/1073204.1073264>, for the filter pair, which equations 6 and 7 of Du, Wang and Meng are.
+//!
+//! Cook and DeRose cut the filter `a` off after 32 taps. Here it has all of its taps: see `recursion.rs`.
 
-use crate::{Border, SplineFilter, WaveletError};
+use crate::doubling::Doubling;
+use crate::ends::{Halving, lengths};
+use crate::recursion::{Lanes, LineFilter};
+use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use core::ops::Sub;
 
 impl SplineFilter {
-    /// How many coefficients a line of `length` has once halved: half as many where it is periodic.
+    /// How many coefficients a line of `length` has once halved: half as many where it is periodic, and for mirrored lines as
+    /// [`Border::Mirror`] says.
     ///
     /// # Errors
     ///
     /// `NotDivisible` for an odd periodic length, `TooShort` below 2.
     pub fn coarse_len(&self, length: usize, border: Border) -> Result<usize, WaveletError> {
-        let _ = (length, border);
-        todo!()
+        Ok(Halving::new(*self, length, border)?.coarse.len)
     }
 
     /// Equation 7: the nearest line with half as many coefficients.
@@ -18,9 +27,21 @@ impl SplineFilter {
     /// # Errors
     ///
     /// As [`coarse_len`](Self::coarse_len), and `NotFinite`.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_wavelet::{Border, SplineFilter};
+    ///
+    /// let filter = SplineFilter::default();
+    /// let coarse = filter.down_line(&[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Border::Periodic)?;
+    /// assert!((coarse[0] - 343.0 / 512.0).abs() < 1e-12);
+    /// # Ok::<(), dapple_wavelet::WaveletError>(())
+    /// ```
     pub fn down_line(&self, fine: &[f64], border: Border) -> Result<Vec<f64>, WaveletError> {
-        let _ = (fine, border);
-        todo!()
+        let halving = LineFilter::halving(*self, fine.len(), border)?;
+        check_finite(fine)?;
+        Ok(filter_line(&halving, fine))
     }
 
     /// Equation 6: the same function with `fine_len` coefficients.
@@ -34,22 +55,64 @@ impl SplineFilter {
         fine_len: usize,
         border: Border,
     ) -> Result<Vec<f64>, WaveletError> {
-        let _ = (coarse, fine_len, border);
-        todo!()
+        let doubling = Doubling::new(*self, coarse.len(), fine_len, border)?;
+        check_finite(coarse)?;
+        Ok(doubling.line(coarse))
     }
 
-    /// Halves a line `levels` times and doubles it again.
+    /// Halves a line `levels` times and doubles it again; zero levels give the line itself.
     ///
     /// # Errors
     ///
-    /// As [`down_line`](Self::down_line).
+    /// As [`down_line`](Self::down_line), for each level; `Range` for more than 32 levels.
     pub fn project_line(
         &self,
         fine: &[f64],
         levels: u32,
         border: Border,
     ) -> Result<Vec<f64>, WaveletError> {
-        let _ = (fine, levels, border);
-        todo!()
+        let lengths = lengths(*self, fine.len(), levels, border)?;
+        check_finite(fine)?;
+        let mut line = fine.to_vec();
+        for &len in &lengths[..levels as usize] {
+            line = filter_line(&LineFilter::halving(*self, len, border)?, &line);
+        }
+        for &len in lengths[..levels as usize].iter().rev() {
+            line = Doubling::new(*self, line.len(), len, border)?.line(&line);
+        }
+        Ok(line)
     }
 }
+
+/// The line, filtered.
+pub(crate) fn filter_line(filter: &LineFilter, line: &[f64]) -> Vec<f64> {
+    let mut lanes = Lanes::<1>::default();
+    let load = |values: &mut [[f64; 1]]| values.as_flattened_mut().copy_from_slice(line);
+    filter.run(&mut lanes, load).as_flattened().to_vec()
+}
+
+/// Refuses values that are not finite, and names the first.
+pub(crate) fn check_finite<T>(values: &[T]) -> Result<(), WaveletError>
+where
+    T: Copy + Default + PartialEq + Sub<Output = T> + Into<f64>,
+{
+    // What is not finite is not zero when it is taken from itself. There is no early end, which would be slower.
+    let is_finite = |value: T| value - value == T::default();
+    if values
+        .iter()
+        .fold(true, |all, &value| all & is_finite(value))
+    {
+        return Ok(());
+    }
+    let index = values
+        .iter()
+        .position(|&value| !is_finite(value))
+        .unwrap_or_default();
+    Err(WaveletError::new(WaveletErrorKind::NotFinite {
+        index,
+        value: values[index].into(),
+    }))
+}
+
+#[cfg(test)]
+mod tests;

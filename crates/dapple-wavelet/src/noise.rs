@@ -1,1 +1,141 @@
 //! Wavelet noise at any position, in two and three dimensions.
+//!
+//! Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
+//! <https://doi.org/10.1145/1073204.1073264>: white noise without what half as many coefficients could say as well. What
+//! is left are the coefficients of a quadratic B-spline with nearly all of its power in one octave, so that the pixels of
+//! a picture either resolve it or see nothing of it.
+//!
+//! This departs from the paper in a few points. Halving is the exact recursion of [`SplineFilter`](crate::SplineFilter),
+//! not 32 rounded taps. Coefficient `k` lies at `k + ½`, the center of its cell. Bands are shifted by whole cells, so that
+//! they are no copies of each other at the origin. The variance of a band is exact for tiles of any size, and nothing is
+//! divided by the weights. The projection of solid noise onto surfaces (the paper's section 3.3) is not here.
+//!
+//! Positions are in cells; a cell is the distance of two coefficients.
+
+mod band;
+mod evaluate;
+mod make;
+mod place;
+mod render;
+mod scale;
+mod tile;
+mod white;
+
+use crate::{WaveletError, WaveletErrorKind};
+use band::Band;
+use core::fmt;
+use dapple_hash::Seed;
+use place::Period;
+use tile::Tile;
+
+pub(crate) use scale::LineSums;
+pub(crate) use white::white;
+
+/// Noise without low frequencies: a tile of B-spline coefficients, evaluated at any position, in one band or several.
+///
+/// A band has 85 % of its power between ¼ and ½ cycles per cell, counted along the axis where the frequency is highest. Of
+/// the rest about one half is above and one half below, and less than a ten-thousandth of all is below ⅛.
+///
+/// Values are nearly normal. Over all positions and seeds their mean is 0 and their variance 1. At one position the
+/// variance depends on where it lies between the coefficients: in the plane it is 0.31 at every other corner of cells
+/// along each axis and up to 1.38 within cells. No value is further from zero than [`bound`](Self::bound). There is no
+/// other normalization.
+///
+/// The noise repeats after [`size`](Self::size) cells along every axis, to the last bit where both positions are exact in
+/// `f64`. It is continuous, and so is its gradient. At a position that is not finite it is NaN.
+///
+/// At first there is one band, of weight 1; [`with_weights`](Self::with_weights) gives more.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_wavelet::{WaveletNoise2, hash::Seed, raster::glam::DVec2};
+///
+/// let noise = WaveletNoise2::new(128, Seed(7))?.with_weights(&[1.0, 0.5, 0.25])?;
+/// let position = DVec2::new(0.25, 1e9);
+/// assert_eq!(noise.sample(position), noise.sample(position + 128.0));
+/// # Ok::<(), dapple_wavelet::WaveletError>(())
+/// ```
+#[derive(Clone, PartialEq)]
+pub struct WaveletNoise<const N: usize> {
+    size: u32,
+    period: Period,
+    seed: Seed,
+    tile: Tile<N>,
+    bands: Vec<Band<N>>,
+}
+
+/// Wavelet noise of the plane.
+pub type WaveletNoise2 = WaveletNoise<2>;
+
+/// Wavelet noise of space.
+pub type WaveletNoise3 = WaveletNoise<3>;
+
+/// The most bands.
+const MOST_BANDS: usize = 16;
+
+impl<const N: usize> WaveletNoise<N> {
+    /// The noise as the weighted sum of bands, coarsest first.
+    ///
+    /// Band `b` is the tile at `2^b` times the position, shifted by whole numbers of cells: it has its power between
+    /// `2^b / 4` and `2^b / 2` cycles per cell and repeats `2^b` times in a period. Bands hardly correlate, so the
+    /// variance of the noise is about the sum of the squares of the weights. Nothing is divided by them.
+    ///
+    /// # Errors
+    ///
+    /// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights, [`WaveletErrorKind::NotFinite`] if one is NaN or
+    /// infinite.
+    pub fn with_weights(mut self, weights: &[f32]) -> Result<Self, WaveletError> {
+        check_weights(weights)?;
+        self.bands = Band::all(weights, self.size, self.seed);
+        Ok(self)
+    }
+
+    /// Cells along each side of the tile, which is the period.
+    #[must_use]
+    pub fn size(&self) -> u32 {
+        self.size
+    }
+
+    /// No value is further from zero than this: the largest coefficient times the sum of the weights, all without sign.
+    ///
+    /// With several bands values hardly ever come near to it.
+    #[must_use]
+    pub fn bound(&self) -> f32 {
+        let weights = self.bands.iter().map(|band| f64::from(band.weight.abs()));
+        let weights: f64 = weights.sum();
+        // The weights of a B-spline sum to 1, up to roundings, for which this leaves room.
+        (f64::from(self.tile.largest()) * weights * (1.0 + 1e-5)) as f32
+    }
+}
+
+impl<const N: usize> fmt::Debug for WaveletNoise<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("WaveletNoise")
+            .field("size", &self.size)
+            .field("seed", &self.seed)
+            .field("bands", &self.bands)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Refuses weights that are too few, too many or not finite.
+pub(crate) fn check_weights(weights: &[f32]) -> Result<(), WaveletError> {
+    if weights.is_empty() || weights.len() > MOST_BANDS {
+        return Err(WaveletError::new(WaveletErrorKind::Range {
+            what: "number of weights",
+            value: weights.len() as f64,
+            range: "from 1 to 16",
+        }));
+    }
+    match weights.iter().position(|weight| !weight.is_finite()) {
+        None => Ok(()),
+        Some(index) => Err(WaveletError::new(WaveletErrorKind::NotFinite {
+            index,
+            value: weights[index].into(),
+        })),
+    }
+}
+
+#[cfg(test)]
+mod tests;

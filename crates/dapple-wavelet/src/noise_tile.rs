@@ -1,1 +1,108 @@
 //! Seamless rasters of wavelet noise, weighted band by band.
+//!
+//! A raster is read as the coefficients of a periodic quadratic B-spline. A band of Cook and DeRose's wavelet noise (see
+//! [`WaveletNoise`](crate::WaveletNoise)) is made at its own size, where nothing else has its frequencies, and doubled
+//! until it has the size of the raster, which changes nothing but the number of coefficients. So there is no seam, no
+//! band has anything of another, and each can be found again by halving. It is what one should make where a picture of
+//! noise would be made to repeat afterwards.
+//!
+//! Every band has white noise of its own, and repeats only where the raster does.
+
+use crate::noise::{LineSums, check_weights, white};
+use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use dapple_hash::{CellHash, Seed};
+use dapple_raster::Raster;
+
+const PERIODIC: [Border; 2] = [Border::Periodic; 2];
+
+/// A raster of wavelet noise that repeats without a seam, from the weights of its bands, finest first.
+///
+/// Band `b` has its power between `2^-b / 4` and `2^-b / 2` cycles per pixel, nearly. Its mean is 0 and the mean of its
+/// squares, over all pixels and seeds, is the square of its weight; bands do not correlate, so these add up. Nothing is
+/// measured or divided by the weights. The values of the finest band are nearly normal, and no band is bounded more
+/// tightly than that.
+///
+/// [`SplineFilter::analyze`] takes the raster apart into these bands again. Runs on all cores where the feature `rayon`
+/// is on.
+///
+/// # Errors
+///
+/// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights, [`WaveletErrorKind::NotFinite`] if one is NaN or
+/// infinite, [`WaveletErrorKind::NotDivisible`] if a side is no multiple of `2^n` for `n` weights, and
+/// [`WaveletErrorKind::Raster`] if there is no pixel or more than 2^31.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_wavelet::{hash::Seed, wavelet_tile};
+///
+/// let tile = wavelet_tile([128, 64], &[0.25, 0.5, 1.0], Seed(7))?;
+/// assert_eq!(tile.size(), [128, 64]);
+/// # Ok::<(), dapple_wavelet::WaveletError>(())
+/// ```
+pub fn wavelet_tile(
+    size: [u32; 2],
+    weights: &[f32],
+    seed: Seed,
+) -> Result<Raster<f32>, WaveletError> {
+    check_weights(weights)?;
+    // There are at most 16.
+    let levels = weights.len() as u32;
+    check_size(size, levels)?;
+    let mut tile = Raster::filled(size.map(|side| side >> (levels - 1)), 0.0)?;
+    for level in (0..levels).rev() {
+        let size = size.map(|side| side >> level);
+        if size != tile.size() {
+            tile = SplineFilter::default().up(&tile, size, PERIODIC)?;
+        }
+        // A band without weight is not made.
+        let weight = weights[level as usize];
+        if weight != 0.0 {
+            tile = add_band(&tile, weight, level, seed)?;
+        }
+    }
+    Ok(tile)
+}
+
+/// Refuses sides that cannot be halved so often.
+fn check_size(size: [u32; 2], levels: u32) -> Result<(), WaveletError> {
+    // A raster without pixels or with too many says so.
+    Raster::filled(size, ())?;
+    match size.into_iter().find(|side| side % (1 << levels) != 0) {
+        None => Ok(()),
+        Some(side) => Err(WaveletError::new(WaveletErrorKind::NotDivisible {
+            length: side as usize,
+            levels,
+        })),
+    }
+}
+
+/// The sum of a raster and of a band of its size, which is still to be doubled `level` times.
+fn add_band(
+    raster: &Raster<f32>,
+    weight: f32,
+    level: u32,
+    seed: Seed,
+) -> Result<Raster<f32>, WaveletError> {
+    let size = raster.size();
+    let words = seed.child("wavelet tile", level.into());
+    let white = Raster::from_rows(size, |row| {
+        let row = CellHash::new(words, [row.into()]);
+        (0..size[0]).map(move |column| white(row, column))
+    })?;
+    let low = SplineFilter::default().project(&white, 1, PERIODIC)?;
+    let [along_rows, along_columns] =
+        size.map(|side| LineSums::of_coefficients(side as usize, level));
+    let factor = f64::from(weight) * LineSums::factor([along_rows?, along_columns?]);
+    let sum = Raster::from_rows(size, |row| {
+        let [coarser, white, low] = [raster, &white, &low].map(|part| part.row(row));
+        (0..size[0] as usize).map(move |column| {
+            let detail = f64::from(white[column]) - f64::from(low[column]);
+            (f64::from(coarser[column]) + factor * detail) as f32
+        })
+    })?;
+    Ok(sum)
+}
+
+#[cfg(test)]
+mod tests;

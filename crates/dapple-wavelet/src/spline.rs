@@ -1,4 +1,10 @@
 //! B-splines that refine themselves: what a filter is made of.
+//!
+//! The spline of degree `d` is the step of width 1, smoothed `d` times with itself. It is `d + 1` wide, and the sum of
+//! `d + 2` splines of half the width, weighted by binomial coefficients (equation 4 of the paper). Positions are in units of
+//! the distance between coefficients, and a spline is centered on its coefficient.
+//!
+//! Reference: Carl de Boor, "A Practical Guide to Splines", Springer 1978.
 
 /// The degree of a B-spline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -17,6 +23,63 @@ pub enum Degree {
     Quadratic,
     /// The smoothest of the four.
     Cubic,
+}
+
+impl Degree {
+    /// The B-spline centered on 0, at `x`: the basis function φ of equations 1 to 4.
+    ///
+    /// At least 0, with a sum of 1 over all whole steps; 0 from half its width of `degree + 1` on. Where the step jumps, it has
+    /// the value to the right.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_wavelet::Degree;
+    ///
+    /// assert_eq!(Degree::Quadratic.value(0.0), 0.75);
+    /// assert_eq!(Degree::Quadratic.value(1.0), 0.125);
+    /// ```
+    #[must_use]
+    pub fn value(self, x: f64) -> f64 {
+        let distance = x.abs();
+        match self {
+            Self::Constant if (-0.5..0.5).contains(&x) => 1.0,
+            Self::Linear if distance < 1.0 => 1.0 - distance,
+            Self::Quadratic if distance < 0.5 => 0.75 - x * x,
+            Self::Quadratic if distance < 1.5 => 0.5 * (1.5 - distance) * (1.5 - distance),
+            Self::Cubic if distance < 1.0 => 2.0 / 3.0 - x * x * (1.0 - 0.5 * distance),
+            Self::Cubic if distance < 2.0 => {
+                let rest = 2.0 - distance;
+                rest * rest * rest / 6.0
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The slope of [`value`](Self::value) at `x`; where a tent bends, the slope to the right, and 0 for steps.
+    #[must_use]
+    pub fn derivative(self, x: f64) -> f64 {
+        let distance = x.abs();
+        let side = if x < 0.0 { 1.0 } else { -1.0 };
+        match self {
+            Self::Linear if (-1.0..1.0).contains(&x) => side,
+            Self::Quadratic if distance < 0.5 => -2.0 * x,
+            Self::Quadratic if distance < 1.5 => side * (1.5 - distance),
+            Self::Cubic if distance < 1.0 => x * (1.5 * distance - 2.0),
+            Self::Cubic if distance < 2.0 => side * 0.5 * (2.0 - distance) * (2.0 - distance),
+            _ => 0.0,
+        }
+    }
+
+    /// The degree as a number.
+    pub(crate) fn order(self) -> i64 {
+        match self {
+            Self::Constant => 0,
+            Self::Linear => 1,
+            Self::Quadratic => 2,
+            Self::Cubic => 3,
+        }
+    }
 }
 
 /// Where the coarse coefficients lie over the fine ones.
@@ -52,10 +115,21 @@ pub enum Phase {
     serde(rename_all = "snake_case")
 )]
 pub enum Border {
-    /// The line repeats. Its length must be even.
+    /// The line repeats. To be halved, its length must be even.
     #[default]
     Periodic,
     /// The line is mirrored: with the end pixel twice for even degrees, once for odd ones. Any length from 2 on.
+    ///
+    /// The halved line of a mirrored one is mirrored too, and of what would repeat, one copy is kept. A line of `n` has, once
+    /// halved, a length of
+    ///
+    /// | degree | [`Centered`](Phase::Centered) | [`CookDeRose`](Phase::CookDeRose) |
+    /// |---|---|---|
+    /// | even | ⌈n/2⌉ | ⌊n/2⌋ + 1 |
+    /// | odd | ⌈n/2⌉ | ⌊n/2⌋ |
+    ///
+    /// Coefficient `j` of the result is coefficient `j` of the table of [`Phase`], but `j + 1` for an odd degree in the phase
+    /// of Cook and DeRose.
     Mirror,
 }
 
@@ -88,3 +162,17 @@ pub struct SplineFilter {
     /// What is nearest. By default the function.
     pub fit: Fit,
 }
+
+impl SplineFilter {
+    /// The first of the fine coefficients over which coarse coefficient 0 is spread.
+    pub(crate) fn first_tap(self) -> i64 {
+        let centered = -((self.degree.order() + 1) / 2);
+        match self.phase {
+            Phase::Centered => centered,
+            Phase::CookDeRose => centered - 1,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

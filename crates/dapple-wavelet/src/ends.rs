@@ -1,0 +1,168 @@
+//! How a line goes on past its ends, and where the coarse line of a fine one ends.
+
+use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+
+/// A line of finite length that goes on for ever.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Line {
+    /// How many values are kept.
+    pub(crate) len: usize,
+    ends: Ends,
+}
+
+/// What comes after the last value, and before the first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Ends {
+    /// The other end.
+    Repeat,
+    /// The mirror image, at the start and at the end: with the end value twice, or once.
+    Mirror { twice: [bool; 2] },
+}
+
+/// A fine line and its coarse line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Halving {
+    pub(crate) fine: Line,
+    pub(crate) coarse: Line,
+    /// The number, in the sense of [`Phase`](crate::Phase), of the first coarse coefficient that is kept: 0 or 1.
+    pub(crate) offset: i64,
+}
+
+impl Line {
+    /// A line of `len` pixels of a spline, at least one.
+    ///
+    /// # Errors
+    ///
+    /// `TooShort` below 1, or 2 if it is mirrored.
+    pub(crate) fn new(
+        filter: SplineFilter,
+        len: usize,
+        border: Border,
+    ) -> Result<Self, WaveletError> {
+        let twice = filter.degree.order() % 2 == 0;
+        let (ends, least) = match border {
+            Border::Periodic => (Ends::Repeat, 1),
+            Border::Mirror => (Ends::Mirror { twice: [twice; 2] }, 2),
+        };
+        if len < least {
+            return Err(WaveletError::new(WaveletErrorKind::TooShort {
+                length: len,
+                least,
+            }));
+        }
+        Ok(Self { len, ends })
+    }
+
+    /// The index of the value that is at `index`, which may lie outside.
+    pub(crate) fn index(&self, index: i64) -> usize {
+        let len = self.len as i64;
+        let inside = match self.ends {
+            Ends::Repeat => index.rem_euclid(len),
+            Ends::Mirror { twice } => {
+                // Mirrors at `low / 2` and `high / 2` map an index to `low - index` and `high - index`.
+                let low = -i64::from(twice[0]);
+                let high = 2 * (len - 1) + i64::from(twice[1]);
+                // A single value that is not doubled has a period of 0; it is everywhere.
+                let index = index.rem_euclid((high - low).max(1));
+                if index < len { index } else { high - index }
+            }
+        };
+        inside as usize
+    }
+}
+
+impl Halving {
+    /// The coarse line of a fine one of `len` pixels.
+    ///
+    /// # Errors
+    ///
+    /// `NotDivisible` for an odd periodic length, `TooShort` below 2.
+    pub(crate) fn new(
+        filter: SplineFilter,
+        len: usize,
+        border: Border,
+    ) -> Result<Self, WaveletError> {
+        if len < 2 {
+            return Err(WaveletError::new(WaveletErrorKind::TooShort {
+                length: len,
+                least: 2,
+            }));
+        }
+        let fine = Line::new(filter, len, border)?;
+        let Ends::Mirror { twice } = fine.ends else {
+            if len % 2 == 1 {
+                return Err(WaveletError::new(WaveletErrorKind::NotDivisible {
+                    length: len,
+                    levels: 1,
+                }));
+            }
+            let coarse = Line {
+                len: len / 2,
+                ends: Ends::Repeat,
+            };
+            return Ok(Self {
+                fine,
+                coarse,
+                offset: 0,
+            });
+        };
+        // Coarse coefficient j is at (4 j + first + last) / 2, so a mirror of the fine line at s / 2, which moves x to s - x,
+        // moves j to (s - first - last) / 2 + -j, a whole number for both degrees and phases.
+        let first_and_last = 2 * filter.first_tap() + filter.degree.order() + 1;
+        let low = (-i64::from(twice[0]) - first_and_last).div_euclid(2);
+        let high = (2 * (len as i64 - 1) + i64::from(twice[1]) - first_and_last).div_euclid(2);
+        // What is kept lies between the two mirrors.
+        let [first, last] = [low.div_euclid(2) + low.rem_euclid(2), high.div_euclid(2)];
+        let ends = Ends::Mirror {
+            twice: [low.rem_euclid(2) == 1, high.rem_euclid(2) == 1],
+        };
+        let coarse = Line {
+            len: (last - first + 1) as usize,
+            ends,
+        };
+        Ok(Self {
+            fine,
+            coarse,
+            offset: first,
+        })
+    }
+}
+
+/// The lengths of a line that is halved `levels` times, from the first to the last.
+///
+/// # Errors
+///
+/// As [`Halving::new`], `NotDivisible` with the whole length and all levels; `Range` for too many levels.
+pub(crate) fn lengths(
+    filter: SplineFilter,
+    len: usize,
+    levels: u32,
+    border: Border,
+) -> Result<Vec<usize>, WaveletError> {
+    if levels > MOST_LEVELS {
+        return Err(WaveletError::new(WaveletErrorKind::Range {
+            what: "number of levels",
+            value: levels.into(),
+            range: "at most 32",
+        }));
+    }
+    if border == Border::Periodic && len > 0 && len.trailing_zeros() < levels {
+        return Err(WaveletError::new(WaveletErrorKind::NotDivisible {
+            length: len,
+            levels,
+        }));
+    }
+    let mut lengths = vec![len];
+    let mut len = len;
+    for _ in 0..levels {
+        len = Halving::new(filter, len, border)?.coarse.len;
+        lengths.push(len);
+    }
+    Ok(lengths)
+}
+
+/// More than any raster can be halved; a mirrored line in the phase of Cook and DeRose never becomes shorter than 2.
+const MOST_LEVELS: u32 = 32;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,162 @@
+//! The numbers of the filters: taps and poles.
+//!
+//! Halving is least squares. With `h` the two-scale coefficients and `b` the inner products of the spline with its own shifts
+//! (a B-spline of degree `2d + 1` at whole numbers), the coarse coefficients `c` of the fine `g` solve `b * c = ↓2(q ⋆ g)`,
+//! `q = ½ h * b`. For least squares of the coefficients themselves, `q` is `h` and `b` is `h` correlated with itself at even
+//! distances. Either `b` is symmetric, and its inverse is a chain of recursions of first order, one pair for each pole inside
+//! of the unit circle; the sum of `b` is 1, so that the gain of the chain is the product of all `(1 − pole)²`.
+//!
+//! Reference: Michael Unser, Akram Aldroubi and Murray Eden, "B-Spline Signal Processing: Part I, Theory", IEEE Transactions
+//! on Signal Processing 41(2), 1993, for inverses by recursion.
+
+use crate::{Degree, Fit, SplineFilter};
+
+/// What makes a value of a line out of another line: a short sum, and recursions over its results.
+#[derive(Clone, Debug)]
+pub(crate) struct Kernel {
+    /// Where the first tap lies, from the place of the value.
+    pub(crate) first: i64,
+    /// The weights of the sum, symmetric, with the gain of the recursions.
+    pub(crate) taps: Vec<f64>,
+    /// The poles of the recursions, each run forward and backward.
+    pub(crate) poles: &'static [f64],
+}
+
+impl Kernel {
+    /// The filter that halves, from the two fine coefficients under a coarse one.
+    pub(crate) fn halving(filter: SplineFilter) -> Self {
+        let h = two_scale(filter.degree);
+        let first = filter.first_tap();
+        match filter.fit {
+            Fit::Function => Self::new(
+                first - filter.degree.order(),
+                convolve(&h, gram(filter.degree)),
+                function_poles(filter.degree),
+            ),
+            Fit::Coefficients => Self::new(first, h, coefficient_poles(filter.degree)),
+        }
+    }
+
+    /// The filter that makes the values of a spline at its coefficients' places.
+    pub(crate) fn samples(degree: Degree) -> Self {
+        Self::new(-(degree.order() / 2), samples(degree).to_vec(), &[])
+    }
+
+    /// The filter that makes the coefficients of the spline with given values.
+    pub(crate) fn coefficients(degree: Degree) -> Self {
+        Self::new(0, vec![1.0], sample_poles(degree))
+    }
+
+    /// A kernel that keeps constants: the taps are divided by their sum.
+    fn new(first: i64, taps: Vec<f64>, poles: &'static [f64]) -> Self {
+        let sum: f64 = taps.iter().sum();
+        let gain = poles
+            .iter()
+            .fold(1.0, |gain, pole| gain * (1.0 - pole) * (1.0 - pole));
+        Self {
+            first,
+            taps: taps.iter().map(|tap| tap / sum * gain).collect(),
+            poles,
+        }
+    }
+
+    /// After how many steps a recursion has forgotten how it began: what is left is below 2^-58, less than a rounding.
+    pub(crate) fn reach(&self) -> usize {
+        let slowest = self
+            .poles
+            .iter()
+            .fold(0.0_f64, |most, pole| most.max(pole.abs()));
+        let (mut left, mut steps) = (slowest, 0);
+        while left > FORGOTTEN {
+            left *= slowest;
+            steps += 1;
+        }
+        steps
+    }
+}
+
+/// 2^-58.
+const FORGOTTEN: f64 = 1.0 / (1_u64 << 58) as f64;
+
+/// The two-scale coefficients `2^-d C(d + 1, k)` of equation 4.
+pub(crate) fn two_scale(degree: Degree) -> Vec<f64> {
+    match degree {
+        Degree::Constant => vec![1.0, 1.0],
+        Degree::Linear => vec![0.5, 1.0, 0.5],
+        Degree::Quadratic => vec![0.25, 0.75, 0.75, 0.25],
+        Degree::Cubic => vec![0.125, 0.5, 0.75, 0.5, 0.125],
+    }
+}
+
+/// Inner products of the spline with its shifts by `-d ..= d`, all times the least whole number that makes them whole.
+pub(crate) fn gram(degree: Degree) -> &'static [f64] {
+    match degree {
+        Degree::Constant => &[1.0],
+        Degree::Linear => &[1.0, 4.0, 1.0],
+        Degree::Quadratic => &[1.0, 26.0, 66.0, 26.0, 1.0],
+        Degree::Cubic => &[1.0, 120.0, 1191.0, 2416.0, 1191.0, 120.0, 1.0],
+    }
+}
+
+/// Values of the spline at whole numbers, all times the least whole number that makes them whole.
+fn samples(degree: Degree) -> &'static [f64] {
+    match degree {
+        Degree::Constant | Degree::Linear => &[1.0],
+        Degree::Quadratic => &[1.0, 6.0, 1.0],
+        Degree::Cubic => &[1.0, 4.0, 1.0],
+    }
+}
+
+/// The poles of the inverse of [`gram`]: `z` with `z + 1/z = y`, where `y + 4`, `y² + 26y + 64` and
+/// `y³ + 120y² + 1188y + 2176` are zero.
+fn function_poles(degree: Degree) -> &'static [f64] {
+    match degree {
+        Degree::Constant => &[],
+        Degree::Linear => &[SQRT_3_MINUS_2],
+        Degree::Quadratic => &[-0.430_575_347_099_973_8, -0.043_096_288_203_264_65],
+        Degree::Cubic => &[
+            -0.535_280_430_796_438_2,
+            -0.122_554_615_192_326_69,
+            -0.009_148_694_809_608_277,
+        ],
+    }
+}
+
+/// The poles of the inverse of the coarse line's `HᵀH`, whose rows are 1; 1 6 1; 6 20 6; and 1 28 70 28 1.
+fn coefficient_poles(degree: Degree) -> &'static [f64] {
+    match degree {
+        Degree::Constant => &[],
+        Degree::Linear => &[SQRT_8_MINUS_3],
+        Degree::Quadratic => &[-1.0 / 3.0],
+        Degree::Cubic => &[-0.446_462_692_171_689_57, -0.039_566_129_896_580_03],
+    }
+}
+
+/// The poles of the inverse of [`samples`].
+fn sample_poles(degree: Degree) -> &'static [f64] {
+    match degree {
+        Degree::Constant | Degree::Linear => &[],
+        Degree::Quadratic => &[SQRT_8_MINUS_3],
+        Degree::Cubic => &[SQRT_3_MINUS_2],
+    }
+}
+
+/// √3 − 2, the root of `z² + 4z + 1`.
+const SQRT_3_MINUS_2: f64 = -0.267_949_192_431_122_7;
+
+/// √8 − 3, the root of `z² + 6z + 1`.
+const SQRT_8_MINUS_3: f64 = -0.171_572_875_253_809_9;
+
+/// The product of two polynomials.
+fn convolve(a: &[f64], b: &[f64]) -> Vec<f64> {
+    let mut product = vec![0.0; a.len() + b.len() - 1];
+    for (i, a) in a.iter().enumerate() {
+        for (sum, b) in product[i..].iter_mut().zip(b) {
+            *sum += a * b;
+        }
+    }
+    product
+}
+
+#[cfg(test)]
+mod tests;

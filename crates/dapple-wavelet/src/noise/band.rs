@@ -1,0 +1,63 @@
+//! The bands of a noise: the same tile, smaller and elsewhere.
+
+use super::place::{Period, Place, floor};
+use dapple_hash::{Seed, hash1};
+
+/// One band.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Band<const N: usize> {
+    pub(super) weight: f32,
+    /// Cells of this band in one of the first: a power of two.
+    pub(super) frequency: f64,
+    /// By how many cells the tile is shifted along each axis, below its size. Zero for the first band.
+    pub(super) offset: [f64; N],
+}
+
+impl<const N: usize> Band<N> {
+    /// The bands whose weight is not zero.
+    pub(super) fn all(weights: &[f32], size: u32, seed: Seed) -> Vec<Self> {
+        let bands = (0_u64..).zip(weights);
+        let bands = bands.filter(|(_, weight)| **weight != 0.0);
+        bands
+            .map(|(index, &weight)| Self::new(index, weight, size, seed))
+            .collect()
+    }
+
+    fn new(index: u64, weight: f32, size: u32, seed: Seed) -> Self {
+        let seed = seed.child("wavelet noise offset", index);
+        let offset = |axis: usize| hash1(seed, [axis as i64], 0) % u64::from(size);
+        Self {
+            weight,
+            frequency: (1_u64 << index) as f64,
+            offset: match index {
+                0 => [0.0; N],
+                _ => core::array::from_fn(|axis| offset(axis) as f64),
+            },
+        }
+    }
+
+    /// Where places of the noise are in this band.
+    #[inline(always)]
+    pub(super) fn places(&self, period: Period, mut places: [Place; N]) -> [Place; N] {
+        for axis in 0..N {
+            places[axis] = self.place(period, places[axis], axis);
+        }
+        places
+    }
+
+    /// Where a place along an axis is in this band.
+    #[inline(always)]
+    pub(super) fn place(&self, period: Period, place: Place, axis: usize) -> Place {
+        // The first band is the noise as it is.
+        if self.frequency == 1.0 {
+            return place;
+        }
+        let fine = self.frequency * place.fraction;
+        let whole = floor(fine);
+        Place {
+            // All parts are whole numbers below 2^31.
+            cell: period.wrap(self.frequency * place.cell + (self.offset[axis] + whole)),
+            fraction: fine - whole,
+        }
+    }
+}

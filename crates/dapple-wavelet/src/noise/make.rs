@@ -1,0 +1,124 @@
+//! Tiles from white noise: what is left of it without its projection.
+
+use super::band::Band;
+use super::place::Period;
+use super::scale::LineSums;
+use super::tile::Tile;
+use super::white::white;
+use super::{WaveletNoise, WaveletNoise2, WaveletNoise3};
+use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use dapple_hash::{CellHash, Seed};
+use dapple_raster::Raster;
+
+/// The most coefficients of a tile: half a gigabyte.
+const MOST_COEFFICIENTS: u64 = 1 << 27;
+
+impl WaveletNoise2 {
+    /// Noise of the plane that repeats after `size` cells: one band, of weight 1.
+    ///
+    /// The tile takes `4 (size + 2)²` bytes, and several times as many while it is made.
+    ///
+    /// # Errors
+    ///
+    /// [`WaveletErrorKind::Range`] below 4 and above 11584, [`WaveletErrorKind::NotDivisible`] if `size` is odd.
+    pub fn new(size: u32, seed: Seed) -> Result<Self, WaveletError> {
+        check_size(size, 2, "from 4 to 11584")?;
+        let words = white_words(seed);
+        let white = Raster::from_rows([size; 2], |row| {
+            let row = CellHash::new(words, [row.into()]);
+            (0..size).map(move |column| white(row, column))
+        })?;
+        let low = project(&white)?;
+        Self::from_white(size, seed, white.pixels(), low.pixels())
+    }
+}
+
+impl WaveletNoise3 {
+    /// Noise of space that repeats after `size` cells: one band, of weight 1.
+    ///
+    /// The tile takes `4 (size + 2)³` bytes, and several times as many while it is made.
+    ///
+    /// # Errors
+    ///
+    /// [`WaveletErrorKind::Range`] below 4 and above 512, [`WaveletErrorKind::NotDivisible`] if `size` is odd.
+    pub fn new(size: u32, seed: Seed) -> Result<Self, WaveletError> {
+        check_size(size, 3, "from 4 to 512")?;
+        let words = white_words(seed);
+        // The slices, one below the other.
+        let white = Raster::from_rows([size, size * size], |row| {
+            let [row, slice] = [row % size, row / size].map(i64::from);
+            let row = CellHash::new(words, [row, slice]);
+            (0..size).map(move |column| white(row, column))
+        })?;
+        let low = project_volume(white.pixels(), size)?;
+        Self::from_white(size, seed, white.pixels(), &low)
+    }
+}
+
+impl<const N: usize> WaveletNoise<N> {
+    /// One band, of weight 1, of what white noise has and its projection has not.
+    fn from_white(size: u32, seed: Seed, white: &[f32], low: &[f32]) -> Result<Self, WaveletError> {
+        let factor = LineSums::factor([LineSums::of_values(size as usize)?; N]);
+        let parts = white.iter().zip(low);
+        let coefficients: Vec<f32> = parts
+            .map(|(&white, &low)| ((f64::from(white) - f64::from(low)) * factor) as f32)
+            .collect();
+        Ok(Self {
+            size,
+            period: Period::new(size),
+            seed,
+            tile: Tile::new(size as usize, &coefficients),
+            bands: Band::all(&[1.0], size, seed),
+        })
+    }
+}
+
+/// Refuses tiles too small to be halved and doubled, odd ones, and those of more coefficients than the limit.
+fn check_size(size: u32, axes: u32, range: &'static str) -> Result<(), WaveletError> {
+    let n_coefficients = u64::from(size).checked_pow(axes);
+    if size < 4 || n_coefficients.is_none_or(|n| n > MOST_COEFFICIENTS) {
+        return Err(WaveletError::new(WaveletErrorKind::Range {
+            what: "size of the tile",
+            value: size.into(),
+            range,
+        }));
+    }
+    if !size.is_multiple_of(2) {
+        return Err(WaveletError::new(WaveletErrorKind::NotDivisible {
+            length: size as usize,
+            levels: 1,
+        }));
+    }
+    Ok(())
+}
+
+/// The seed of the white noise.
+fn white_words(seed: Seed) -> Seed {
+    seed.child("wavelet noise", 0)
+}
+
+/// The projection of a plane onto half as many coefficients along each axis.
+fn project(plane: &Raster<f32>) -> Result<Raster<f32>, WaveletError> {
+    SplineFilter::default().project(plane, 1, [Border::Periodic; 2])
+}
+
+/// The projection of a cube along its three axes: that of its slices, and then of its sections along the first and the
+/// last axis. To project twice along the first changes nothing.
+fn project_volume(cube: &[f32], size: u32) -> Result<Vec<f32>, WaveletError> {
+    let side = size as usize;
+    let mut low = Vec::with_capacity(cube.len());
+    for slice in cube.chunks_exact(side * side) {
+        let slice = Raster::from_vec([size; 2], slice.to_vec())?;
+        low.extend_from_slice(project(&slice)?.pixels());
+    }
+    for row in 0..side {
+        let rows = low.chunks_exact(side).skip(row).step_by(side);
+        let section = Raster::from_vec([size; 2], rows.flatten().copied().collect())?;
+        let section = project(&section)?;
+        let rows = low.chunks_exact_mut(side).skip(row).step_by(side);
+        for (row, projected) in rows.zip(section.view().rows()) {
+            row.copy_from_slice(projected);
+        }
+    }
+    Ok(low)
+}

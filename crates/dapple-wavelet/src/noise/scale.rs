@@ -1,0 +1,119 @@
+//! How large noise is: its mean square over all seeds, exactly, for tiles of any size.
+//!
+//! Noise is `(I − P) R` with `R` white and `P` the projection along every axis. Its mean square, in a metric `M` that is a
+//! product of one per axis, is `tr((I − P)ᵀ M (I − P))` divided by the number of coefficients, and that is
+//! `Π whole − 2 Π cross + Π low` over the axes, with three sums along a line for each. An impulse suffices to find
+//! them: shifted by two cells it gives the same sums, and shifted by one their mirror images.
+
+use crate::{Border, SplineFilter, WaveletError};
+
+/// The three sums along one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LineSums {
+    /// `tr M`.
+    whole: f64,
+    /// `tr M P`.
+    cross: f64,
+    /// `tr Pᵀ M P`.
+    low: f64,
+}
+
+impl LineSums {
+    /// The sums for the values of a periodic spline of `length` coefficients, over all positions.
+    pub(crate) fn of_values(length: usize) -> Result<Self, WaveletError> {
+        let [impulse, low] = impulses(length)?;
+        Ok(Self {
+            whole: inner(&impulse, &impulse),
+            cross: inner(&impulse, &low),
+            low: inner(&low, &low),
+        })
+    }
+
+    /// The sums for coefficients that are doubled `levels` times, over all of them.
+    pub(crate) fn of_coefficients(length: usize, levels: u32) -> Result<Self, WaveletError> {
+        let [mut impulse, mut low] = impulses(length)?;
+        for _ in 0..levels {
+            let filter = SplineFilter::default();
+            let double = |line: &[f64]| filter.up_line(line, 2 * line.len(), Border::Periodic);
+            [impulse, low] = [double(&impulse)?, double(&low)?];
+        }
+        let doublings = (impulse.len() / length) as f64;
+        let sum = |a: &[f64], b: &[f64]| {
+            let products = a.iter().zip(b).map(|(a, b)| a * b);
+            products.sum::<f64>() / doublings
+        };
+        Ok(Self {
+            whole: sum(&impulse, &impulse),
+            cross: sum(&impulse, &low),
+            low: sum(&low, &low),
+        })
+    }
+
+    /// The factor that gives noise along these axes a mean square of 1.
+    pub(crate) fn factor<const N: usize>(axes: [Self; N]) -> f64 {
+        let product = |part: fn(&Self) -> f64| axes.iter().map(part).product::<f64>();
+        let mean_square = product(|sums| sums.whole) - 2.0 * product(|sums| sums.cross)
+            + product(|sums| sums.low);
+        1.0 / mean_square.sqrt()
+    }
+}
+
+/// An impulse and its projection.
+fn impulses(length: usize) -> Result<[Vec<f64>; 2], WaveletError> {
+    let impulse: Vec<f64> = (0..length).map(|at| f64::from(u8::from(at == 0))).collect();
+    let low = SplineFilter::default().project_line(&impulse, 1, Border::Periodic)?;
+    Ok([impulse, low])
+}
+
+/// The integral of the product of two periodic quadratic splines.
+fn inner(a: &[f64], b: &[f64]) -> f64 {
+    // The integrals of the product of a B-spline and another that is 0, 1 or 2 cells away.
+    const OVERLAPS: [f64; 3] = [66.0 / 120.0, 26.0 / 120.0, 1.0 / 120.0];
+    let n = a.len();
+    let products = a.iter().enumerate().map(|(i, a)| {
+        let near = b[(i + 1) % n] + b[(i + n - 1) % n];
+        let far = b[(i + 2) % n] + b[(i + n - 2) % n];
+        a * (OVERLAPS[0] * b[i] + OVERLAPS[1] * near + OVERLAPS[2] * far)
+    });
+    products.sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::LineSums;
+
+    #[test]
+    fn mean_squares_equal_those_of_the_dense_matrices() {
+        // From dense matrices in another program: traces of 256 × 256 matrices.
+        let values = LineSums::of_values(256).unwrap();
+        let coefficients = LineSums::of_coefficients(256, 0).unwrap();
+        for (sums, expected) in [
+            (LineSums::factor([values; 2]), 0.1349676016810735),
+            (LineSums::factor([values; 3]), 0.09780278019861238),
+            (LineSums::factor([coefficients; 1]), 0.5028134249),
+            (LineSums::factor([coefficients; 2]), 0.7528213402),
+            (LineSums::factor([coefficients; 3]), 0.8771219640),
+        ] {
+            let mean_square = 1.0 / (sums * sums);
+            // The last three are given to ten digits.
+            assert!(
+                (mean_square - expected).abs() < 1e-10,
+                "{mean_square} {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn doubled_coefficients_come_near_to_values() {
+        let [values, coefficients] = [
+            LineSums::of_values(16).unwrap(),
+            LineSums::of_coefficients(16, 8).unwrap(),
+        ];
+        let [values, coefficients] = [[values; 2], [coefficients; 2]].map(LineSums::factor);
+        // Each level brings the coefficients four times nearer to the function.
+        assert!(
+            (values / coefficients - 1.0).abs() < 1e-3,
+            "{values} {coefficients}"
+        );
+    }
+}

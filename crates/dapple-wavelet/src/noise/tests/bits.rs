@@ -1,0 +1,260 @@
+//! Promises to the last bit, and inputs that are refused.
+
+use super::positions;
+use crate::{WaveletError, WaveletErrorKind, WaveletNoise2, WaveletNoise3};
+use dapple_hash::Seed;
+use dapple_raster::{Field, Raster, RasterErrorKind, Window};
+use glam::{DVec2, DVec3};
+use proptest::prelude::*;
+
+const WEIGHTS: [f32; 4] = [1.0, 0.0, 0.5, -0.25];
+
+#[test]
+fn period_is_exact_for_dyadic_positions_near_and_far() {
+    for size in [6, 64, 100] {
+        let plane = WaveletNoise2::new(size, Seed(1)).unwrap();
+        let plane = plane.with_weights(&WEIGHTS).unwrap();
+        let space = WaveletNoise3::new(size, Seed(1)).unwrap();
+        for position in positions::<3>(100, 40.0) {
+            let position = (DVec3::from(position) * 256.0).floor() / 256.0;
+            for periods in [1.0, -1.0, 1e3, -1e7, 1e9, 1e10] {
+                let moved = position + f64::from(size) * periods * DVec3::new(1.0, -2.0, 3.0);
+                let [here, there] = [position, moved].map(|at| plane.sample(at.truncate()));
+                assert_eq!(here.to_bits(), there.to_bits(), "{position} {moved}");
+                let [here, there] = [position, moved].map(|at| space.sample(at));
+                assert_eq!(here.to_bits(), there.to_bits(), "{position} {moved}");
+            }
+        }
+    }
+}
+
+#[test]
+fn period_is_exact_past_all_fractions() {
+    let noise = WaveletNoise2::new(6, Seed(1)).unwrap();
+    // 2^60 is 4 more than a multiple of 6.
+    let far = (1_u64 << 60) as f64;
+    let [here, there] = [DVec2::new(4.0, 2.0), DVec2::new(far, -far)].map(|at| noise.sample(at));
+    assert_eq!(here.to_bits(), there.to_bits());
+}
+
+#[test]
+fn render_equals_sample_bit_for_bit() {
+    let one = WaveletNoise2::new(32, Seed(5)).unwrap();
+    let many = one.clone().with_weights(&WEIGHTS).unwrap();
+    for window in windows() {
+        for noise in [&one, &many] {
+            let raster = noise.to_raster(&window).unwrap();
+            check(&raster, &window, |position| noise.sample(position));
+        }
+    }
+}
+
+#[test]
+fn render_slice_equals_sample_bit_for_bit() {
+    let one = WaveletNoise3::new(16, Seed(5)).unwrap();
+    let many = one.clone().with_weights(&WEIGHTS).unwrap();
+    for window in windows() {
+        for (noise, z) in [(&one, 0.3), (&many, -7e8 - 0.1), (&many, f64::NAN)] {
+            let mut raster = Raster::filled(window.size, 0.0).unwrap();
+            noise.render_slice(z, &window, raster.view_mut()).unwrap();
+            check(&raster, &window, |position| {
+                noise.sample(position.extend(z))
+            });
+        }
+    }
+}
+
+/// Wide, narrow, far and upside down, and one with columns and rows that have no position.
+fn windows() -> Vec<Window> {
+    let window = |x, y, pixel, size| Window {
+        origin: DVec2::new(x, y),
+        pixel,
+        first: [-3, 7],
+        size,
+    };
+    vec![
+        window(0.1, 0.2, DVec2::splat(0.37), [70, 40]),
+        window(-5.0, 0.2, DVec2::splat(0.25), [3, 33]),
+        window(1e9, -1e12, DVec2::new(0.125, -3.5), [40, 3]),
+        window(0.0, 0.0, DVec2::splat(5e307), [50, 30]),
+    ]
+}
+
+fn check(raster: &Raster<f32>, window: &Window, sample: impl Fn(DVec2) -> f32) {
+    for row in 0..window.size[1] {
+        for column in 0..window.size[0] {
+            let [here, there] = [
+                raster.row(row)[column as usize],
+                sample(window.position(column, row)),
+            ];
+            assert_eq!(here.to_bits(), there.to_bits(), "{window:?} {column} {row}");
+        }
+    }
+}
+
+#[test]
+fn a_crop_equals_the_part_of_the_whole_bit_for_bit() {
+    let noise = WaveletNoise2::new(32, Seed(5))
+        .unwrap()
+        .with_weights(&WEIGHTS)
+        .unwrap();
+    let whole = Window::new(DVec2::new(0.1, -1e6), DVec2::splat(77.0), [60, 50]).unwrap();
+    let part = whole.crop([13, 8], [5, 30]).unwrap();
+    let expected = noise
+        .to_raster(&whole)
+        .unwrap()
+        .crop([13, 8], [5, 30])
+        .unwrap();
+    assert_eq!(noise.to_raster(&part).unwrap(), expected);
+}
+
+#[test]
+fn noise_is_the_same_at_any_number_of_threads() {
+    let window = Window::new(DVec2::ZERO, DVec2::splat(40.0), [100, 90]).unwrap();
+    let render = || {
+        let plane = WaveletNoise2::new(34, Seed(6))
+            .unwrap()
+            .with_weights(&WEIGHTS)
+            .unwrap();
+        let space = WaveletNoise3::new(18, Seed(6)).unwrap();
+        let mut slice = Raster::filled(window.size, 0.0).unwrap();
+        space.render_slice(0.7, &window, slice.view_mut()).unwrap();
+        (plane.to_raster(&window).unwrap(), slice)
+    };
+    let expected = render();
+    for threads in [1, 2, 7] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let rendered = pool.unwrap().install(render);
+        assert!(rendered == expected, "{threads} threads give other bits");
+    }
+}
+
+#[test]
+fn value_is_nan_where_the_position_is_not_finite() {
+    let plane = WaveletNoise2::new(8, Seed(7)).unwrap();
+    let space = WaveletNoise3::new(8, Seed(7)).unwrap();
+    for bad in [f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for position in [
+            DVec3::new(bad, 0.0, 0.0),
+            DVec3::new(0.0, bad, 0.0),
+            DVec3::splat(bad),
+        ] {
+            let value = plane.sample(position.truncate());
+            assert_eq!(value.to_bits(), f32::NAN.to_bits(), "{position}");
+            let (value, gradient) = space.sample_with_gradient(position);
+            assert_eq!(value.to_bits(), f32::NAN.to_bits(), "{position}");
+            assert!(gradient.is_nan_mask().all(), "{position}: {gradient}");
+        }
+    }
+}
+
+#[test]
+fn sizes_out_of_range_are_refused() {
+    for size in [0, 1, 2, 3, 11_586, u32::MAX] {
+        check_range(
+            WaveletNoise2::new(size, Seed(0)),
+            "size of the tile",
+            size.into(),
+        );
+    }
+    for size in [0, 3, 514, u32::MAX] {
+        check_range(
+            WaveletNoise3::new(size, Seed(0)),
+            "size of the tile",
+            size.into(),
+        );
+    }
+    for size in [5, 511] {
+        let expected = WaveletErrorKind::NotDivisible {
+            length: size as usize,
+            levels: 1,
+        };
+        assert_eq!(
+            *WaveletNoise2::new(size, Seed(0)).unwrap_err().kind(),
+            expected
+        );
+        assert_eq!(
+            *WaveletNoise3::new(size, Seed(0)).unwrap_err().kind(),
+            expected
+        );
+    }
+}
+
+#[test]
+fn weights_out_of_range_are_refused() {
+    let noise = WaveletNoise2::new(4, Seed(0)).unwrap();
+    check_range(noise.clone().with_weights(&[]), "number of weights", 0.0);
+    check_range(
+        noise.clone().with_weights(&[1.0; 17]),
+        "number of weights",
+        17.0,
+    );
+    let error = noise.with_weights(&[1.0, f32::INFINITY]).unwrap_err();
+    let expected = WaveletErrorKind::NotFinite {
+        index: 1,
+        value: f64::INFINITY,
+    };
+    assert_eq!(*error.kind(), expected);
+}
+
+fn check_range<T: core::fmt::Debug>(
+    result: Result<T, WaveletError>,
+    expected: &'static str,
+    number: f64,
+) {
+    let error = result.unwrap_err();
+    let fits = matches!(error.kind(), WaveletErrorKind::Range { what, value, .. }
+        if *what == expected && *value == number);
+    assert!(fits, "{error}");
+}
+
+#[test]
+fn memory_of_another_size_is_refused() {
+    let window = Window::unit([5, 3]).unwrap();
+    let mut raster = Raster::filled([5, 4], 0.0).unwrap();
+    let plane = WaveletNoise2::new(4, Seed(0)).unwrap();
+    let space = WaveletNoise3::new(4, Seed(0)).unwrap();
+    for result in [
+        plane.render(&window, raster.view_mut()),
+        space.render_slice(0.0, &window, raster.view_mut()),
+        space.render_slice(f64::NAN, &window, raster.view_mut()),
+    ] {
+        let error = result.unwrap_err();
+        assert!(
+            matches!(error.kind(), RasterErrorKind::SizeMismatch { .. }),
+            "{error}"
+        );
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_position_has_a_value_in_the_bound_or_nan(x in any::<f64>(), y in any::<f64>(), z in any::<f64>()) {
+        let position = DVec3::new(x, y, z);
+        let plane = WaveletNoise2::new(6, Seed(8)).unwrap().with_weights(&[1.0; 16]).unwrap();
+        let value = plane.sample(position.truncate());
+        let in_bound = value.abs() <= plane.bound();
+        prop_assert!(in_bound == position.truncate().is_finite(), "{value}");
+        let space = WaveletNoise3::new(6, Seed(8)).unwrap().with_weights(&[1.0; 16]).unwrap();
+        let (value, gradient) = space.sample_with_gradient(position);
+        let in_bound = value.abs() <= space.bound() && gradient.is_finite();
+        prop_assert!(in_bound == position.is_finite(), "{value} {gradient}");
+    }
+}
+
+#[test]
+fn value_stability_wavelet_noise() {
+    let plane = WaveletNoise2::new(10, Seed(7)).unwrap();
+    let bands = plane.clone().with_weights(&[1.0, 0.5, 0.25]).unwrap();
+    let space = WaveletNoise3::new(10, Seed(7)).unwrap();
+    let position = DVec3::new(0.3, -2.75, 1e6 + 0.1);
+    assert_eq!(
+        [
+            plane.sample(position.truncate()),
+            bands.sample(position.truncate()),
+            space.sample(position),
+            plane.bound(),
+        ],
+        [-1.8847088, -2.018241, -0.4602263, 6.531162]
+    );
+}

@@ -1,0 +1,189 @@
+//! A periodic tile of B-spline coefficients and its values.
+
+use super::place::Place;
+
+/// Coefficients, with one more cell before the tile and one after it along each axis: three are read around a place, and
+/// so no reader has to wrap.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tile<const N: usize> {
+    /// Cells along each axis, with those that are there twice.
+    side: usize,
+    coefficients: Vec<f32>,
+}
+
+/// How many cells there are more along each axis than the tile has.
+const MORE: usize = 2;
+
+impl<const N: usize> Tile<N> {
+    /// The tile of `size` cells along each axis, from its coefficients, the first axis fastest.
+    pub(super) fn new(size: usize, coefficients: &[f32]) -> Self {
+        let side = size + MORE;
+        let n_rows = side.pow(N as u32 - 1);
+        let mut padded = Vec::with_capacity(n_rows * side);
+        for row in 0..n_rows {
+            let source = (1..N).rev().fold(0, |source, axis| {
+                let at = row / side.pow(axis as u32 - 1) % side;
+                source * size + (at + size - 1) % size
+            });
+            let cells = &coefficients[source * size..][..size];
+            padded.push(cells[size - 1]);
+            padded.extend_from_slice(cells);
+            padded.push(cells[0]);
+        }
+        Self {
+            side,
+            coefficients: padded,
+        }
+    }
+
+    /// The coefficient that is furthest from zero.
+    pub(super) fn largest(&self) -> f32 {
+        let magnitudes = self.coefficients.iter().map(|value| value.abs());
+        magnitudes.fold(0.0, f32::max)
+    }
+
+    /// The coefficient of a cell.
+    #[cfg(test)]
+    pub(super) fn coefficient(&self, cell: [usize; N]) -> f32 {
+        let at = cell
+            .iter()
+            .rev()
+            .fold(0, |at, cell| at * self.side + cell + 1);
+        self.coefficients[at]
+    }
+
+    /// Three coefficients of a row, from a place in memory on.
+    #[inline(always)]
+    fn three(&self, at: usize) -> [f32; 3] {
+        let row = &self.coefficients[at..at + 3];
+        [row[0], row[1], row[2]]
+    }
+}
+
+impl Tile<2> {
+    /// The value at a place.
+    #[inline(always)]
+    pub(super) fn value(&self, [x, y]: [Place; 2]) -> f32 {
+        across(x.weights(), down(y.weights(), self.rows([x, y])))
+    }
+
+    /// The value at a place, and its gradient per cell.
+    #[inline(always)]
+    pub(super) fn value_with_gradient(&self, [x, y]: [Place; 2]) -> (f32, [f32; 2]) {
+        let rows = self.rows([x, y]);
+        let row = down(y.weights(), rows);
+        let slopes = down(y.slopes(), rows);
+        let gradient = [across(x.slopes(), row), across(x.weights(), slopes)];
+        (across(x.weights(), row), gradient)
+    }
+
+    /// The weighted sum of the rows around a place, as many as a row has cells in memory.
+    pub(super) fn blend_row(&self, y: Place, row: &mut [f32]) {
+        let rows = &self.coefficients[y.index() * self.side..][..3 * self.side];
+        blend(y.weights(), rows, row);
+    }
+
+    /// Cells of a row in memory.
+    pub(super) fn side(&self) -> usize {
+        self.side
+    }
+
+    #[inline(always)]
+    fn rows(&self, [x, y]: [Place; 2]) -> [[f32; 3]; 3] {
+        let at = y.index() * self.side + x.index();
+        [
+            self.three(at),
+            self.three(at + self.side),
+            self.three(at + 2 * self.side),
+        ]
+    }
+}
+
+impl Tile<3> {
+    /// The value at a place.
+    #[inline(always)]
+    pub(super) fn value(&self, [x, y, z]: [Place; 3]) -> f32 {
+        let rows = self.rows(z.weights(), [x, y, z]);
+        across(x.weights(), down(y.weights(), rows))
+    }
+
+    /// The value at a place, and its gradient per cell.
+    #[inline(always)]
+    pub(super) fn value_with_gradient(&self, [x, y, z]: [Place; 3]) -> (f32, [f32; 3]) {
+        let rows = self.rows(z.weights(), [x, y, z]);
+        let row = down(y.weights(), rows);
+        let slopes = [
+            row,
+            down(y.slopes(), rows),
+            down(y.weights(), self.rows(z.slopes(), [x, y, z])),
+        ];
+        let gradient = [
+            across(x.slopes(), slopes[0]),
+            across(x.weights(), slopes[1]),
+            across(x.weights(), slopes[2]),
+        ];
+        (across(x.weights(), row), gradient)
+    }
+
+    /// The tile of the plane at a depth. Its values are those of this tile there, to the last bit.
+    pub(super) fn slice(&self, z: Place) -> Tile<2> {
+        let area = self.side * self.side;
+        let slices = &self.coefficients[z.index() * area..][..3 * area];
+        let mut coefficients = vec![0.0; area];
+        blend(z.weights(), slices, &mut coefficients);
+        Tile {
+            side: self.side,
+            coefficients,
+        }
+    }
+
+    /// The rows around a place, each blended from three slices.
+    #[inline(always)]
+    fn rows(&self, weights: [f32; 3], [x, y, z]: [Place; 3]) -> [[f32; 3]; 3] {
+        let area = self.side * self.side;
+        let at = z.index() * area + y.index() * self.side + x.index();
+        [
+            self.pillar(weights, at),
+            self.pillar(weights, at + self.side),
+            self.pillar(weights, at + 2 * self.side),
+        ]
+    }
+
+    /// Three coefficients of a row, blended from three slices.
+    #[inline(always)]
+    fn pillar(&self, weights: [f32; 3], at: usize) -> [f32; 3] {
+        let area = self.side * self.side;
+        let slices = [
+            self.three(at),
+            self.three(at + area),
+            self.three(at + 2 * area),
+        ];
+        down(weights, slices)
+    }
+}
+
+/// The weighted sum of three rows, or slices, that lie one after another.
+fn blend(weights: [f32; 3], three: &[f32], sum: &mut [f32]) {
+    let (first, others) = three.split_at(sum.len());
+    let (second, third) = others.split_at(sum.len());
+    let third = &third[..sum.len()];
+    for (i, sum) in sum.iter_mut().enumerate() {
+        *sum = (weights[0] * first[i] + weights[1] * second[i]) + weights[2] * third[i];
+    }
+}
+
+/// The weighted sum of three pieces of rows.
+#[inline(always)]
+fn down(weights: [f32; 3], [first, second, third]: [[f32; 3]; 3]) -> [f32; 3] {
+    [
+        across(weights, [first[0], second[0], third[0]]),
+        across(weights, [first[1], second[1], third[1]]),
+        across(weights, [first[2], second[2], third[2]]),
+    ]
+}
+
+/// The weighted sum of a piece of a row.
+#[inline(always)]
+pub(super) fn across(weights: [f32; 3], row: [f32; 3]) -> f32 {
+    (weights[0] * row[0] + weights[1] * row[1]) + weights[2] * row[2]
+}

@@ -1,0 +1,147 @@
+//! The filter that halves a line, and the prefilters: a short sum, then recursions, over several lines side by side.
+//!
+//! A recursion needs what came before the first value. Both lines are therefore continued past their ends, by as many values
+//! as the recursion needs to forget that it began with zero: less than the last bit of a result. One rule so serves lines
+//! that repeat and lines that are mirrored, of any length.
+//!
+//! All arithmetic is `f64`, with the same operations in the same order for every lane, so that a line has the same bits
+//! whatever lies beside it.
+
+use crate::ends::{Halving, Line};
+use crate::kernel::Kernel;
+use crate::{Border, SplineFilter, WaveletError};
+
+/// A filter from a line to another.
+#[derive(Clone, Debug)]
+pub(crate) struct LineFilter {
+    kernel: Kernel,
+    pub(crate) source: Line,
+    pub(crate) target: Line,
+    /// How many source values a target value goes on by.
+    step: usize,
+    /// Where the first tap of the first target value lies in the source.
+    start: i64,
+    reach: usize,
+}
+
+/// The memory in which `L` lines are filtered side by side.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Lanes<const L: usize> {
+    source: Vec<[f64; L]>,
+    target: Vec<[f64; L]>,
+}
+
+impl LineFilter {
+    /// Equation 7, for lines of `len`.
+    pub(crate) fn halving(
+        filter: SplineFilter,
+        len: usize,
+        border: Border,
+    ) -> Result<Self, WaveletError> {
+        let halving = Halving::new(filter, len, border)?;
+        let kernel = Kernel::halving(filter);
+        Ok(Self {
+            start: kernel.first + 2 * halving.offset,
+            source: halving.fine,
+            target: halving.coarse,
+            step: 2,
+            reach: kernel.reach(),
+            kernel,
+        })
+    }
+
+    /// A filter whose target is as long as its source.
+    pub(crate) fn in_place(kernel: Kernel, line: Line) -> Self {
+        Self {
+            start: kernel.first,
+            source: line,
+            target: line,
+            step: 1,
+            reach: kernel.reach(),
+            kernel,
+        }
+    }
+
+    /// Filters the lines that `load` writes into the slice it is given, as long as the source.
+    pub(crate) fn run<'lanes, const L: usize>(
+        &self,
+        lanes: &'lanes mut Lanes<L>,
+        load: impl FnOnce(&mut [[f64; L]]),
+    ) -> &'lanes [[f64; L]] {
+        let Lanes { source, target } = lanes;
+        let end = self.start + (self.step * (self.target.len - 1) + self.kernel.taps.len()) as i64;
+        let before = (-self.start).max(0) as usize;
+        let after = (end - self.source.len as i64).max(0) as usize;
+        source.resize(before + self.source.len + after, [0.0; L]);
+        load(&mut source[before..before + self.source.len]);
+        go_on(&self.source, source, before);
+
+        let kept = self.reach..self.reach + self.target.len;
+        target.resize(self.target.len + 2 * self.reach, [0.0; L]);
+        let first = (before as i64 + self.start) as usize;
+        weigh(
+            &self.kernel.taps,
+            &source[first..],
+            self.step,
+            &mut target[kept.clone()],
+        );
+        go_on(&self.target, target, self.reach);
+        match *self.kernel.poles {
+            [p] => recur([p], target),
+            [p, q] => recur([p, q], target),
+            [p, q, r] => recur([p, q, r], target),
+            _ => {}
+        }
+        &target[kept]
+    }
+}
+
+/// Continues the line that begins at `before` to both ends of the slice.
+fn go_on<const L: usize>(line: &Line, values: &mut [[f64; L]], before: usize) {
+    let after = before + line.len..values.len();
+    for place in (0..before).chain(after) {
+        values[place] = values[before + line.index(place as i64 - before as i64)];
+    }
+}
+
+/// Each target is the sum of `taps`, which are symmetric, times the values from its place on.
+fn weigh<const L: usize>(taps: &[f64], source: &[[f64; L]], step: usize, target: &mut [[f64; L]]) {
+    let (half, middle) = (taps.len() / 2, taps.len() % 2 == 1);
+    for (values, target) in source.windows(taps.len()).step_by(step).zip(target) {
+        let mut sum = [0.0; L];
+        let pairs = values.iter().zip(values.iter().rev());
+        for ((a, b), tap) in pairs.zip(&taps[..half]) {
+            for lane in 0..L {
+                sum[lane] += tap * (a[lane] + b[lane]);
+            }
+        }
+        if middle {
+            for lane in 0..L {
+                sum[lane] += taps[half] * values[half][lane];
+            }
+        }
+        *target = sum;
+    }
+}
+
+/// Runs the recursion of each pole over the lines, forward and then backward.
+fn recur<const L: usize, const P: usize>(poles: [f64; P], lines: &mut [[f64; L]]) {
+    sweep(poles, lines.iter_mut());
+    sweep(poles, lines.iter_mut().rev());
+}
+
+/// Adds to each value the one before, times a pole; for one pole after the other.
+fn sweep<'lines, const L: usize, const P: usize>(
+    poles: [f64; P],
+    lines: impl Iterator<Item = &'lines mut [f64; L]>,
+) {
+    let mut last = [[0.0; L]; P];
+    for values in lines {
+        for (last, pole) in last.iter_mut().zip(poles) {
+            for lane in 0..L {
+                values[lane] += pole * last[lane];
+                last[lane] = values[lane];
+            }
+        }
+    }
+}
