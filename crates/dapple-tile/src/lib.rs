@@ -43,6 +43,7 @@ pub use error::{TileError, TileErrorKind};
 pub use feather::Feather;
 pub use map::Map;
 pub use poisson::WrapGradient;
+pub use repeat::{repeat, repeat_into};
 pub use seamless::{Method, Seamless};
 pub use soft_cut::SoftCut;
 pub use spline_project::{Basis, Pixels, SplineProject};
