@@ -39,6 +39,7 @@ mod pyramid;
 mod test_fields;
 
 pub use crossfade::Crossfade;
+pub use disturb::Disturbance;
 pub use error::{TileError, TileErrorKind};
 pub use feather::Feather;
 pub use map::Map;
