@@ -43,6 +43,7 @@ pub use disturb::Disturbance;
 pub use error::{TileError, TileErrorKind};
 pub use feather::Feather;
 pub use map::Map;
+pub use match_borders::{BorderSource, MatchBorders};
 pub use poisson::WrapGradient;
 pub use repeat::{repeat, repeat_into};
 pub use seamless::{Method, Seamless};
