@@ -38,6 +38,7 @@ mod pyramid;
 #[cfg(test)]
 mod test_fields;
 
+pub use corner::CornerTiles;
 pub use crossfade::Crossfade;
 pub use disturb::Disturbance;
 pub use error::{TileError, TileErrorKind};
