@@ -4,7 +4,7 @@
 
 use crate::ends::{Halving, Line};
 use crate::kernel::two_scale;
-use crate::pass::for_chunks;
+use crate::pass::fill_chunks;
 use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 
 /// A filter that doubles a line.
@@ -12,7 +12,7 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 pub(crate) struct Doubling {
     pub(crate) fine: Line,
     pub(crate) coarse: Line,
-    /// For even and for odd fine indices.
+    /// For even and for odd fine indices; both have as many weights.
     parts: [Part; 2],
 }
 
@@ -23,6 +23,9 @@ struct Part {
     first: i64,
     weights: Vec<f64>,
 }
+
+/// How many coarse values are continued past each end of a line: as far as any part reaches.
+const PAD: usize = 4;
 
 impl Doubling {
     /// The filter to lines of `fine_len` from those that [`Halving`] makes of them.
@@ -51,44 +54,63 @@ impl Doubling {
     }
 
     /// The line, doubled.
-    pub(crate) fn double_line(&self, coarse: &[f64]) -> Vec<f64> {
-        let value = |index| {
-            let terms = self
-                .terms(index)
-                .map(|(coarse_idx, weight)| weight * coarse[coarse_idx]);
-            terms.fold(0.0, |sum, term| sum + term)
-        };
-        (0..self.fine.len).map(value).collect()
+    pub(crate) fn line(&self, coarse: &[f64]) -> Vec<f64> {
+        let mut fine = vec![0.0; self.fine.len];
+        let mut padded = vec![0.0; coarse.len() + 2 * PAD];
+        padded[PAD..PAD + coarse.len()].copy_from_slice(coarse);
+        self.go_on(&mut padded);
+        self.spread(&padded, &mut fine, |value| value);
+        fine
     }
 
-    /// Doubles the columns of a plane, and then its rows by `along_rows`.
-    pub(crate) fn double_plane(&self, along_rows: &Self, coarse: &[f32], fine: &mut [f32]) {
+    /// Doubles columns, rounds to `f32`, and doubles rows by `along_rows`.
+    pub(crate) fn plane(&self, along_rows: &Self, coarse: &[f32], fine: &mut [f32]) {
         let width = along_rows.coarse.len;
-        for_chunks(fine, along_rows.fine.len, |row, fine| {
-            let mut sums = vec![0.0; width];
-            for (coarse_row, weight) in self.terms(row) {
-                let coarse = &coarse[coarse_row * width..(coarse_row + 1) * width];
-                for (sum, &value) in sums.iter_mut().zip(coarse) {
-                    *sum += weight * f64::from(value);
-                }
-            }
-            for sum in &mut sums {
-                *sum = f64::from(*sum as f32);
-            }
-            for (fine, value) in fine.iter_mut().zip(along_rows.double_line(&sums)) {
-                *fine = value as f32;
-            }
+        let scratch = || vec![0.0; width + 2 * PAD];
+        fill_chunks(fine, along_rows.fine.len, scratch, |padded, row, fine| {
+            self.blend(row, coarse, &mut padded[PAD..PAD + width]);
+            along_rows.go_on(padded);
+            along_rows.spread(padded, fine, |value| value as f32);
         });
     }
 
-    /// The indices of the coarse coefficients that fine coefficient `index` is made of, with their weights.
-    fn terms(&self, index: usize) -> impl Iterator<Item = (usize, f64)> {
-        let part = &self.parts[index % 2];
-        let first = (index / 2) as i64 + part.first;
-        part.weights
-            .iter()
-            .zip(first..)
-            .map(|(&weight, coarse)| (self.coarse.index(coarse), weight))
+    /// Fine row `row` of the coarse rows, which are as wide as `sums`; rounded to `f32`.
+    pub(crate) fn blend(&self, row: usize, coarse: &[f32], sums: &mut [f64]) {
+        let part = &self.parts[row % 2];
+        let width = sums.len();
+        let coarse_row = |term: usize| {
+            let row = self
+                .coarse
+                .index((row / 2) as i64 + part.first + term as i64);
+            &coarse[row * width..(row + 1) * width]
+        };
+        match *part.weights {
+            [a] => blend([a], [coarse_row(0)], sums),
+            [a, b] => blend([a, b], [0, 1].map(coarse_row), sums),
+            [a, b, c] => blend([a, b, c], [0, 1, 2].map(coarse_row), sums),
+            _ => {}
+        }
+    }
+
+    /// Continues a coarse line that has `PAD` values too many at both ends.
+    fn go_on(&self, padded: &mut [f64]) {
+        let len = self.coarse.len;
+        for place in (0..PAD).chain(PAD + len..len + 2 * PAD) {
+            padded[place] = padded[PAD + self.coarse.index(place as i64 - PAD as i64)];
+        }
+    }
+
+    /// The fine values of a continued coarse line.
+    fn spread<T>(&self, padded: &[f64], fine: &mut [T], round: impl Fn(f64) -> T) {
+        let [even, odd] = &self.parts;
+        let from = |part: &Part| &padded[(PAD as i64 + part.first) as usize..];
+        let lines = [from(even), from(odd)];
+        match (&*even.weights, &*odd.weights) {
+            (&[a], &[d]) => spread([[a], [d]], lines, fine, round),
+            (&[a, b], &[d, e]) => spread([[a, b], [d, e]], lines, fine, round),
+            (&[a, b, c], &[d, e, f]) => spread([[a, b, c], [d, e, f]], lines, fine, round),
+            _ => {}
+        }
     }
 }
 
@@ -98,7 +120,7 @@ impl Part {
         let first_tap = filter.first_tap();
         // Fine coefficient 2 i + parity has tap k = 2 (i - j) + parity - first_tap of coarse coefficient j.
         let least = (parity - first_tap).rem_euclid(2);
-        let weights: Vec<f64> = h
+        let mut weights: Vec<f64> = h
             .iter()
             .skip(least as usize)
             .step_by(2)
@@ -106,9 +128,48 @@ impl Part {
             .copied()
             .collect();
         let greatest = least + 2 * (weights.len() as i64 - 1);
+        // Where one parity has a tap less, it has a zero.
+        weights.resize(h.len().div_ceil(2), 0.0);
         Self {
             first: (parity - first_tap - greatest) / 2 - offset,
             weights,
         }
     }
+}
+
+/// The weighted sum of rows, rounded to `f32`.
+fn blend<const T: usize>(weights: [f64; T], rows: [&[f32]; T], sums: &mut [f64]) {
+    let rows = rows.map(|row| &row[..sums.len()]);
+    for (x, sum) in sums.iter_mut().enumerate() {
+        let value = weigh(weights, |term| f64::from(rows[term][x]));
+        *sum = f64::from(value as f32);
+    }
+}
+
+/// Even and odd values of a line, each a weighted sum of values from its own place in the coarse line on.
+fn spread<const T: usize, O>(
+    weights: [[f64; T]; 2],
+    coarse: [&[f64]; 2],
+    fine: &mut [O],
+    round: impl Fn(f64) -> O,
+) {
+    let coarse = coarse.map(|line| &line[..fine.len().div_ceil(2) + T - 1]);
+    let value =
+        |parity: usize, i: usize| round(weigh(weights[parity], |term| coarse[parity][i + term]));
+    let (pairs, last) = fine.as_chunks_mut::<2>();
+    for (i, pair) in pairs.iter_mut().enumerate() {
+        *pair = [value(0, i), value(1, i)];
+    }
+    if let [last] = last {
+        *last = value(0, pairs.len());
+    }
+}
+
+/// The sum of weighted terms, in their order.
+fn weigh<const T: usize>(weights: [f64; T], term: impl Fn(usize) -> f64) -> f64 {
+    let mut sum = weights[0] * term(0);
+    for (i, weight) in weights.iter().enumerate().skip(1) {
+        sum += weight * term(i);
+    }
+    sum
 }

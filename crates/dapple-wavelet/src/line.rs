@@ -9,6 +9,7 @@ use crate::doubling::Doubling;
 use crate::ends::{Halving, lengths};
 use crate::recursion::{Lanes, LineFilter};
 use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use core::ops::Mul;
 
 impl SplineFilter {
     /// How many coefficients a line of `length` has once halved: half as many where it is periodic, and for mirrored lines as
@@ -56,7 +57,7 @@ impl SplineFilter {
     ) -> Result<Vec<f64>, WaveletError> {
         let doubling = Doubling::new(*self, coarse.len(), fine_len, border)?;
         check_finite(coarse)?;
-        Ok(doubling.double_line(coarse))
+        Ok(doubling.line(coarse))
     }
 
     /// Halves a line `levels` times and doubles it again; zero levels give the line itself.
@@ -77,7 +78,7 @@ impl SplineFilter {
             line = filter_line(&LineFilter::halving(*self, len, border)?, &line);
         }
         for &len in lengths[..levels as usize].iter().rev() {
-            line = Doubling::new(*self, line.len(), len, border)?.double_line(&line);
+            line = Doubling::new(*self, line.len(), len, border)?.line(&line);
         }
         Ok(line)
     }
@@ -91,14 +92,26 @@ pub(crate) fn filter_line(filter: &LineFilter, line: &[f64]) -> Vec<f64> {
 }
 
 /// Refuses values that are not finite, and names the first.
-pub(crate) fn check_finite<T: Copy + Into<f64>>(values: &[T]) -> Result<(), WaveletError> {
-    let bad = values.iter().position(|&value| !value.into().is_finite());
-    bad.map_or(Ok(()), |index| {
-        Err(WaveletError::new(WaveletErrorKind::NotFinite {
-            index,
-            value: values[index].into(),
-        }))
-    })
+pub(crate) fn check_finite<T>(values: &[T]) -> Result<(), WaveletError>
+where
+    T: Copy + Default + PartialEq + Mul<Output = T> + Into<f64>,
+{
+    // What is not finite does not give zero when it is multiplied by zero. There is no early end, which would be slower.
+    let is_finite = |value: T| value * T::default() == T::default();
+    if values
+        .iter()
+        .fold(true, |all, &value| all & is_finite(value))
+    {
+        return Ok(());
+    }
+    let index = values
+        .iter()
+        .position(|&value| !is_finite(value))
+        .unwrap_or_default();
+    Err(WaveletError::new(WaveletErrorKind::NotFinite {
+        index,
+        value: values[index].into(),
+    }))
 }
 
 #[cfg(test)]

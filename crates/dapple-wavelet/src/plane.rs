@@ -6,7 +6,7 @@
 use crate::doubling::Doubling;
 use crate::ends::lengths;
 use crate::line::check_finite;
-use crate::pass::{filter_lines, for_chunks};
+use crate::pass::filter_lines;
 use crate::recursion::LineFilter;
 use crate::{Border, SplineFilter, WaveletError};
 use dapple_raster::Raster;
@@ -49,7 +49,7 @@ impl SplineFilter {
         Raster::filled(fine_size, ())?;
         check_finite(coarse.pixels())?;
         let mut fine = vec![0.0; along_rows.fine.len * along_columns.fine.len];
-        along_columns.double_plane(&along_rows, coarse.pixels(), &mut fine);
+        along_columns.plane(&along_rows, coarse.pixels(), &mut fine);
         Ok(Raster::from_vec(fine_size, fine)?)
     }
 
@@ -99,8 +99,10 @@ pub(crate) fn filter(
 ) -> Result<Raster<f32>, WaveletError> {
     let size = [along_rows, along_columns].map(|filter| filter.target.len as u32);
     let columns = filter_lines(along_rows, raster.pixels());
-    let rows = filter_lines(along_columns, &columns);
-    Ok(Raster::from_vec(size, rows)?)
+    Ok(Raster::from_vec(
+        size,
+        filter_lines(along_columns, &columns),
+    )?)
 }
 
 #[cfg(test)]
