@@ -101,7 +101,7 @@ pub(crate) fn fill_chunks<S>(
             .par_chunks_mut(size)
             .enumerate()
             .for_each_init(scratch, |scratch, (chunk, values)| {
-                fill(scratch, chunk, values)
+                fill(scratch, chunk, values);
             });
     }
     #[cfg(not(feature = "rayon"))]
