@@ -75,7 +75,7 @@ pub type WaveletNoise3 = WaveletNoise<3>;
 const MOST_BANDS: usize = 16;
 
 /// The largest weight. No sum of weighted values overflows.
-const LARGEST_WEIGHT: f64 = 1e30;
+const LARGEST_WEIGHT: f32 = 1e30;
 
 impl<const N: usize> WaveletNoise<N> {
     /// The noise as the weighted sum of bands, coarsest first.
@@ -139,7 +139,7 @@ pub(crate) fn check_weights(weights: &[f32]) -> Result<(), WaveletError> {
                 value,
             }));
         }
-        if value.abs() > LARGEST_WEIGHT {
+        if weight.abs() > LARGEST_WEIGHT {
             return Err(WaveletError::new(WaveletErrorKind::Range {
                 what: "weight",
                 value,
