@@ -74,6 +74,9 @@ pub type WaveletNoise3 = WaveletNoise<3>;
 /// The most bands.
 const MOST_BANDS: usize = 16;
 
+/// The largest weight. No sum of weighted values overflows.
+const LARGEST_WEIGHT: f32 = 1e30;
+
 impl<const N: usize> WaveletNoise<N> {
     /// The noise as the weighted sum of bands, coarsest first.
     ///
@@ -83,8 +86,8 @@ impl<const N: usize> WaveletNoise<N> {
     ///
     /// # Errors
     ///
-    /// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights, [`WaveletErrorKind::NotFinite`] if one is NaN or
-    /// infinite.
+    /// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights from -1e30 to 1e30, [`WaveletErrorKind::NotFinite`] if
+    /// one is NaN or infinite.
     pub fn with_weights(mut self, weights: &[f32]) -> Result<Self, WaveletError> {
         check_weights(weights)?;
         self.bands = Band::all(weights, self.size, self.seed);
@@ -119,7 +122,7 @@ impl<const N: usize> fmt::Debug for WaveletNoise<N> {
     }
 }
 
-/// Refuses weights that are too few, too many or not finite.
+/// Refuses weights that are too few, too many, too large or not finite.
 pub(crate) fn check_weights(weights: &[f32]) -> Result<(), WaveletError> {
     if weights.is_empty() || weights.len() > MOST_BANDS {
         return Err(WaveletError::new(WaveletErrorKind::Range {
@@ -128,13 +131,23 @@ pub(crate) fn check_weights(weights: &[f32]) -> Result<(), WaveletError> {
             range: "from 1 to 16",
         }));
     }
-    match weights.iter().position(|weight| !weight.is_finite()) {
-        None => Ok(()),
-        Some(index) => Err(WaveletError::new(WaveletErrorKind::NotFinite {
-            index,
-            value: weights[index].into(),
-        })),
+    for (index, &weight) in weights.iter().enumerate() {
+        let value = f64::from(weight);
+        if !value.is_finite() {
+            return Err(WaveletError::new(WaveletErrorKind::NotFinite {
+                index,
+                value,
+            }));
+        }
+        if weight.abs() > LARGEST_WEIGHT {
+            return Err(WaveletError::new(WaveletErrorKind::Range {
+                what: "weight",
+                value,
+                range: "from -1e30 to 1e30",
+            }));
+        }
     }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -17,18 +17,18 @@ const PERIODIC: [Border; 2] = [Border::Periodic; 2];
 
 /// A raster of wavelet noise that repeats without a seam, from the weights of its bands, finest first.
 ///
-/// Band `b` has its power between `2^-b / 4` and `2^-b / 2` cycles per pixel, nearly. Its mean is 0 and the mean of its
-/// squares, over all pixels and seeds, is the square of its weight; bands do not correlate, so these add up. Nothing is
-/// measured or divided by the weights. The values of the finest band are nearly normal, and no band is bounded more
-/// tightly than that.
+/// The pixels are the coefficients of a periodic quadratic spline. Band `b` has its power between `2^-b / 4` and `2^-b / 2`
+/// cycles per pixel, nearly. Its mean is 0, and the mean of its squares over all pixels and seeds is the square of its
+/// weight. Bands do not depend on each other, so these squares add up. Nothing else is done to the values, which are
+/// nearly normal.
 ///
 /// [`SplineFilter::analyze`] takes the raster apart into these bands again. Runs on all cores where the feature `rayon`
 /// is on.
 ///
 /// # Errors
 ///
-/// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights, [`WaveletErrorKind::NotFinite`] if one is NaN or
-/// infinite, [`WaveletErrorKind::NotDivisible`] if a side is no multiple of `2^n` for `n` weights, and
+/// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights from -1e30 to 1e30, [`WaveletErrorKind::NotFinite`] if one
+/// is NaN or infinite, [`WaveletErrorKind::NotDivisible`] if a side is no multiple of `2^n` for `n` weights, and
 /// [`WaveletErrorKind::Raster`] if there is no pixel or more than 2^31.
 ///
 /// # Examples

@@ -39,8 +39,8 @@ impl<const N: usize> Band<N> {
     /// Where places of the noise are in this band.
     #[inline(always)]
     pub(super) fn places(&self, period: Period, mut places: [Place; N]) -> [Place; N] {
-        for axis in 0..N {
-            places[axis] = self.place(period, places[axis], axis);
+        for (axis, place) in places.iter_mut().enumerate() {
+            *place = self.place(period, *place, axis);
         }
         places
     }

@@ -79,7 +79,7 @@ impl WaveletNoise<3> {
         mut out: RasterViewMut<'_, f32>,
     ) -> Result<(), RasterError> {
         window.check_size(out.size())?;
-        let Some([z]) = self.period.places([z]) else {
+        let Some(z) = self.period.place_of(z) else {
             out.fill(f32::NAN);
             return Ok(());
         };

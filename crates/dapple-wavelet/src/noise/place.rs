@@ -51,6 +51,11 @@ impl Period {
         Some(places)
     }
 
+    /// The place of a coordinate; none if it is not finite.
+    pub(super) fn place_of(self, coordinate: f64) -> Option<Place> {
+        self.places([coordinate]).map(|[place]| place)
+    }
+
     #[inline(always)]
     fn place(self, coordinate: f64) -> Place {
         let whole = floor(coordinate);
@@ -151,7 +156,7 @@ mod tests {
                 let whole = hash1(Seed(u64::from(cells)), [index], 0).cast_signed() >> shift;
                 // Past 2^53 not every whole number has a number of its own.
                 let x = whole as f64;
-                let [place] = period.places([x]).expect("the coordinate is finite");
+                let place = period.place_of(x).expect("the coordinate is finite");
                 let expected = (x as i64).rem_euclid(i64::from(cells));
                 assert_eq!((place.cell as i64, place.fraction), (expected, 0.0), "{x}");
                 assert_eq!(place.index() as i64, expected, "{x}");
@@ -165,13 +170,13 @@ mod tests {
         let below = |x: f64| f64::from_bits(x.to_bits() - 1);
         for x in [6.0, 12.0, 6e9, FAR, 4.0 * FAR, 1e300, f64::MAX] {
             for x in [x, -x, below(x), -below(x)] {
-                let [place] = period.places([x]).expect("the coordinate is finite");
+                let place = period.place_of(x).expect("the coordinate is finite");
                 assert!((0.0..6.0).contains(&place.cell), "{x}: {place:?}");
                 assert!((0.0..=1.0).contains(&place.fraction), "{x}: {place:?}");
                 assert_eq!(place.cell + place.fraction, x.rem_euclid(6.0), "{x}");
             }
         }
-        let [place] = period.places([-1e-300]).expect("the coordinate is finite");
+        let place = period.place_of(-1e-300).expect("the coordinate is finite");
         assert_eq!((place.cell, place.fraction), (5.0, 1.0));
     }
 

@@ -19,21 +19,12 @@ pub(super) fn render<const N: usize>(
     out: RasterViewMut<'_, f32>,
 ) -> Result<(), RasterError> {
     window.check_size(out.size())?;
-    let [n_columns, n_rows] = window.size;
-    let columns = (0..n_columns).map(|column| period.places([window.column_x(column)]));
-    let rows = (0..n_rows).map(|row| period.places([window.row_y(row)]));
-    let lines = Lines {
-        columns: columns.collect(),
-        rows: rows.collect(),
-    };
-    let sheets = bands.iter();
-    let sheets: Vec<_> = sheets
-        .map(|(band, tile)| Sheet::new(band, tile, period, &lines))
-        .collect();
+    let picture = Picture::new(bands, period, window);
     let fill = |(index, mut strip): (usize, RasterViewMut<'_, f32>)| {
-        let first = index * ROWS as usize;
+        // There are at most `u32::MAX` rows.
+        let first = index as u32 * ROWS;
         for (row, values) in (first..).zip(strip.rows_mut()) {
-            lines.fill_row(&sheets, row, values);
+            picture.fill_row(row, values);
         }
     };
     let strips = out.bands(ROWS).enumerate();
@@ -48,42 +39,65 @@ pub(super) fn render<const N: usize>(
     Ok(())
 }
 
-/// The columns and rows of a window, with no place where the coordinate is not finite.
-struct Lines {
-    columns: Vec<Option<[Place; 1]>>,
-    rows: Vec<Option<[Place; 1]>>,
+/// A window of noise, with what its columns share.
+struct Picture<'a, const N: usize> {
+    period: Period,
+    window: &'a Window,
+    sheets: Vec<Sheet<'a, N>>,
+    /// The columns whose coordinate is not finite.
+    blind: Vec<usize>,
 }
 
 /// A band in a window.
-struct Sheet<'a> {
+struct Sheet<'a, const N: usize> {
+    band: &'a Band<N>,
     tile: &'a Tile<2>,
-    weight: f32,
+    /// Where the columns are; anywhere, if they are blind.
     columns: Vec<Place>,
-    rows: Vec<Place>,
 }
 
-impl<'a> Sheet<'a> {
-    fn new<const N: usize>(
-        band: &Band<N>,
-        tile: &'a Tile<2>,
-        period: Period,
-        lines: &Lines,
-    ) -> Self {
-        let place = |line: &Option<[Place; 1]>, axis| {
-            // Any place does where there is none: its values are replaced by NaN.
-            line.map_or(Place::ZERO, |[place]| band.place(period, place, axis))
+impl<'a, const N: usize> Picture<'a, N> {
+    fn new(bands: &[(&'a Band<N>, &'a Tile<2>)], period: Period, window: &'a Window) -> Self {
+        let columns = (0..window.size[0]).map(|column| period.place_of(window.column_x(column)));
+        let columns: Vec<Option<Place>> = columns.collect();
+        let sheet = |&(band, tile): &(&'a Band<N>, &'a Tile<2>)| {
+            let column =
+                |place: &Option<Place>| band.place(period, place.unwrap_or(Place::ZERO), 0);
+            let columns = columns.iter().map(column).collect();
+            Sheet {
+                band,
+                tile,
+                columns,
+            }
         };
+        let blind = (0..columns.len()).filter(|&column| columns[column].is_none());
         Self {
-            tile,
-            weight: band.weight,
-            columns: lines.columns.iter().map(|line| place(line, 0)).collect(),
-            rows: lines.rows.iter().map(|line| place(line, 1)).collect(),
+            period,
+            window,
+            sheets: bands.iter().map(sheet).collect(),
+            blind: blind.collect(),
         }
     }
 
+    fn fill_row(&self, row: u32, values: &mut [f32]) {
+        let Some(y) = self.period.place_of(self.window.row_y(row)) else {
+            values.fill(f32::NAN);
+            return;
+        };
+        values.fill(0.0);
+        for sheet in &self.sheets {
+            sheet.add_row(sheet.band.place(self.period, y, 1), values);
+        }
+        for &column in &self.blind {
+            values[column] = f32::NAN;
+        }
+    }
+}
+
+impl<const N: usize> Sheet<'_, N> {
     /// Adds the weighted values of a row of pixels.
     fn add_row(&self, y: Place, values: &mut [f32]) {
-        let (tile, weight) = (self.tile, self.weight);
+        let (tile, weight) = (self.tile, self.band.weight);
         // A row of the tile repays itself only if it is read often enough.
         if self.columns.len() < tile.side() / 4 {
             for (value, &x) in values.iter_mut().zip(&self.columns) {
@@ -96,24 +110,6 @@ impl<'a> Sheet<'a> {
         for (value, x) in values.iter_mut().zip(&self.columns) {
             let cells = &row[x.index()..][..3];
             *value += weight * across(x.weights(), [cells[0], cells[1], cells[2]]);
-        }
-    }
-}
-
-impl Lines {
-    fn fill_row(&self, sheets: &[Sheet<'_>], row: usize, values: &mut [f32]) {
-        if self.rows[row].is_none() {
-            values.fill(f32::NAN);
-            return;
-        }
-        values.fill(0.0);
-        for sheet in sheets {
-            sheet.add_row(sheet.rows[row], values);
-        }
-        for (value, column) in values.iter_mut().zip(&self.columns) {
-            if column.is_none() {
-                *value = f32::NAN;
-            }
         }
     }
 }

@@ -7,7 +7,7 @@
 
 use crate::{Border, SplineFilter, WaveletError};
 
-/// The three sums along one axis.
+/// The three sums along one axis, each divided by the number of coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LineSums {
     /// `tr M`.

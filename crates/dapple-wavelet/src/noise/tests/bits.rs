@@ -1,7 +1,7 @@
 //! Promises to the last bit, and inputs that are refused.
 
 use super::positions;
-use crate::{WaveletError, WaveletErrorKind, WaveletNoise2, WaveletNoise3};
+use crate::{WaveletError, WaveletErrorKind, WaveletNoise2, WaveletNoise3, wavelet_tile};
 use dapple_hash::Seed;
 use dapple_raster::{Field, Raster, RasterErrorKind, Window};
 use glam::{DVec2, DVec3};
@@ -181,6 +181,25 @@ fn sizes_out_of_range_are_refused() {
 }
 
 #[test]
+fn weights_at_their_limit_give_finite_values() {
+    let weights = [1e30, -1e30].repeat(8);
+    let noise = WaveletNoise2::new(8, Seed(0)).unwrap();
+    let noise = noise.with_weights(&weights).unwrap();
+    for position in positions::<2>(200, 10.0) {
+        let (value, gradient) = noise.sample_with_gradient(position.into());
+        assert!(
+            value.abs() <= noise.bound() && gradient.is_finite(),
+            "{position:?}: {value}"
+        );
+    }
+    let tile = wavelet_tile([1 << 8, 1 << 8], &weights[..8], Seed(0)).unwrap();
+    assert!(
+        tile.pixels().iter().all(|value| value.is_finite()),
+        "a pixel is not finite"
+    );
+}
+
+#[test]
 fn weights_out_of_range_are_refused() {
     let noise = WaveletNoise2::new(4, Seed(0)).unwrap();
     check_range(noise.clone().with_weights(&[]), "number of weights", 0.0);
@@ -188,6 +207,11 @@ fn weights_out_of_range_are_refused() {
         noise.clone().with_weights(&[1.0; 17]),
         "number of weights",
         17.0,
+    );
+    check_range(
+        noise.clone().with_weights(&[1.0, -1.1e30]),
+        "weight",
+        f64::from(-1.1e30_f32),
     );
     let error = noise.with_weights(&[1.0, f32::INFINITY]).unwrap_err();
     let expected = WaveletErrorKind::NotFinite {
