@@ -5,7 +5,7 @@
 //! or a part of a case's or peer's name.
 //!
 //! How rows are measured is in `harness`, how peers are used at their best in `peers`, and what each group sets side by
-//! side in `pups`, `points`, `graph` and `worley`. The peers are built only with the feature `peers`, which
+//! side in `pups`, `points`, `graph`, `worley`, `wavelet` and `tile`. The peers are built only with the feature `peers`, which
 //! `cargo xtask bench` turns on; without it the rows of ours alone run.
 
 #![forbid(unsafe_code)]
@@ -28,6 +28,8 @@ mod peers;
 mod graph;
 mod points;
 mod pups;
+mod tile;
+mod wavelet;
 mod worley;
 
 use anyhow::{Context, Result, ensure};
@@ -41,7 +43,7 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask bench")]
 struct Arguments {
-    /// Groups (pups, points, graph, worley), or parts of the names of cases or peers; all of them by default.
+    /// Groups (pups, points, graph, worley, wavelet, tile), or parts of the names of cases or peers; all of them by default.
     filters: Vec<String>,
     /// Writes the rows as JSON to this file.
     #[arg(long, value_name = "FILE")]
@@ -64,6 +66,8 @@ fn main() -> Result<ExitCode> {
     points::run(&mut bench)?;
     graph::run(&mut bench)?;
     worley::run(&mut bench)?;
+    wavelet::run(&mut bench)?;
+    tile::run(&mut bench)?;
     let rows = bench.into_rows();
     ensure!(!rows.is_empty(), "no case matches {:?}", arguments.filters);
 

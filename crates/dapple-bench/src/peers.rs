@@ -6,8 +6,9 @@
 //!   always near; for scattered positions there is its hierarchy of triangulations.
 //! * `bluenoise` has few tries (10) for each point, as its own examples: more are slower.
 //! * `poisson-diskus` and `fast_poisson` have the 30 tries that they recommend. `fast_poisson` is not periodic.
-//! * `simdnoise` and `noise-functions` are in `noise`.
+//! * `simdnoise` and `noise-functions` are in `noise`, `rustfft` is in `fourier`.
 
+pub(crate) mod fourier;
 pub(crate) mod noise;
 
 use dapple_points::glam::DVec2;

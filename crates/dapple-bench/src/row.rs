@@ -87,7 +87,7 @@ impl Case {
 }
 
 /// The groups, in the order of the table.
-pub(crate) const GROUPS: [&str; 4] = ["pups", "points", "graph", "worley"];
+pub(crate) const GROUPS: [&str; 6] = ["pups", "points", "graph", "worley", "wavelet", "tile"];
 
 /// The unit of a time.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,7 +11,7 @@
 //! * `noise-functions` has the fastest function for one position (beside `fastnoise-lite`, `libnoise` and `noise`),
 //!   with the square root that Euclidean distances want. Its feature points lie on a circle or sphere, too.
 
-use noise_functions::{CellDistance, Noise as _};
+use noise_functions::{CellDistance, Noise as _, Perlin};
 use simdnoise::{Cell2ReturnType, CellReturnType, NoiseBuilder};
 
 /// A grid as `simdnoise` returns it: the values, their least and their largest.
@@ -80,6 +80,25 @@ pub(crate) fn noise_functions_f1_3(positions: &[[f32; 3]], values: &mut [f32]) {
     let noise = CellDistance::default();
     for (value, &position) in values.iter_mut().zip(positions) {
         *value = noise.sample3(position);
+    }
+}
+
+/// Fills one octave of Perlin noise at positions in the plane, from −1 to 1.
+pub(crate) fn noise_functions_perlin(positions: &[[f32; 2]], values: &mut [f32]) {
+    for (value, &position) in values.iter_mut().zip(positions) {
+        *value = Perlin.sample2(position);
+    }
+}
+
+/// Fills a raster of fractal Perlin noise, pixel by pixel: `octaves` octaves, each twice as fine and half as strong as
+/// the one before, the first with cells of `px_per_cell` pixels.
+pub(crate) fn noise_functions_fbm(side: usize, octaves: u32, px_per_cell: f32, values: &mut [f32]) {
+    let noise = Perlin.fbm(octaves, 0.5, 2.0);
+    for (row, values) in values.chunks_exact_mut(side).enumerate() {
+        let y = row as f32 / px_per_cell;
+        for (column, value) in values.iter_mut().enumerate() {
+            *value = noise.sample2([column as f32 / px_per_cell, y]);
+        }
     }
 }
 

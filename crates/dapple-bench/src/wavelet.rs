@@ -1,0 +1,67 @@
+//! The wavelet group: halving and doubling rasters, and wavelet noise.
+//!
+//! A raster of white noise is halved and doubled again, with the paper's filters: quadratic, centered, periodic.
+//! Confirmed: what comes out is the same as by the other way, up to the rounding of `f32` and the taps that the other
+//! way leaves out.
+
+mod alone;
+#[cfg(feature = "peers")]
+mod beside_peers;
+mod straight;
+
+use crate::harness::{Bench, Side};
+use crate::sets::SEED;
+use anyhow::{Result, ensure};
+use dapple_hash::{hash2, unit_f32};
+use dapple_raster::Raster;
+use dapple_wavelet::{Border, SplineFilter};
+
+/// Measures the rows of the group.
+pub(crate) fn run(bench: &mut Bench) -> Result<()> {
+    alone::run(bench)?;
+    #[cfg(feature = "peers")]
+    beside_peers::run(bench)?;
+    Ok(())
+}
+
+/// Columns and rows of the raster beside other ways.
+const SIDE: u32 = 2048;
+
+/// Both axes repeat.
+const PERIODIC: [Border; 2] = [Border::Periodic; 2];
+
+/// White noise in [0, 1).
+fn white_noise(side: u32) -> Result<Raster<f32>> {
+    let seed = SEED.child("bench wavelet", 0);
+    Ok(Raster::from_fn([side; 2], |column, row| {
+        unit_f32(hash2(seed, [column.into(), row.into()], 0) as u32)
+    })?)
+}
+
+/// Our side: halves a raster and doubles it again.
+fn down_and_up(raster: &Raster<f32>) -> Result<Side<'_, Raster<f32>>> {
+    let filter = SplineFilter::default();
+    Ok(Side::new(Raster::filled([1, 1], 0.0)?, move |out| {
+        *out = filter
+            .down(raster, PERIODIC)
+            .and_then(|coarse| filter.up(&coarse, raster.size(), PERIODIC))
+            .expect("the sides are even and the noise is finite");
+    })
+    .prepared(|out| *out = Raster::filled([1, 1], 0.0).expect("a pixel is a raster")))
+}
+
+/// Refuses two rasters that differ by more than `most` anywhere.
+fn confirm_equal(ours: &[f32], theirs: &[f32], most: f32) -> Result<()> {
+    ensure!(ours.len() == theirs.len(), "the sizes differ");
+    let off = ours
+        .iter()
+        .zip(theirs)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f32::max);
+    ensure!(off <= most, "the two ways differ by {off}");
+    ensure!(
+        ours.iter().any(|value| *value != ours[0]),
+        "the picture is flat"
+    );
+    Ok(())
+}

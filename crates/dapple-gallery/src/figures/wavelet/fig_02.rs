@@ -1,0 +1,33 @@
+//! Large blend maps made by tiling R_n: on the left each blend tile, on the right the map tiled by it.
+//!
+//! One tile comes from a texture, the other from Perlin noise.
+
+use super::{BLEND_TILE, beside, originals, report, tile_side};
+use crate::figure::source;
+use crate::{Figure, Panel};
+use dapple_tile::{Method, Seamless, repeat};
+
+pub(super) const FIGURE: Figure = Figure {
+    number: "2",
+    parameters: &[
+        ("tile", "128 × 128"),
+        ("map", "512 × 512"),
+        ("filters", "quadratic B-spline, one level, Cook and DeRose's phase"),
+    ],
+    source: source!(),
+    render,
+};
+
+fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
+    let [stone, _, _, clouds] = originals(tile_side(size))?;
+    let seamless = Seamless::new(Method::SplineProject(BLEND_TILE));
+    [stone, clouds]
+        .into_iter()
+        .map(|(name, original)| {
+            let tile = seamless.apply(&original)?;
+            let map = repeat(&tile, [size; 2])?;
+            let picture = beside(&tile, &map, 1.0)?;
+            Ok(Panel::gray(name, picture).with_note(report(&original, &tile)?))
+        })
+        .collect()
+}

@@ -1,0 +1,128 @@
+//! Two textures blended by the repeatable blend tile of one of them: (c1) stone with grass, (c2) pebble with grass.
+//!
+//! The blend tile is made of the features of the stones, and grass comes first where it is low. So it grows from the cracks
+//! and around the pebbles, and nothing but the tile says so. It covers exactly 35 % of the ground.
+
+use super::grass::grass;
+use super::patch::{Edges, Material};
+use super::pebble::pebble;
+use super::stone::stone;
+use super::{BLEND_TILE, tile_side};
+use crate::figure::source;
+use crate::{Figure, Panel};
+use dapple_color::LinearRgb;
+use dapple_pups::hash::Seed;
+use dapple_raster::Raster;
+use dapple_tile::{
+    Blend, BlendMap, Layer, Map, Method, Mixing, Seamless, Weighting, blend_by_tile, rank_equalize,
+    repeat,
+};
+
+pub(super) const FIGURE: Figure = Figure {
+    number: "4",
+    parameters: &[
+        ("tile, map", "128 × 128, 512 × 512"),
+        ("grass", "35 % of the area"),
+        ("gain of the mask", "8"),
+    ],
+    source: source!(),
+    render,
+};
+
+/// How much of the ground is grass.
+const GRASS: f32 = 0.35;
+
+fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
+    let side = tile_side(size);
+    let stone = stone(side, Seed(4), Edges::Repeating)?;
+    let pebble = pebble(side, Seed(2), Edges::Repeating)?;
+    let grass = grass(size, Seed(3), Edges::Repeating)?;
+    let on_stone = overgrown(&stone, &grass.color)?;
+    let on_pebble = overgrown(&pebble, &grass.color)?;
+    Ok(vec![
+        Panel::color("stone", repeat(&stone.color, [size; 2])?),
+        Panel::color("pebble", repeat(&pebble.color, [size; 2])?),
+        Panel::color("grass", grass.color),
+        Panel::gray("blend tile of the stone, tiled", repeat(&blend_tile(&stone)?, [size; 2])?),
+        Panel::color("c1: stone with grass", on_stone),
+        Panel::color("c2: pebble with grass", on_pebble),
+    ])
+}
+
+/// The blend tile of a texture: its features, halved and doubled once, and then as ranks.
+fn blend_tile(ground: &Material) -> anyhow::Result<Raster<f32>> {
+    let stone_px = 0.25 * f64::from(ground.color.width());
+    let features = BlendMap::new(stone_px).apply_color(&ground.color)?;
+    let tile = Seamless::new(Method::SplineProject(BLEND_TILE)).apply(&features)?;
+    Ok(rank_equalize(&tile)?)
+}
+
+/// The ground, tiled, with grass where its blend tile is low.
+fn overgrown(
+    ground: &Material,
+    grass: &Raster<LinearRgb>,
+) -> anyhow::Result<Raster<LinearRgb>> {
+    let size = grass.size();
+    let mask = repeat(&blend_tile(ground)?, size)?;
+    let maps = [
+        [Map::Color(grass.clone())],
+        [Map::Color(repeat(&ground.color, size)?)],
+    ];
+    let weights = [GRASS, 1.0 - GRASS].map(|weight| Raster::filled(size, weight));
+    let [of_grass, of_ground] = weights;
+    let (of_grass, of_ground) = (of_grass?, of_ground?);
+    let layer = |maps, weight| Layer {
+        maps,
+        weight,
+        height: None,
+    };
+    let layers = [layer(&maps[0], &of_grass), layer(&maps[1], &of_ground)];
+    let how = Blend::new(Weighting::Mask { gain: 8.0 }, Mixing::Linear);
+    let mut blended = blend_by_tile(&layers, &mask, &how)?;
+    match blended.swap_remove(0) {
+        Map::Color(color) => Ok(color),
+        other => anyhow::bail!("colors became {other:?}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Edges, GRASS, overgrown, pebble, stone};
+    use dapple_color::LinearRgb;
+    use dapple_pups::hash::Seed;
+    use dapple_raster::Raster;
+
+    #[test]
+    fn grass_grows_in_the_cracks_and_not_on_the_stones() {
+        for (name, ground) in [
+            ("stone", stone(128, Seed(4), Edges::Repeating).unwrap()),
+            ("pebble", pebble(128, Seed(2), Edges::Repeating).unwrap()),
+        ] {
+            // Where grass of another color gives another picture, there is grass.
+            let [on_black, on_white] = [0.0, 1.0].map(|gray| {
+                let grass = Raster::filled([128; 2], LinearRgb::gray(gray)).unwrap();
+                overgrown(&ground, &grass).unwrap()
+            });
+            let grass = on_black.zip_map(&on_white, |a, b| b.g - a.g).unwrap();
+            let covered = grass.statistics().mean;
+            // The soft edges of the mask are symmetrical, up to its ends.
+            assert!(
+                (covered - f64::from(GRASS)).abs() < 0.01,
+                "grass covers {covered} of {name}"
+            );
+            let mean_where = |in_gap: bool| {
+                let pixels = ground.gap.pixels().iter().zip(grass.pixels());
+                let here: Vec<f32> = pixels
+                    .filter(|(gap, _)| (**gap > 0.5) == in_gap)
+                    .map(|(_, grass)| *grass)
+                    .collect();
+                here.iter().sum::<f32>() / here.len() as f32
+            };
+            let [in_gaps, on_stones] = [true, false].map(mean_where);
+            assert!(
+                in_gaps > 0.75 && on_stones < 0.25,
+                "grass covers {in_gaps} of the gaps and {on_stones} of the stones: {name}"
+            );
+        }
+    }
+}

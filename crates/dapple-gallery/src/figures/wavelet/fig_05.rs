@@ -1,0 +1,51 @@
+//! Marble, wood grain and clouds: functions of tiled Perlin noise. First the small tiles; then what the functions make of
+//! the map that the raw tile makes, with sharp seams; then the same with our tile.
+//!
+//! Ours is the periodic part of the raw tile, halved and doubled once.
+
+use super::functions::{cloud, marble, wood};
+use super::perlin::perlin;
+use super::{BLEND_TILE, enlarged, report, tile_side};
+use crate::figure::source;
+use crate::{Figure, Panel};
+use dapple_color::LinearRgb;
+use dapple_pups::hash::Seed;
+use dapple_raster::Raster;
+use dapple_tile::{Method, Seamless, repeat};
+
+pub(super) const FIGURE: Figure = Figure {
+    number: "5",
+    parameters: &[
+        ("tile, map", "128 × 128, 512 × 512"),
+        ("noise", "Perlin, five octaves"),
+    ],
+    source: source!(),
+    render,
+};
+
+/// What makes a picture of a map of noise.
+type Function = fn(&Raster<f32>) -> anyhow::Result<Raster<LinearRgb>>;
+
+/// Each function with its name, and the cells across its tile.
+const FUNCTIONS: [(&str, f64, Function); 3] = [
+    ("marble", 2.5, |noise| marble(noise, 8)),
+    ("wood grain", 1.5, |noise| wood(noise, 6)),
+    ("clouds", 3.3, cloud),
+];
+
+fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
+    let side = tile_side(size);
+    let ours = Seamless::new(Method::PeriodicThenProject(BLEND_TILE));
+    let mut rows = [Vec::new(), Vec::new(), Vec::new()];
+    for (name, cells, function) in FUNCTIONS {
+        let raw = perlin(side, cells, 5, Seed(5).child(name, 0))?;
+        let tile = ours.apply(&raw)?;
+        rows[0].push(Panel::gray(format!("tile for {name}"), enlarged(&raw, 4)?));
+        for (row, label, tile) in [(1, "raw tile", &raw), (2, "our tile", &tile)] {
+            let picture = function(&repeat(tile, [size; 2])?)?;
+            let panel = Panel::color(format!("{name} of the {label}"), picture);
+            rows[row].push(panel.with_note(report(&raw, tile)?));
+        }
+    }
+    Ok(rows.into_iter().flatten().collect())
+}

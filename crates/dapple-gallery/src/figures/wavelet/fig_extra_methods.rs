@@ -1,0 +1,133 @@
+//! All methods on the same four crops: fractal noise, stone, pebble and grass, none of which repeats.
+//!
+//! No method is the best everywhere. The periodic part keeps all detail and is the choice for smooth noise; the soft cut
+//! keeps grains whole and needs a margin; the blend tile alone hides no seam, at one level or at two; the crossfades cost
+//! contrast; the mirror has no seam and everybody sees it. A seam ratio is 1 where the wrap is like the inside.
+
+use super::{crops, tile_side};
+use crate::draw::sheet;
+use crate::figure::source;
+use crate::{Figure, Panel};
+use core::fmt::Write as _;
+use dapple_raster::Raster;
+use dapple_tile::{
+    Crossfade, Feather, Method, SeamOptions, SeamReport, Seamless, SoftCut, SplineProject,
+    WrapGradient, repeat,
+};
+use dapple_wavelet::Phase;
+
+pub(super) const FIGURE: Figure = Figure {
+    number: "extra",
+    parameters: &[
+        ("crops", "160 × 160"),
+        ("margin", "32 pixels, where a method has one"),
+        ("seam", "ratio at 1 and at 4 pixels, both axes"),
+        ("fine", "power kept in the finest octave"),
+        ("contrast, least", "deviation kept; least local detail over that of the source"),
+    ],
+    source: source!(),
+    render,
+};
+
+fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
+    let margin = tile_side(size) / 4;
+    let crops = crops(tile_side(size) + margin)?;
+    methods(margin)
+        .into_iter()
+        .map(|(name, method)| {
+            let tiles = crops.each_ref().map(|(_, crop)| match method {
+                Some(method) => Seamless::new(method).apply(crop),
+                None => Ok(crop.clone()),
+            });
+            let mut note = String::from("          seam 1  seam 4    fine  contrast   least\n");
+            for ((crop_name, crop), tile) in crops.iter().zip(&tiles) {
+                let tile = tile.as_ref().map_err(Clone::clone)?;
+                note += &line(crop_name, crop, tile)?;
+            }
+            let picture = sheet([size; 2], [2, 2], size / 64, 1.0, |number, size| {
+                let tile = tiles[number as usize].as_ref().map_err(Clone::clone)?;
+                Ok(repeat(tile, size)?)
+            })?;
+            Ok(Panel::gray(name, picture).with_note(note))
+        })
+        .collect()
+}
+
+/// The methods by name, after the crop as it is.
+fn methods(margin: u32) -> [(&'static str, Option<Method>); 12] {
+    let project = |levels, phase| SplineProject {
+        levels,
+        phase,
+        ..SplineProject::default()
+    };
+    let feather = |crossfade| Method::Feather(Feather::Margin { margin, crossfade });
+    [
+        ("the crop itself", None),
+        (
+            "SplineProject, one level, centered",
+            Some(Method::SplineProject(project(1, Phase::Centered))),
+        ),
+        (
+            "SplineProject, one level, Cook and DeRose",
+            Some(Method::SplineProject(project(1, Phase::CookDeRose))),
+        ),
+        (
+            "SplineProject, two levels, Cook and DeRose",
+            Some(Method::SplineProject(project(2, Phase::CookDeRose))),
+        ),
+        ("Periodic", Some(Method::Periodic)),
+        (
+            "Poisson, extrapolated",
+            Some(Method::Poisson(WrapGradient::Extrapolate)),
+        ),
+        (
+            "PeriodicThenProject",
+            Some(Method::PeriodicThenProject(project(1, Phase::Centered))),
+        ),
+        (
+            "SoftCut",
+            Some(Method::SoftCut(SoftCut {
+                margin,
+                ..SoftCut::default()
+            })),
+        ),
+        (
+            "Feather over the margin, variance kept",
+            Some(feather(Crossfade::KeepVariance)),
+        ),
+        (
+            "Feather over the margin, linear",
+            Some(feather(Crossfade::Linear)),
+        ),
+        (
+            "Feather, moved by half",
+            Some(Method::Feather(Feather::HalfShift)),
+        ),
+        ("Mirror", Some(Method::Mirror)),
+    ]
+}
+
+/// What was measured on one tile, as a line of the table.
+fn line(name: &str, crop: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> {
+    let options = SeamOptions {
+        lattice: [4; 2],
+        ..SeamOptions::default()
+    };
+    let report = SeamReport::beside(crop, tile, &options)?;
+    let ratio = |index: usize| report.seams[index].both.map_or(f64::NAN, |both| both.ratio);
+    let (fine, contrast, least) = report.kept.as_ref().map_or((f64::NAN, f64::NAN, f64::NAN), |kept| {
+        (
+            kept.octaves.first().copied().unwrap_or(f64::NAN),
+            kept.contrast,
+            report.lowest_local_detail / kept.source_lowest_local_detail,
+        )
+    });
+    let mut line = String::new();
+    writeln!(
+        line,
+        "{name:<8} {:7.2} {:7.2} {fine:7.3} {contrast:9.2} {least:7.2}",
+        ratio(0),
+        ratio(2)
+    )?;
+    Ok(line)
+}

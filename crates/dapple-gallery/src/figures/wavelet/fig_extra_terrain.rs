@@ -1,0 +1,100 @@
+//! A terrain of stone, grass and soil: linear splatting, and blending by tiles.
+//!
+//! Stone lies where the land is steep or high, grass where it is low and flat, soil between. On the left the textures fade
+//! into each other; on the right each place is given to one of them by the features of a small tile of wavelet noise, and
+//! what contrast is left to lose is kept.
+
+use super::super::fractal::FractalNoise;
+use super::grass::grass;
+use super::patch::Edges;
+use super::soil::soil;
+use super::stone::stone;
+use super::tile_side;
+use crate::figure::source;
+use crate::{Figure, Panel};
+use dapple_color::{LinearRgb, NormalOptions, normal_map};
+use dapple_pups::hash::Seed;
+use dapple_raster::{Raster, Window};
+use dapple_tile::{
+    Blend, Layer, Map, Mixing, Weighting, blend, blend_by_tile, rank_equalize, repeat,
+};
+use dapple_wavelet::wavelet_tile;
+use glam::DVec3;
+
+pub(super) const FIGURE: Figure = Figure {
+    number: "extra",
+    parameters: &[
+        ("textures", "three tiles of 256 × 256"),
+        ("blend tile", "128 × 128, four bands of wavelet noise"),
+        ("gain of the mask", "5"),
+    ],
+    source: source!(),
+    render,
+};
+
+fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
+    let window = Window::unit([size; 2])?;
+    let noise = FractalNoise::new(0.35, Seed(12))?;
+    let land = Raster::from_window(&window, |at| noise.at(at))?;
+    let normals = normal_map(
+        &land,
+        &NormalOptions {
+            strength: 0.45,
+            ..NormalOptions::default()
+        },
+    )?;
+    let weights = weights(&land, &normals.map(|normal| normal.z))?;
+    let side = 2 * tile_side(size);
+    let tiles = [
+        stone(side, Seed(4), Edges::Repeating)?,
+        grass(side, Seed(3), Edges::Repeating)?,
+        soil(side, Seed(5), Edges::Repeating)?,
+    ];
+    let mut maps = Vec::new();
+    for tile in &tiles {
+        maps.push([Map::Color(repeat(&tile.color, [size; 2])?)]);
+    }
+    let layers: Vec<Layer<'_>> = maps
+        .iter()
+        .zip(&weights)
+        .map(|(maps, weight)| Layer {
+            maps,
+            weight,
+            height: None,
+        })
+        .collect();
+    let tile = wavelet_tile([tile_side(size); 2], &[0.2, 0.5, 1.0, 1.0], Seed(6))?;
+    let mask = repeat(&rank_equalize(&tile)?, [size; 2])?;
+    let by_tile = Blend::new(Weighting::Mask { gain: 5.0 }, Mixing::KeepVariance);
+    let toward = DVec3::new(-0.6, 0.6, 0.6).normalize();
+    [
+        ("linear splatting", blend(&layers, &Blend::default())?),
+        ("by tiles", blend_by_tile(&layers, &mask, &by_tile)?),
+    ]
+    .into_iter()
+    .map(|(label, maps)| {
+        let Some(Map::Color(color)) = maps.into_iter().next() else {
+            anyhow::bail!("colors became something else");
+        };
+        let lit = color.zip_map(&normals, |&color, normal| {
+            let normal = DVec3::from_array(normal.to_array().map(f64::from));
+            color * (0.15 + 1.25 * normal.dot(toward).max(0.0)) as f32
+        })?;
+        Ok(Panel::color(label, lit))
+    })
+    .collect()
+}
+
+/// How much stone, grass and soil there is at each place, from its height and how level it is.
+fn weights(land: &Raster<f32>, level: &Raster<f32>) -> anyhow::Result<[Raster<f32>; 3]> {
+    let rise = |from: f32, to: f32, value: f32| ((value - from) / (to - from)).clamp(0.0, 1.0);
+    let stone = land.zip_map(level, |&height, &level| {
+        rise(0.75, 0.45, level).max(rise(0.6, 0.8, height))
+    })?;
+    let soil = land.zip_map(level, |&height, &level| {
+        rise(0.9, 0.75, level).max(rise(0.42, 0.55, height))
+    })?;
+    let soil = soil.zip_map(&stone, |&soil, &stone| soil * (1.0 - stone))?;
+    let grass = soil.zip_map(&stone, |&soil, &stone| 1.0 - soil - stone)?;
+    Ok([stone, grass.map(|grass| grass.max(0.0)), soil])
+}
