@@ -24,12 +24,15 @@ mod disturb;
 mod match_borders;
 mod repeat;
 
+mod gauss;
+
 mod blend_map;
 mod rank;
 
 mod blend;
 mod pyramid;
 
+pub use blend_map::BlendMap;
 pub use error::{TileError, TileErrorKind};
 pub use feather::Feather;
 pub use map::Map;
