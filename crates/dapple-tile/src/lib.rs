@@ -30,17 +30,22 @@ mod blend_map;
 mod rank;
 
 mod blend;
+mod weighting;
+
 mod pyramid;
 
+pub use blend::{Blend, Layer, Mixing, blend, blend_by_tile};
 pub use blend_map::BlendMap;
 pub use error::{TileError, TileErrorKind};
 pub use feather::Feather;
 pub use map::Map;
 pub use poisson::WrapGradient;
+pub use pyramid::Pyramid;
 pub use rank::rank_equalize;
 pub use seamless::{Method, Seamless};
 pub use soft_cut::{Crossfade, SoftCut};
 pub use spline_project::{Basis, Pixels, SplineProject};
+pub use weighting::Weighting;
 
 pub use dapple_color as color;
 pub use dapple_raster as raster;
