@@ -1,1 +1,278 @@
-//! Blending textures: all maps of several materials by weights.
+//! Blending textures: all maps of several materials, by weights.
+//!
+//! Blending has two parts, and each kind of the one goes with each of the other. The [`Weighting`] says which layer has
+//! what share of a pixel: its weight as it is, more for the higher layer, or what a blend tile says, which is what Du, Wang
+//! and Meng make their tiles for ("Wavelet and Blend maps for texture synthesis", section V). The [`Mixing`] says how the
+//! values `x` of the layers are mixed by these shares `w`:
+//!
+//! * linear: `Σ w x`, the splatting of Charles Bloom (2000);
+//! * keeping the variance: `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`, with `μ` the mean of a layer's map over the raster, after
+//!   Eric Heitz and Fabrice Neyret, "High-Performance By-Example Noise using a Histogram-Preserving Blending Operator",
+//!   Proceedings of the ACM on Computer Graphics and Interactive Techniques 1(2), 2018, DOI 10.1145/3233304. Theirs works
+//!   on textures whose histograms were made Gaussian first; here the values are taken as they are;
+//! * in bands: see [`Pyramid`].
+//!
+//! How much of the fine contrast of two unlike noises of equal contrast is left in the middle of a ramp 128 pixels wide, as
+//! the tests measure it:
+//!
+//! | weighting | linear | keeping the variance | pyramid |
+//! |---|---|---|---|
+//! | given | 0.71 | 1.00 | 0.88 |
+//! | height, depth 0.3 | 0.92 | | |
+//! | height, depth 0.1 | 1.01 | | |
+//! | mask, gain 4 | 0.97 | | 0.99 |
+//! | mask, hard | 1.05 | | |
+//!
+//! All maps of a material have the same shares. Normals are mixed as slopes and come back as long as 1. Where they shall
+//! belong to the blended height, make them of it by [`normal_map`](dapple_color::normal_map).
+
+use crate::map::check_planes;
+use crate::{Map, Pyramid, TileError, TileErrorKind, Weighting};
+use dapple_raster::Raster;
+
+/// A material, and where it lies.
+#[derive(Clone, Copy, Debug)]
+pub struct Layer<'a> {
+    /// Its maps. All layers have the same kinds in the same order, and all are of one size.
+    pub maps: &'a [Map],
+    /// How much of it there is, at least 0, in any unit: weights count beside those of the other layers.
+    pub weight: &'a Raster<f32>,
+    /// Its height, from 0 to 1, for [`Weighting::Height`].
+    pub height: Option<&'a Raster<f32>>,
+}
+
+/// How layers are blended.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_tile::{Blend, Mixing, Weighting};
+///
+/// // Plain splatting, and the same with hard edges along the features of a blend tile.
+/// let splatting = Blend::new(Weighting::Given, Mixing::Linear);
+/// let cut = Blend { weighting: Weighting::Mask { gain: f64::INFINITY }, ..splatting };
+/// assert_eq!(splatting, Blend::default());
+/// assert_ne!(splatting, cut);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct Blend {
+    /// How weights become shares. By default as given.
+    pub weighting: Weighting,
+    /// How layers are mixed by their shares. By default linear.
+    pub mixing: Mixing,
+}
+
+/// How layers are mixed by their shares.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Mixing {
+    /// The weighted mean: it stays in the range of the layers.
+    #[default]
+    Linear,
+    /// The contrast is kept where layers have nothing in common; values may leave the range of the layers.
+    KeepVariance,
+    /// The weighted mean in bands, with sharper transitions where details are finer.
+    Pyramid(Pyramid),
+}
+
+impl Blend {
+    /// Blends in this way.
+    #[must_use]
+    pub fn new(weighting: Weighting, mixing: Mixing) -> Self {
+        Self { weighting, mixing }
+    }
+}
+
+/// The maps of a blend of layers.
+///
+/// Where a single layer has a weight, its maps come back: to the last bit with [`Mixing::Linear`], to a rounding with
+/// [`Mixing::KeepVariance`], and to a rounding per level with [`Mixing::Pyramid`] where no other has a weight nearby.
+/// Normals come back to the roundings of their slopes.
+///
+/// # Errors
+///
+/// [`Count`](TileErrorKind::Count) without layers or maps, if the layers have not equally many maps, or if a height or a
+/// blend tile is missing; [`KindMismatch`](TileErrorKind::KindMismatch) if a map is not of the kind that it is of in
+/// the first layer; [`Raster`](TileErrorKind::Raster) if sizes differ; [`NotFinite`](TileErrorKind::NotFinite) for pixels that
+/// are NaN or infinite; [`Range`](TileErrorKind::Range) for a weight below 0, a place without any weight, and a depth,
+/// gain, sharpness or number of levels out of range; [`Wavelet`](TileErrorKind::Wavelet) if a size cannot be halved as
+/// often as a pyramid needs.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_raster::Raster;
+/// use dapple_tile::{Blend, Layer, Map, blend};
+///
+/// let [sand, rock] = [0.8, 0.2].map(|gray| Raster::filled([4, 4], gray).map(Map::Value));
+/// let weight = Raster::filled([4, 4], 1.0)?;
+/// let [sand, rock] = [[sand?], [rock?]];
+/// let layers = [&sand, &rock].map(|maps| Layer { maps, weight: &weight, height: None });
+/// let blended = blend(&layers, &Blend::default())?;
+/// assert_eq!(blended, [Map::Value(Raster::filled([4, 4], 0.5)?)]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn blend(layers: &[Layer<'_>], how: &Blend) -> Result<Vec<Map>, TileError> {
+    blend_layers(layers, None, how)
+}
+
+/// As [`blend`], with a blend tile of the size of the layers: a mask for [`Weighting::Mask`], and the height of layers that have
+/// none for [`Weighting::Height`]. Others do not look at it.
+///
+/// # Errors
+///
+/// As [`blend`]; and [`Range`](TileErrorKind::Range) if a mask has a value that is not from 0 to 1.
+///
+/// # Examples
+///
+/// Grass in the cracks of stones, over a third of the area:
+///
+/// ```
+/// use dapple_raster::Raster;
+/// use dapple_tile::{Blend, BlendMap, Layer, Map, Mixing, Weighting, blend_by_tile, rank_equalize};
+///
+/// let stones = Raster::from_fn([48, 48], |_, row| if row % 12 < 4 { 0.1_f32 } else { 0.6 })?;
+/// let tile = rank_equalize(&BlendMap::new(24.0).apply(&stones)?)?;
+/// let [grass, stones] = [[Map::Value(Raster::filled([48, 48], 1.0)?)], [Map::Value(stones)]];
+/// let [third, rest] = [Raster::filled([48, 48], 1.0)?, Raster::filled([48, 48], 2.0)?];
+/// let layers = [
+///     Layer { maps: &grass, weight: &third, height: None },
+///     Layer { maps: &stones, weight: &rest, height: None },
+/// ];
+/// let how = Blend::new(Weighting::Mask { gain: 8.0 }, Mixing::Linear);
+/// let Map::Value(blended) = &blend_by_tile(&layers, &tile, &how)?[0] else { panic!("no values") };
+/// assert!(blended.row(1)[0] > 0.9);
+/// assert_eq!(blended.row(8)[0], 0.6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn blend_by_tile(
+    layers: &[Layer<'_>],
+    tile: &Raster<f32>,
+    how: &Blend,
+) -> Result<Vec<Map>, TileError> {
+    blend_layers(layers, Some(tile), how)
+}
+
+fn blend_layers(
+    layers: &[Layer<'_>],
+    tile: Option<&Raster<f32>>,
+    how: &Blend,
+) -> Result<Vec<Map>, TileError> {
+    check_layers(layers)?;
+    let shares = how.weighting.shares(layers, tile)?;
+    // For each band its shares, finest first.
+    let bands = match &how.mixing {
+        Mixing::Pyramid(pyramid) => pyramid.shares(shares)?,
+        Mixing::Linear | Mixing::KeepVariance => vec![shares],
+    };
+    (0..layers[0].maps.len())
+        .map(|map| mix_map(layers, map, &bands, &how.mixing))
+        .collect()
+}
+
+/// Refuses layers whose maps do not belong together.
+fn check_layers(layers: &[Layer<'_>]) -> Result<(), TileError> {
+    let count = |what, count, needed| {
+        TileError::new(TileErrorKind::Count {
+            what,
+            count,
+            needed,
+        })
+    };
+    let first = layers.first().ok_or(count("layers", 0, "at least 1"))?;
+    if first.maps.is_empty() {
+        return Err(count("maps", 0, "at least 1"));
+    }
+    for layer in layers {
+        if layer.maps.len() != first.maps.len() {
+            let needed = "as many as the first layer has";
+            return Err(count("maps", layer.maps.len(), needed));
+        }
+        for (map, (a, b)) in layer.maps.iter().zip(first.maps).enumerate() {
+            if core::mem::discriminant(a) != core::mem::discriminant(b) {
+                return Err(TileError::new(TileErrorKind::KindMismatch { map }));
+            }
+            first.weight.check_same_size(a.size())?;
+        }
+        first.weight.check_same_size(layer.weight.size())?;
+    }
+    Ok(())
+}
+
+/// The blend of one map of all layers.
+fn mix_map(
+    layers: &[Layer<'_>],
+    map: usize,
+    bands: &[Vec<Raster<f32>>],
+    mixing: &Mixing,
+) -> Result<Map, TileError> {
+    let mut of_layers: Vec<_> = layers
+        .iter()
+        .map(|layer| layer.maps[map].planes().into_iter())
+        .collect();
+    let mut blended = Vec::new();
+    loop {
+        // The next plane of each layer; all have equally many.
+        let planes: Vec<_> = of_layers.iter_mut().filter_map(Iterator::next).collect();
+        if planes.is_empty() {
+            return layers[0].maps[map].with_planes(blended);
+        }
+        check_planes(&planes)?;
+        blended.push(match mixing {
+            Mixing::Linear => linear(&planes, &bands[0])?,
+            Mixing::KeepVariance => keep_variance(&planes, &bands[0])?,
+            Mixing::Pyramid(pyramid) => pyramid.mix(&planes, bands)?,
+        });
+    }
+}
+
+/// `Σ w x`.
+pub(crate) fn linear(
+    planes: &[Raster<f32>],
+    shares: &[Raster<f32>],
+) -> Result<Raster<f32>, TileError> {
+    let size = planes[0].size();
+    Ok(Raster::from_rows(size, |row| {
+        let mut sums = vec![0.0_f32; size[0] as usize];
+        for (plane, shares) in planes.iter().zip(shares) {
+            let pixels = plane.row(row).iter().zip(shares.row(row));
+            for (sum, (value, share)) in sums.iter_mut().zip(pixels) {
+                *sum += share * value;
+            }
+        }
+        sums
+    })?)
+}
+
+/// `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`.
+fn keep_variance(planes: &[Raster<f32>], shares: &[Raster<f32>]) -> Result<Raster<f32>, TileError> {
+    let size = planes[0].size();
+    let means: Vec<f64> = planes.iter().map(|plane| plane.statistics().mean).collect();
+    Ok(Raster::from_rows(size, |row| {
+        let mut sums = vec![[0.0_f64; 3]; size[0] as usize];
+        for ((plane, shares), mean) in planes.iter().zip(shares).zip(&means) {
+            let pixels = plane.row(row).iter().zip(shares.row(row));
+            for ([means, offsets, squares], (&value, &share)) in sums.iter_mut().zip(pixels) {
+                let [value, share] = [value, share].map(f64::from);
+                *means += share * mean;
+                *offsets += share * (value - mean);
+                *squares += share * share;
+            }
+        }
+        // The squares are at least one over the number of layers.
+        let mixed = |[mean, offset, squares]: [f64; 3]| (mean + offset / squares.sqrt()) as f32;
+        sums.into_iter().map(mixed)
+    })?)
+}
+
+#[cfg(test)]
+mod tests;

@@ -29,15 +29,21 @@ mod disturb;
 mod match_borders;
 mod repeat;
 
+mod gauss;
+
 mod blend_map;
 mod rank;
 
 mod blend;
+mod weighting;
+
 mod pyramid;
 
 #[cfg(test)]
 mod test_fields;
 
+pub use blend::{Blend, Layer, Mixing, blend, blend_by_tile};
+pub use blend_map::BlendMap;
 pub use corner::CornerTiles;
 pub use crossfade::Crossfade;
 pub use disturb::Disturbance;
@@ -46,10 +52,13 @@ pub use feather::Feather;
 pub use map::Map;
 pub use match_borders::{BorderSource, MatchBorders};
 pub use poisson::WrapGradient;
+pub use pyramid::Pyramid;
+pub use rank::rank_equalize;
 pub use repeat::{repeat, repeat_into};
 pub use seamless::{Method, Seamless};
 pub use soft_cut::SoftCut;
 pub use spline_project::{Basis, Pixels, SplineProject};
+pub use weighting::Weighting;
 
 pub use dapple_color as color;
 pub use dapple_raster as raster;

@@ -1,1 +1,118 @@
-//! Blending in bands, with a mask that is sharper where details are finer.
+//! Blending in bands, with shares that are sharper where details are finer.
+//!
+//! A transition that is wide enough for the large features of two textures makes a ghost of their fine details, and one
+//! that is narrow enough for the details cuts the large features. Taken apart into bands, each band can have its own.
+//!
+//! Bartlomiej Wronski, "GPU-Friendly Laplacian Texture Blending", Journal of Computer Graphics Techniques 14(1), 2025
+//! (arXiv:2502.13945), blends the levels of a Laplacian pyramid by masks that sharpen toward the fine ones. Here the
+//! bands are those of the quadratic spline filter of `dapple-wavelet`, the shares are halved by the same filter, and the
+//! sharpening is a power: in the band of level `l`, counted from 0 for the finest, the shares `w` become
+//! `w^p / Σ w^p` with `p = 1 + sharpness · (levels - l) / levels`. The coarse rest is mixed by `p = 1`.
+
+use crate::TileError;
+use crate::blend::linear;
+use crate::weighting::{normalize, zip};
+use dapple_raster::Raster;
+use dapple_wavelet::{Bands, Border, SplineFilter};
+
+/// The weighted mean in bands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct Pyramid {
+    /// How many bands are taken apart, at most 30. By default 4; 0 is the plain mean.
+    pub levels: u32,
+    /// How much sharper than given the transition of the finest band is, at least 0: its shares are taken to the power of
+    /// `1 + sharpness`. At 0 the result is nearly the plain mean. By default 8.
+    pub sharpness: f64,
+    /// What lies past the edges, per axis. By default mirrored, for any side longer than 2^(levels - 1) pixels; periodic for
+    /// tiles whose weights repeat too, with sides that are multiples of 2^levels.
+    pub borders: [Border; 2],
+}
+
+impl Default for Pyramid {
+    fn default() -> Self {
+        Self {
+            levels: 4,
+            sharpness: 8.0,
+            borders: [Border::Mirror; 2],
+        }
+    }
+}
+
+impl Pyramid {
+    /// The shares of each band, finest first and the rest last, from those of the pixels.
+    pub(crate) fn shares(
+        &self,
+        finest: Vec<Raster<f32>>,
+    ) -> Result<Vec<Vec<Raster<f32>>>, TileError> {
+        let (levels, sharpness) = (self.levels, self.sharpness);
+        TileError::check(
+            levels <= 30,
+            "number of levels",
+            levels.into(),
+            "at most 30",
+        )?;
+        let holds = sharpness >= 0.0 && sharpness.is_finite();
+        TileError::check(holds, "sharpness", sharpness, "at least 0 and finite")?;
+        let filter = SplineFilter::default();
+        let mut shares = finest;
+        let mut bands = Vec::new();
+        for level in 0..levels {
+            let part = f64::from(levels - level) / f64::from(levels);
+            bands.push(sharpen(&shares, 1.0 + sharpness * part)?);
+            let halved = shares.iter().map(|share| filter.down(share, self.borders));
+            shares = halved.collect::<Result<_, _>>()?;
+        }
+        bands.push(sharpen(&shares, 1.0)?);
+        Ok(bands)
+    }
+
+    /// The planes of all layers, mixed by the shares of each band.
+    pub(crate) fn mix(
+        &self,
+        planes: &[Raster<f32>],
+        shares: &[Vec<Raster<f32>>],
+    ) -> Result<Raster<f32>, TileError> {
+        let filter = SplineFilter::default();
+        // For each layer its bands, turned around: for each band its layers.
+        let mut bands = vec![Vec::new(); shares.len()];
+        for plane in planes {
+            let Bands { details, coarse } = filter.analyze(plane, self.levels, self.borders)?;
+            for (band, detail) in bands.iter_mut().zip(details.into_iter().chain([coarse])) {
+                band.push(detail);
+            }
+        }
+        let mixed = bands.iter().zip(shares);
+        let mut details: Vec<_> = mixed
+            .map(|(layers, shares)| linear(layers, shares))
+            .collect::<Result<_, _>>()?;
+        // `shares` has one more than there are levels.
+        let coarse = details.swap_remove(self.levels as usize);
+        Ok(filter.synthesize(&Bands { details, coarse }, self.borders)?)
+    }
+}
+
+/// Shares to a power, over their sum. Filters may have left some a little below 0; they count as 0.
+fn sharpen(shares: &[Raster<f32>], power: f64) -> Result<Vec<Raster<f32>>, TileError> {
+    let mut most = shares[0].clone();
+    for shares in &shares[1..] {
+        most = zip(&most, shares, |most, share| share.max(*most))?;
+    }
+    // Over the largest, so that no power is too small to be told from zero for all of them.
+    let power_of = |share: &f32, most: &f32| {
+        let part = f64::from(share.max(0.0)) / f64::from(*most);
+        libm::pow(part, power) as f32
+    };
+    let powers: Vec<_> = shares
+        .iter()
+        .map(|shares| zip(shares, &most, power_of))
+        .collect::<Result<_, _>>()?;
+    normalize(&powers.iter().collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,226 @@
+//! Who lies where: the shares of layers at every pixel.
+//!
+//! Weights as they are given make slow transitions in which both textures are half transparent. A height lets the higher
+//! stones of one layer reach into the other, and a blend tile cuts the transition along its own features.
+//!
+//! * [`Weighting::Height`]: with weights `α` that sum to 1 and heights `h`, `w = α · max(h + α - (top - depth), 0)`, where
+//!   `top` is the largest `h + α` of the layers whose weight is not zero, then divided by the sum of all `w`. This is the
+//!   usual height blend of engines with one departure: the factor `α`, so that a layer fades in from nothing, however
+//!   high it is.
+//! * [`Weighting::Mask`]: with the thresholds `T(i) = α(1) + … + α(i)` and a blend tile `m`, `w(i) = s(T(i)) - s(T(i-1))`
+//!   with `s(T) = clamp((T - m) / 2r + ½, 0, 1)` and half the width `r = min(1 / (2 gain), T, 1 - T)` of a ramp. The ramp
+//!   gets narrower near 0 and 1, where it would reach past the values of the tile. So every layer has exactly its share of
+//!   the area for every gain, if the values of the tile are spread evenly, as those of
+//!   [`rank_equalize`](crate::rank_equalize) are; and a layer without weight is nowhere.
+
+use crate::map::check_finite;
+use crate::{Layer, TileError, TileErrorKind};
+use dapple_raster::Raster;
+
+/// How the weights of layers become their shares. The shares of a pixel sum to 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Weighting {
+    /// Each weight over the sum of all.
+    #[default]
+    Given,
+    /// What is higher shows: where a layer has no height, that of the blend tile is taken.
+    Height {
+        /// The difference of heights over which layers mix, above 0, for heights from 0 to 1: 0.1 is crisp, 0.3 soft.
+        depth: f64,
+    },
+    /// The blend tile is cut at thresholds. The first layer lies where the tile is lowest: in the cracks of a
+    /// [`BlendMap`](crate::BlendMap).
+    Mask {
+        /// One over the width of the transition, in values of the tile, above 0: 1 is soft, 4 and more show the features
+        /// of the tile. An infinite gain gives hard edges.
+        gain: f64,
+    },
+}
+
+impl Weighting {
+    /// The share of each layer.
+    pub(crate) fn shares(
+        &self,
+        layers: &[Layer<'_>],
+        tile: Option<&Raster<f32>>,
+    ) -> Result<Vec<Raster<f32>>, TileError> {
+        if let (Some(tile), Some(layer)) = (tile, layers.first()) {
+            layer.weight.check_same_size(tile.size())?;
+            check_finite(tile)?;
+        }
+        for layer in layers {
+            check_finite(layer.weight)?;
+            let least = layer.weight.statistics().min;
+            TileError::check(least >= 0.0, "smallest weight", least.into(), "at least 0")?;
+        }
+        let weights: Vec<_> = layers.iter().map(|layer| layer.weight).collect();
+        match *self {
+            Self::Given => normalize(&weights),
+            Self::Height { depth } => {
+                let holds = depth > 0.0 && depth.is_finite();
+                TileError::check(holds, "depth", depth, "above 0 and finite")?;
+                by_height(&normalize(&weights)?, &heights(layers, tile)?, depth)
+            }
+            Self::Mask { gain } => {
+                TileError::check(gain > 0.0, "gain", gain, "above 0")?;
+                by_mask(&weights, checked_mask(tile)?, gain)
+            }
+        }
+    }
+}
+
+/// Weights over their sum, which must not be zero anywhere.
+pub(crate) fn normalize(weights: &[&Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
+    let sums = sums(weights)?;
+    let share = |&weight: &f32, sum: &f64| (f64::from(weight) / sum) as f32;
+    let shares = weights.iter().map(|weights| zip(weights, &sums, share));
+    shares.collect()
+}
+
+/// The sums of the weights, added in the order of the layers. None is zero.
+fn sums(weights: &[&Raster<f32>]) -> Result<Raster<f64>, TileError> {
+    let first = weights.first().ok_or(TileError::new(TileErrorKind::Count {
+        what: "layers",
+        count: 0,
+        needed: "at least 1",
+    }))?;
+    let mut sums = first.map(|_| 0.0);
+    for weights in weights {
+        sums = zip(&sums, weights, |sum, &weight| sum + f64::from(weight))?;
+    }
+    let least = sums.pixels().iter().copied().fold(f64::INFINITY, f64::min);
+    TileError::check(least > 0.0, "sum of the weights", least, "above 0")?;
+    Ok(sums)
+}
+
+/// The height of each layer, or the blend tile.
+fn heights<'a>(
+    layers: &[Layer<'a>],
+    tile: Option<&'a Raster<f32>>,
+) -> Result<Vec<&'a Raster<f32>>, TileError> {
+    let heights = layers.iter().filter_map(|layer| layer.height.or(tile));
+    let heights: Vec<_> = heights.collect();
+    if heights.len() < layers.len() {
+        return Err(TileError::new(TileErrorKind::Count {
+            what: "heights",
+            count: heights.len(),
+            needed: "as many as layers, or a blend tile",
+        }));
+    }
+    heights.iter().try_for_each(|height| check_finite(height))?;
+    Ok(heights)
+}
+
+fn by_height(
+    weights: &[Raster<f32>],
+    heights: &[&Raster<f32>],
+    depth: f64,
+) -> Result<Vec<Raster<f32>>, TileError> {
+    let levels: Vec<Raster<f64>> = weights
+        .iter()
+        .zip(heights)
+        .map(|(weights, heights)| zip(weights, heights, level))
+        .collect::<Result<_, _>>()?;
+    let mut top = levels[0].clone();
+    for levels in &levels[1..] {
+        top = zip(&top, levels, |top, level| level.max(*top))?;
+    }
+    // Over the depth, so that the highest layer has 1 for the smallest of depths.
+    let nearness = |level: &f64, top: &f64| (1.0 - (top - level) / depth).max(0.0);
+    let product = |&weight: &f32, nearness: &f64| (f64::from(weight) * nearness) as f32;
+    let shares: Vec<Raster<f32>> = weights
+        .iter()
+        .zip(&levels)
+        .map(|(weights, levels)| zip(weights, &zip(levels, &top, nearness)?, product))
+        .collect::<Result<_, _>>()?;
+    normalize(&shares.iter().collect::<Vec<_>>())
+}
+
+/// The sum of weight and height, and nothing as high as any for a layer without weight.
+fn level(&weight: &f32, &height: &f32) -> f64 {
+    if weight > 0.0 {
+        f64::from(weight) + f64::from(height)
+    } else {
+        f64::MIN
+    }
+}
+
+/// The blend tile, whose values lie from 0 to 1.
+fn checked_mask(tile: Option<&Raster<f32>>) -> Result<&Raster<f32>, TileError> {
+    let tile = tile.ok_or(TileError::new(TileErrorKind::Count {
+        what: "blend tiles",
+        count: 0,
+        needed: "1",
+    }))?;
+    let range = tile.statistics();
+    for value in [range.min, range.max] {
+        let holds = (0.0..=1.0).contains(&value);
+        TileError::check(
+            holds,
+            "value of the blend tile",
+            value.into(),
+            "from 0 to 1",
+        )?;
+    }
+    Ok(tile)
+}
+
+fn by_mask(
+    weights: &[&Raster<f32>],
+    mask: &Raster<f32>,
+    gain: f64,
+) -> Result<Vec<Raster<f32>>, TileError> {
+    let half_width = 0.5 / gain;
+    let sums = sums(weights)?;
+    let mut part = mask.map(|_| 0.0);
+    let mut below = mask.map(|_| 0.0);
+    let mut shares = Vec::with_capacity(weights.len());
+    for weights in weights {
+        part = zip(&part, weights, |part, &weight| part + f64::from(weight))?;
+        // These sums are made as those of all are, so that the last threshold is 1 to the last bit.
+        let thresholds = zip(&part, &sums, |part, sum| part / sum)?;
+        let up_to = zip(&thresholds, mask, |&threshold, &mask| {
+            step(threshold, mask, half_width)
+        })?;
+        shares.push(zip(&up_to, &below, |up_to, below| {
+            (up_to - below).max(0.0) as f32
+        })?);
+        below = up_to;
+    }
+    Ok(shares)
+}
+
+/// From 1 where the mask is below the threshold to 0 where it is above.
+fn step(threshold: f64, mask: f32, half_width: f64) -> f64 {
+    let half_width = half_width.min(threshold).min(1.0 - threshold);
+    let above = f64::from(mask) - threshold;
+    if half_width > 0.0 {
+        (0.5 - 0.5 * above / half_width).clamp(0.0, 1.0)
+    } else if above < 0.0 || threshold >= 1.0 {
+        1.0
+    } else {
+        0.0
+    }
+}
+
+/// Combines two rasters of the same size, on all cores where the feature `rayon` is on.
+pub(crate) fn zip<A: Sync, B: Sync, C: Send>(
+    a: &Raster<A>,
+    b: &Raster<B>,
+    combine: impl Fn(&A, &B) -> C + Sync,
+) -> Result<Raster<C>, TileError> {
+    a.check_same_size(b.size())?;
+    let combine = &combine;
+    Ok(Raster::from_rows(a.size(), |row| {
+        let pairs = a.row(row).iter().zip(b.row(row));
+        pairs.map(move |(a, b)| combine(a, b))
+    })?)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,273 @@
+use super::{Weighting, normalize, step};
+use crate::{Layer, TileErrorKind, rank_equalize};
+use dapple_hash::{Seed, hash2, unit_f64};
+use dapple_raster::Raster;
+use proptest::prelude::*;
+
+const SIZE: [u32; 2] = [16, 8];
+
+fn noise(size: [u32; 2], seed: u64) -> Raster<f32> {
+    Raster::from_fn(size, |column, row| {
+        unit_f64(hash2(Seed(seed), [column.into(), row.into()], 0)) as f32
+    })
+    .unwrap()
+}
+
+/// The shares of layers with these weights and heights.
+fn shares(
+    weighting: Weighting,
+    weights: &[Raster<f32>],
+    heights: &[Raster<f32>],
+    tile: Option<&Raster<f32>>,
+) -> Vec<Raster<f32>> {
+    weighting.shares(&layers(weights, heights), tile).unwrap()
+}
+
+fn layers<'a>(weights: &'a [Raster<f32>], heights: &'a [Raster<f32>]) -> Vec<Layer<'a>> {
+    let layer = |(index, weight)| Layer {
+        maps: &[],
+        weight,
+        height: heights.get(index),
+    };
+    weights.iter().enumerate().map(layer).collect()
+}
+
+fn all() -> [Weighting; 6] {
+    [
+        Weighting::Given,
+        Weighting::Height { depth: 0.2 },
+        Weighting::Height { depth: 1e-300 },
+        Weighting::Mask { gain: 0.3 },
+        Weighting::Mask { gain: 5.0 },
+        Weighting::Mask {
+            gain: f64::INFINITY,
+        },
+    ]
+}
+
+#[test]
+fn shares_sum_to_one_and_none_is_negative() {
+    for n_layers in 1..5 {
+        // A quarter of all weights are zero, but never all of a pixel.
+        let weights: Vec<_> = (0..n_layers)
+            .map(|seed| noise(SIZE, seed).map(|weight| (4.0 * weight - 1.0).max(0.0)))
+            .collect();
+        let always = noise(SIZE, 99).map(|weight| weight + 0.01);
+        let never = always.map(|_| 0.0);
+        let weights = [weights, vec![always, never]].concat();
+        let heights: Vec<_> = (0..n_layers + 2)
+            .map(|seed| noise(SIZE, seed + 10))
+            .collect();
+        // With many places that are 0 or 1.
+        let tile = noise(SIZE, 20).map(|value| (2.0 * value - 0.5).clamp(0.0, 1.0));
+        for weighting in all() {
+            let shares = shares(weighting, &weights, &heights, Some(&tile));
+            for index in 0..tile.pixels().len() {
+                let of_pixel: Vec<f32> = shares.iter().map(|s| s.pixels()[index]).collect();
+                let sum: f64 = of_pixel.iter().copied().map(f64::from).sum();
+                // Each share is rounded to at most 2^-25.
+                assert!((sum - 1.0).abs() < 6.0 * 3e-8, "{weighting:?}: {sum}");
+                for (share, weight) in of_pixel.iter().zip(&weights) {
+                    let weight = weight.pixels()[index];
+                    assert!(*share >= 0.0, "{weighting:?}: {share}");
+                    assert!(
+                        weight > 0.0 || *share == 0.0,
+                        "{weighting:?}: {share} of nothing"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_layer_that_is_alone_has_all_whatever_the_others_heights() {
+    let [one, none] = [0.7, 0.0].map(|weight| Raster::filled(SIZE, weight).unwrap());
+    let [high, low] = [5.0, 0.0].map(|height| Raster::filled(SIZE, height).unwrap());
+    let tile = noise(SIZE, 1).map(|value| (value * 3.0).floor() / 2.0);
+    let weights = [none.clone(), one, none];
+    let heights = [high.clone(), low, high];
+    for weighting in all() {
+        let shares = shares(weighting, &weights, &heights, Some(&tile));
+        for (layer, expected) in [(0, 0.0), (1, 1.0), (2, 0.0)] {
+            let shares = shares[layer].pixels();
+            assert!(
+                shares.iter().all(|&share| share == expected),
+                "{weighting:?}, layer {layer}"
+            );
+        }
+    }
+}
+
+#[test]
+fn masks_give_every_layer_its_share_of_the_area_for_every_gain() {
+    let size = [64, 64];
+    let tile = rank_equalize(&noise(size, 1)).unwrap();
+    let parts = [0.05_f32, 0.25, 0.6, 0.1];
+    let weights = parts.map(|part| Raster::filled(size, 3.0 * part).unwrap());
+    for gain in [0.1, 1.0, 4.0, 12.0, f64::INFINITY] {
+        let shares = shares(Weighting::Mask { gain }, &weights, &[], Some(&tile));
+        for (shares, part) in shares.iter().zip(parts) {
+            let covered = shares.statistics().mean;
+            // A pixel at most at either threshold, of 4096.
+            let off = covered - f64::from(part);
+            assert!(
+                off.abs() < 2.0 / 4096.0,
+                "gain {gain}: {covered} for {part}"
+            );
+        }
+    }
+}
+
+#[test]
+fn masks_lay_the_first_layer_where_the_tile_is_lowest() {
+    let tile = rank_equalize(&noise(SIZE, 2)).unwrap();
+    let weights = [0.25, 0.5, 0.25].map(|weight| Raster::filled(SIZE, weight).unwrap());
+    let gain = f64::INFINITY;
+    let shares = shares(Weighting::Mask { gain }, &weights, &[], Some(&tile));
+    for (index, &rank) in tile.pixels().iter().enumerate() {
+        let expected = [rank < 0.25, (0.25..0.75).contains(&rank), rank >= 0.75];
+        for (shares, expected) in shares.iter().zip(expected) {
+            assert_eq!(
+                shares.pixels()[index],
+                f32::from(u8::from(expected)),
+                "rank {rank}"
+            );
+        }
+    }
+}
+
+#[test]
+fn steps_grow_with_the_threshold_and_fall_with_the_mask() {
+    for half_width in [0.0, 0.01, 0.125, 0.5, 7.0] {
+        for mask in [0.0, 0.1, 0.5, 0.73, 1.0_f32] {
+            let mut before = 0.0;
+            for threshold in 0..=1000 {
+                let threshold = f64::from(threshold) / 1000.0;
+                let here = step(threshold, mask, half_width);
+                assert!(
+                    (before..=1.0).contains(&here),
+                    "{half_width} {mask} {threshold}"
+                );
+                assert!(
+                    step(threshold, (mask - 0.07).max(0.0), half_width) >= here,
+                    "{half_width} {mask} {threshold}"
+                );
+                before = here;
+            }
+        }
+        assert_eq!(step(0.0, 0.0, half_width), 0.0);
+        assert_eq!(step(1.0, 1.0, half_width), 1.0);
+    }
+}
+
+#[test]
+fn heights_equal_the_formula_pixel_by_pixel() {
+    let weights = [0, 1, 2].map(|seed| noise(SIZE, seed));
+    let heights = [3, 4, 5].map(|seed| noise(SIZE, seed));
+    let depth = 0.15;
+    let shares = shares(Weighting::Height { depth }, &weights, &heights, None);
+    for index in 0..weights[0].pixels().len() {
+        let [w, h] = [&weights, &heights]
+            .map(|rasters| [0, 1, 2].map(|layer| f64::from(rasters[layer].pixels()[index])));
+        let sum = w[0] + w[1] + w[2];
+        let alpha = w.map(|w| w / sum);
+        let level = [0, 1, 2].map(|layer| h[layer] + alpha[layer]);
+        let top = level[0].max(level[1]).max(level[2]);
+        let raw = [0, 1, 2].map(|layer| alpha[layer] * (level[layer] - (top - depth)).max(0.0));
+        for layer in 0..3 {
+            let expected = raw[layer] / (raw[0] + raw[1] + raw[2]);
+            let share = f64::from(shares[layer].pixels()[index]);
+            // The weights were rounded to `f32`, and a depth of 0.15 makes 7 times as much of it.
+            assert!((share - expected).abs() < 2e-6, "{share} for {expected}");
+        }
+    }
+}
+
+#[test]
+fn the_blend_tile_is_the_height_of_layers_without_one() {
+    let weights = [0, 1].map(|seed| noise(SIZE, seed));
+    let heights = [2, 3].map(|seed| noise(SIZE, seed));
+    let how = Weighting::Height { depth: 0.2 };
+    assert_eq!(
+        shares(how, &weights, &heights[..1], Some(&heights[1])),
+        shares(how, &weights, &heights, None)
+    );
+    let error = how
+        .shares(&layers(&weights, &heights[..1]), None)
+        .unwrap_err();
+    let expected = TileErrorKind::Count {
+        what: "heights",
+        count: 1,
+        needed: "as many as layers, or a blend tile",
+    };
+    assert_eq!(error.kind(), &expected);
+}
+
+#[test]
+fn weighting_refuses_bad_numbers() {
+    let weight = [Raster::filled(SIZE, 1.0_f32).unwrap()];
+    let tile = noise(SIZE, 1);
+    let what = |weighting: Weighting, weights: &[Raster<f32>], tile: &Raster<f32>| {
+        let error = weighting
+            .shares(&layers(weights, &[]), Some(tile))
+            .unwrap_err();
+        match error.kind() {
+            TileErrorKind::Range { what, .. } => (*what).to_owned(),
+            kind => format!("{kind:?}"),
+        }
+    };
+    for depth in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(what(Weighting::Height { depth }, &weight, &tile), "depth");
+    }
+    for gain in [0.0, -1.0, f64::NAN] {
+        assert_eq!(what(Weighting::Mask { gain }, &weight, &tile), "gain");
+    }
+    let mask = Weighting::Mask { gain: 1.0 };
+    let outside = tile.map(|value| value + 0.5);
+    assert_eq!(what(mask, &weight, &outside), "value of the blend tile");
+    let nan = tile.map(|_| f32::NAN);
+    assert!(what(mask, &weight, &nan).starts_with("NotFinite"));
+    assert!(what(mask, std::slice::from_ref(&nan), &tile).starts_with("NotFinite"));
+    let other_size = noise([3, 3], 1);
+    assert!(what(mask, &weight, &other_size).starts_with("Raster"));
+    let negative = [tile.map(|value| value - 0.5)];
+    assert_eq!(what(mask, &negative, &tile), "smallest weight");
+    let nothing = [tile.map(|_| 0.0)];
+    assert_eq!(what(mask, &nothing, &tile), "sum of the weights");
+    let error = mask.shares(&layers(&weight, &[]), None).unwrap_err();
+    assert!(
+        matches!(
+            error.kind(),
+            TileErrorKind::Count {
+                what: "blend tiles",
+                ..
+            }
+        ),
+        "{error}"
+    );
+    let error = normalize(&[]).unwrap_err();
+    assert!(
+        matches!(error.kind(), TileErrorKind::Count { what: "layers", .. }),
+        "{error}"
+    );
+}
+
+proptest! {
+    #[test]
+    fn shares_of_any_weights_and_heights_are_finite(
+        weights in prop::collection::vec(0.0..f32::MAX, 8),
+        heights in prop::collection::vec(prop::num::f32::NORMAL | prop::num::f32::ZERO, 8),
+        small in prop::num::f32::SUBNORMAL,
+    ) {
+        let raster = |values: &[f32]| Raster::from_vec([2, 2], values.to_vec()).unwrap();
+        let weights = [raster(&weights[..4]), raster(&weights[4..]).map(|_| small.abs())];
+        let heights = [raster(&heights[..4]), raster(&heights[4..])];
+        let tile = noise([2, 2], 1);
+        for weighting in all() {
+            for shares in shares(weighting, &weights, &heights, Some(&tile)) {
+                prop_assert!(shares.pixels().iter().all(|share| (0.0..=1.0).contains(share)));
+            }
+        }
+    }
+}
