@@ -49,7 +49,7 @@ fn feature_map(bench: &mut Bench) -> Result<()> {
     let blend_map = BlendMap::default();
     let theirs = Side::new(Raster::filled([1, 1], 0.0)?, |map| {
         *map = blend_map
-            .from_texture(&texture)
+            .apply_color(&texture)
             .expect("the texture is finite");
     });
     bench.beside(&FEATURES, 5, splat(&tile)?, theirs, |ours, theirs| {

@@ -60,7 +60,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
 }
 
 fn one_position(bench: &mut Bench) -> Result<()> {
-    let tile = WaveletNoise::<2>::new(SEED, N_CELLS)?;
+    let tile = WaveletNoise::<2>::new(N_CELLS, SEED)?;
     let at: Vec<DVec2> = positions(N_POSITIONS)
         .into_iter()
         .map(|at| at * f64::from(N_CELLS))
