@@ -168,8 +168,8 @@ fn spread<const T: usize, O>(
 /// The sum of weighted terms, in their order.
 fn weigh<const T: usize>(weights: [f64; T], term: impl Fn(usize) -> f64) -> f64 {
     let mut sum = weights[0] * term(0);
-    for i in 1..T {
-        sum += weights[i] * term(i);
+    for (i, weight) in weights.iter().enumerate().skip(1) {
+        sum += weight * term(i);
     }
     sum
 }

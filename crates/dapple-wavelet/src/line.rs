@@ -9,7 +9,7 @@ use crate::doubling::Doubling;
 use crate::ends::{Halving, lengths};
 use crate::recursion::{Lanes, LineFilter};
 use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
-use core::ops::Sub;
+use core::ops::Mul;
 
 impl SplineFilter {
     /// How many coefficients a line of `length` has once halved: half as many where it is periodic, and for mirrored lines as
@@ -94,10 +94,10 @@ pub(crate) fn filter_line(filter: &LineFilter, line: &[f64]) -> Vec<f64> {
 /// Refuses values that are not finite, and names the first.
 pub(crate) fn check_finite<T>(values: &[T]) -> Result<(), WaveletError>
 where
-    T: Copy + Default + PartialEq + Sub<Output = T> + Into<f64>,
+    T: Copy + Default + PartialEq + Mul<Output = T> + Into<f64>,
 {
-    // What is not finite is not zero when it is taken from itself. There is no early end, which would be slower.
-    let is_finite = |value: T| value - value == T::default();
+    // What is not finite does not give zero when it is multiplied by zero. There is no early end, which would be slower.
+    let is_finite = |value: T| value * T::default() == T::default();
     if values
         .iter()
         .fold(true, |all, &value| all & is_finite(value))

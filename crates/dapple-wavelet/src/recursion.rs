@@ -138,10 +138,10 @@ fn sweep<'lines, const L: usize, const P: usize>(
     let mut last = [[0.0; L]; P];
     for values in lines {
         for (last, pole) in last.iter_mut().zip(poles) {
-            for lane in 0..L {
-                values[lane] += pole * last[lane];
-                last[lane] = values[lane];
+            for (value, last) in values.iter_mut().zip(&*last) {
+                *value += pole * last;
             }
+            *last = *values;
         }
     }
 }

@@ -1,1 +1,112 @@
 //! Volumes: the filters along three axes.
+//!
+//! A volume is a slice of values, x fastest, then y, then z. Halving goes along x, y and z, doubling along z, y and x; in
+//! between values are rounded to `f32`. All arithmetic is `f64`.
+
+use crate::doubling::Doubling;
+use crate::ends::lengths;
+use crate::line::check_finite;
+use crate::pass::{fill_chunks, filter_lines};
+use crate::recursion::LineFilter;
+use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+
+impl SplineFilter {
+    /// The nearest volume of half the size, along each axis as [`coarse_len`](Self::coarse_len) says.
+    ///
+    /// # Errors
+    ///
+    /// `Length` if there are not as many values as `size` says; as [`down_line`](Self::down_line).
+    pub fn down_volume(
+        &self,
+        volume: &[f32],
+        size: [u32; 3],
+        borders: [Border; 3],
+    ) -> Result<Vec<f32>, WaveletError> {
+        let halving = |axis: usize| LineFilter::halving(*self, size[axis] as usize, borders[axis]);
+        let [x, y, z] = [halving(0)?, halving(1)?, halving(2)?];
+        check_volume(volume, size)?;
+        // Each pass brings the next axis to the front, so that three give back the order.
+        let along_x = filter_lines(&x, volume);
+        let along_y = filter_lines(&y, &along_x);
+        Ok(filter_lines(&z, &along_y))
+    }
+
+    /// The same function on `fine_size` values.
+    ///
+    /// # Errors
+    ///
+    /// `Length` if there are not as many values as the halves of `fine_size` say; as [`up_line`](Self::up_line).
+    pub fn up_volume(
+        &self,
+        coarse: &[f32],
+        fine_size: [u32; 3],
+        borders: [Border; 3],
+    ) -> Result<Vec<f32>, WaveletError> {
+        let doubling = |axis: usize| {
+            let fine_len = fine_size[axis] as usize;
+            let coarse_len = self.coarse_len(fine_len, borders[axis])?;
+            Doubling::new(*self, coarse_len, fine_len, borders[axis])
+        };
+        let [x, y, z] = [doubling(0)?, doubling(1)?, doubling(2)?];
+        check_volume(coarse, [&x, &y, &z].map(|axis| axis.coarse.len as u32))?;
+        let [coarse_slice, fine_slice] = [x.coarse.len * y.coarse.len, x.fine.len * y.fine.len];
+        let mut fine = vec![0.0; fine_slice * z.fine.len];
+        let scratch = || (vec![0.0; coarse_slice], vec![0.0; coarse_slice]);
+        fill_chunks(
+            &mut fine,
+            fine_slice,
+            scratch,
+            |(sums, slice), depth, fine| {
+                z.blend(depth, coarse, sums);
+                for (value, &sum) in slice.iter_mut().zip(&*sums) {
+                    *value = sum as f32;
+                }
+                y.plane(&x, slice, fine);
+            },
+        );
+        Ok(fine)
+    }
+
+    /// Halves a volume `levels` times along each axis and doubles it again; zero levels give the volume itself.
+    ///
+    /// # Errors
+    ///
+    /// As [`down_volume`](Self::down_volume), for each level; `Range` for more than 32 levels.
+    pub fn project_volume(
+        &self,
+        volume: &[f32],
+        size: [u32; 3],
+        levels: u32,
+        borders: [Border; 3],
+    ) -> Result<Vec<f32>, WaveletError> {
+        let sides = |axis: usize| lengths(*self, size[axis] as usize, levels, borders[axis]);
+        let [x, y, z] = [sides(0)?, sides(1)?, sides(2)?];
+        check_volume(volume, size)?;
+        let size = |level: usize| [x[level], y[level], z[level]].map(|side| side as u32);
+        let mut values = volume.to_vec();
+        for level in 0..levels as usize {
+            values = self.down_volume(&values, size(level), borders)?;
+        }
+        for level in (0..levels as usize).rev() {
+            values = self.up_volume(&values, size(level), borders)?;
+        }
+        Ok(values)
+    }
+}
+
+/// Refuses a volume that has another size, or a value that is not finite.
+fn check_volume(volume: &[f32], size: [u32; 3]) -> Result<(), WaveletError> {
+    let needed = size.iter().fold(1_usize, |product, &side| {
+        product.saturating_mul(side as usize)
+    });
+    if volume.len() != needed {
+        return Err(WaveletError::new(WaveletErrorKind::Length {
+            length: volume.len(),
+            needed,
+        }));
+    }
+    check_finite(volume)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,9 @@
 //! Rasters against lines.
 
 use super::*;
+use crate::WaveletErrorKind;
 use crate::oracle::{all_filters, noise};
+use proptest::prelude::*;
 
 const PERIODIC: [Border; 2] = [Border::Periodic; 2];
 
@@ -67,6 +69,259 @@ fn down_and_up_equal_lines_bit_for_bit() {
             let needed = along(&along(&coarse, 1, double(1)), 0, double(0));
             let again = filter.up(&coarse, size, borders).expect("a good raster");
             assert_eq!(again, needed, "up, {filter:?}, {size:?}, {borders:?}");
+        }
+    }
+}
+
+#[test]
+fn down_is_the_same_on_any_number_of_threads() {
+    // Wide enough for more than one batch of lines, and for groups that are not full.
+    let fine = noise_raster([70, 301]);
+    let borders = [Border::Mirror; 2];
+    let filter = SplineFilter::default();
+    let work = || {
+        let coarse = filter.down(&fine, borders).expect("a good raster");
+        (
+            filter
+                .up(&coarse, fine.size(), borders)
+                .expect("a good raster"),
+            coarse,
+        )
+    };
+    let needed = on_threads(1, work);
+    for threads in [2, 7] {
+        assert!(on_threads(threads, work) == needed, "{threads} threads");
+    }
+}
+
+fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.expect("a few threads").install(work)
+}
+
+#[test]
+fn rasters_stay_near_lines_without_roundings() {
+    let size = [64, 48];
+    let fine = noise_raster(size);
+    let filter = SplineFilter::default();
+    let projected = filter.project(&fine, 2, PERIODIC).expect("a good raster");
+    // Rows and columns in f64 all the way.
+    let rows: Vec<Vec<f64>> = (0..48)
+        .map(|y| {
+            fine.row(y)
+                .iter()
+                .map(|&value| f64::from(value))
+                .collect::<Vec<_>>()
+        })
+        .map(|row| {
+            filter
+                .project_line(&row, 2, Border::Periodic)
+                .expect("a good line")
+        })
+        .collect();
+    for x in 0..64 {
+        let column: Vec<f64> = rows.iter().map(|row| row[x]).collect();
+        let column = filter
+            .project_line(&column, 2, Border::Periodic)
+            .expect("a good line");
+        for (y, value) in (0..).zip(column) {
+            let gap = (f64::from(projected.row(y)[x]) - value).abs();
+            assert!(gap < 1e-6, "{gap} at {x}, {y}");
+        }
+    }
+}
+
+#[test]
+fn project_changes_nothing_twice_and_keeps_constants() {
+    for filter in all_filters() {
+        let project =
+            |raster: &Raster<f32>| filter.project(raster, 2, PERIODIC).expect("a good raster");
+        let once = project(&noise_raster([32, 16]));
+        let gap = greatest_gap(&project(&once), &once);
+        // Eight roundings to f32 of values up to 2.
+        assert!(gap < 2e-6, "{filter:?}: {gap}");
+        let flat = Raster::filled([16, 8], 0.7_f32).expect("a good size");
+        assert!(greatest_gap(&project(&flat), &flat) < 1e-6, "{filter:?}");
+    }
+}
+
+fn greatest_gap(a: &Raster<f32>, b: &Raster<f32>) -> f32 {
+    a.pixels()
+        .iter()
+        .zip(b.pixels())
+        .fold(0.0, |most, (a, b)| most.max((a - b).abs()))
+}
+
+#[test]
+fn project_of_no_levels_is_the_raster() {
+    let raster = noise_raster([5, 3]);
+    let projected = SplineFilter::default().project(&raster, 0, PERIODIC);
+    assert_eq!(projected, Ok(raster), "zero levels");
+}
+
+#[test]
+fn axes_commute() {
+    let fine = noise_raster([24, 24]);
+    let flip = |raster: &Raster<f32>| {
+        let [width, height] = raster.size();
+        Raster::from_fn([height, width], |x, y| raster.row(x)[y as usize]).expect("a good size")
+    };
+    for filter in all_filters() {
+        let borders = [Border::Periodic, Border::Mirror];
+        let straight = filter.project(&fine, 1, borders).expect("a good raster");
+        let flipped = filter
+            .project(&flip(&fine), 1, [borders[1], borders[0]])
+            .expect("a good raster");
+        let gap = greatest_gap(&straight, &flip(&flipped));
+        // Four roundings to f32 of values up to 2.
+        assert!(gap < 1e-6, "{filter:?}: {gap}");
+    }
+}
+
+#[test]
+fn residual_of_white_noise_has_the_variance_of_the_note() {
+    let fine = noise_raster([512, 512]);
+    let kept = SplineFilter::default()
+        .project(&fine, 1, PERIODIC)
+        .expect("a good raster");
+    let power =
+        |values: &mut dyn Iterator<Item = f32>| values.map(|v| f64::from(v * v)).sum::<f64>();
+    let lost = power(
+        &mut fine
+            .pixels()
+            .iter()
+            .zip(kept.pixels())
+            .map(|(fine, kept)| fine - kept),
+    );
+    let ratio = lost / power(&mut fine.pixels().iter().copied());
+    // 2^18 values know a variance to about 0.2 %.
+    assert!((ratio / 0.752_821_340_2 - 1.0).abs() < 0.01, "{ratio}");
+}
+
+#[test]
+fn bad_rasters_are_refused() {
+    let filter = SplineFilter::default();
+    let mirrored = [Border::Mirror; 2];
+    let kind = |result: Result<Raster<f32>, WaveletError>| {
+        result.expect_err("a bad raster").kind().clone()
+    };
+    let short = |length| WaveletErrorKind::TooShort { length, least: 2 };
+    for size in [[1, 1], [1, 8], [8, 1]] {
+        for borders in [PERIODIC, mirrored] {
+            assert_eq!(
+                kind(filter.down(&noise_raster(size), borders)),
+                short(1),
+                "{size:?}"
+            );
+        }
+    }
+    let odd = WaveletErrorKind::NotDivisible {
+        length: 7,
+        levels: 1,
+    };
+    assert_eq!(
+        kind(filter.down(&noise_raster([8, 7]), PERIODIC)),
+        odd,
+        "odd"
+    );
+    let levels = WaveletErrorKind::NotDivisible {
+        length: 12,
+        levels: 3,
+    };
+    assert_eq!(
+        kind(filter.project(&noise_raster([16, 12]), 3, PERIODIC)),
+        levels,
+        "three levels"
+    );
+    assert_eq!(
+        kind(filter.project(&noise_raster([9, 3]), 3, mirrored)),
+        short(1),
+        "three levels, mirrored"
+    );
+    let many = kind(filter.project(&noise_raster([8, 8]), u32::MAX, PERIODIC));
+    assert!(matches!(many, WaveletErrorKind::Range { .. }), "{many:?}");
+    let length = WaveletErrorKind::Length {
+        length: 4,
+        needed: 5,
+    };
+    assert_eq!(
+        kind(filter.up(&noise_raster([4, 4]), [8, 10], PERIODIC)),
+        length,
+        "ten of four"
+    );
+    assert_eq!(
+        kind(filter.up(&noise_raster([4, 4]), [0, 8], PERIODIC)),
+        short(0),
+        "nothing of four"
+    );
+    let mut raster = noise_raster([4, 4]);
+    raster.pixels_mut()[9] = f32::NAN;
+    raster.pixels_mut()[12] = f32::INFINITY;
+    for result in [
+        filter.down(&raster, PERIODIC),
+        filter.up(&raster, [8, 8], PERIODIC),
+        filter.project(&raster, 0, PERIODIC),
+    ] {
+        let kind = kind(result);
+        assert!(
+            matches!(kind, WaveletErrorKind::NotFinite { index: 9, .. }),
+            "{kind:?}"
+        );
+    }
+}
+
+#[test]
+fn huge_values_overflow_without_a_panic() {
+    let raster = Raster::from_fn(
+        [8, 8],
+        |x, y| if (x + y) % 3 == 0 { f32::MAX } else { f32::MIN },
+    );
+    let coarse = SplineFilter::default().down(&raster.expect("a good size"), PERIODIC);
+    assert!(coarse.is_ok(), "finite values");
+}
+
+#[test]
+fn value_stability_down_and_up() {
+    let fine = noise_raster([12, 10]);
+    let filter = SplineFilter::default();
+    let coarse = filter.down(&fine, PERIODIC).expect("a good raster");
+    let again = filter
+        .up(&coarse, fine.size(), PERIODIC)
+        .expect("a good raster");
+    let bits = [
+        coarse.row(2)[3],
+        coarse.row(4)[5],
+        again.row(0)[0],
+        again.row(7)[9],
+    ]
+    .map(f32::to_bits);
+    assert_eq!(
+        bits,
+        [0x3f16_f29b, 0xbee0_8be8, 0xbe8c_8e65, 0xbeb8_47e0],
+        "{bits:#x?}"
+    );
+}
+
+proptest! {
+    #[test]
+    fn rasters_of_any_size_are_filtered_or_refused(
+        size in [1..40_u32, 1..40_u32],
+        mirrored in [any::<bool>(), any::<bool>()],
+        levels in 0..7_u32,
+        which in 0..16_usize,
+    ) {
+        let borders = mirrored.map(|mirrored| if mirrored { Border::Mirror } else { Border::Periodic });
+        let filter = all_filters()[which];
+        let raster = noise_raster(size);
+        match filter.project(&raster, levels, borders) {
+            Ok(projected) => prop_assert_eq!(projected.size(), size),
+            Err(error) => {
+                let is_known = matches!(
+                    error.kind(),
+                    WaveletErrorKind::NotDivisible { .. } | WaveletErrorKind::TooShort { .. }
+                );
+                prop_assert!(is_known, "{}", error);
+            }
         }
     }
 }

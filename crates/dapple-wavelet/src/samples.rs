@@ -1,0 +1,142 @@
+//! Splines that go through given values, and the values of splines.
+//!
+//! The filters read pixels as coefficients. Where pixels are samples of a picture, [`SplineFilter::coefficients`] first finds
+//! the coefficients of the spline that has them as its values at pixel centers, by recursion, and
+//! [`SplineFilter::samples`] goes back in the end. For steps and tents the two are the same.
+//!
+//! Reference: Michael Unser, "Splines: A Perfect Fit for Signal and Image Processing", IEEE Signal Processing Magazine 16(6),
+//! 1999, <https://doi.org/10.1109/79.799930>.
+
+use crate::ends::Line;
+use crate::kernel::Kernel;
+use crate::line::{check_finite, filter_line};
+use crate::plane::filter;
+use crate::recursion::LineFilter;
+use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use dapple_raster::Raster;
+
+impl SplineFilter {
+    /// Equation 1: the value at `x` of the spline with these coefficients, of which number `i` is centered on `i`.
+    ///
+    /// # Errors
+    ///
+    /// `Range` if `x` is not finite or further than 2^52 from 0; `TooShort` without coefficients, and for a mirrored one;
+    /// `NotFinite`.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_wavelet::{Border, SplineFilter};
+    ///
+    /// let value = SplineFilter::default().value_line(&[0.0, 1.0, 0.0, 0.0], 1.5, Border::Periodic)?;
+    /// assert_eq!(value, 0.5);
+    /// # Ok::<(), dapple_wavelet::WaveletError>(())
+    /// ```
+    pub fn value_line(
+        &self,
+        coefficients: &[f64],
+        x: f64,
+        border: Border,
+    ) -> Result<f64, WaveletError> {
+        // Below it a position has a fraction, and its whole part is an index.
+        const FARTHEST: f64 = (1_u64 << 52) as f64;
+        let line = Line::new(*self, coefficients.len(), border)?;
+        if !(-FARTHEST..=FARTHEST).contains(&x) {
+            return Err(WaveletError::new(WaveletErrorKind::Range {
+                what: "position",
+                value: x,
+                range: "within 2^52 of 0",
+            }));
+        }
+        check_finite(coefficients)?;
+        let below = x.floor();
+        let mut sum = 0.0;
+        // No spline is wider than 4.
+        for step in -1..=2 {
+            let coefficient = coefficients[line.index(below as i64 + step)];
+            sum += coefficient * self.degree.value(x - below - step as f64);
+        }
+        Ok(sum)
+    }
+
+    /// The coefficients of the spline that has these values at whole numbers.
+    ///
+    /// # Errors
+    ///
+    /// `TooShort` for no values, and for a mirrored one; `NotFinite`.
+    pub fn coefficients_line(
+        &self,
+        samples: &[f64],
+        border: Border,
+    ) -> Result<Vec<f64>, WaveletError> {
+        self.filter_samples(Kernel::coefficients(self.degree), samples, border)
+    }
+
+    /// The values at whole numbers of the spline with these coefficients.
+    ///
+    /// # Errors
+    ///
+    /// As [`coefficients_line`](Self::coefficients_line).
+    pub fn samples_line(
+        &self,
+        coefficients: &[f64],
+        border: Border,
+    ) -> Result<Vec<f64>, WaveletError> {
+        self.filter_samples(Kernel::samples(self.degree), coefficients, border)
+    }
+
+    /// The coefficients of the spline that has these values at pixel centers.
+    ///
+    /// # Errors
+    ///
+    /// As [`coefficients_line`](Self::coefficients_line).
+    pub fn coefficients(
+        &self,
+        samples: &Raster<f32>,
+        borders: [Border; 2],
+    ) -> Result<Raster<f32>, WaveletError> {
+        self.filter_raster(&Kernel::coefficients(self.degree), samples, borders)
+    }
+
+    /// The values at pixel centers of the spline with these coefficients.
+    ///
+    /// # Errors
+    ///
+    /// As [`coefficients_line`](Self::coefficients_line).
+    pub fn samples(
+        &self,
+        coefficients: &Raster<f32>,
+        borders: [Border; 2],
+    ) -> Result<Raster<f32>, WaveletError> {
+        self.filter_raster(&Kernel::samples(self.degree), coefficients, borders)
+    }
+
+    fn filter_samples(
+        &self,
+        kernel: Kernel,
+        values: &[f64],
+        border: Border,
+    ) -> Result<Vec<f64>, WaveletError> {
+        let line = Line::new(*self, values.len(), border)?;
+        check_finite(values)?;
+        Ok(filter_line(&LineFilter::in_place(kernel, line), values))
+    }
+
+    fn filter_raster(
+        &self,
+        kernel: &Kernel,
+        raster: &Raster<f32>,
+        borders: [Border; 2],
+    ) -> Result<Raster<f32>, WaveletError> {
+        let along = |axis: usize| {
+            let line = Line::new(*self, raster.size()[axis] as usize, borders[axis])?;
+            Ok::<_, WaveletError>(LineFilter::in_place(kernel.clone(), line))
+        };
+        let [along_rows, along_columns] = [along(0)?, along(1)?];
+        check_finite(raster.pixels())?;
+        filter(raster, [&along_rows, &along_columns])
+    }
+}
+
+#[cfg(test)]
+mod tests;
