@@ -97,12 +97,12 @@ pub(crate) fn fill_chunks<S>(
     #[cfg(feature = "rayon")]
     {
         use rayon::prelude::*;
-        values.par_chunks_mut(size).enumerate().for_each_init(
-            scratch,
-            |scratch, (chunk, values)| {
+        values
+            .par_chunks_mut(size)
+            .enumerate()
+            .for_each_init(scratch, |scratch, (chunk, values)| {
                 fill(scratch, chunk, values);
-            },
-        );
+            });
     }
     #[cfg(not(feature = "rayon"))]
     {
