@@ -1,4 +1,39 @@
 //! Making images repeat, honest reports of their seams, and blending textures with tiles.
+//!
+//! Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", make a small tile that repeats,
+//! fill large blend maps with it and blend textures by them. This crate has the paper's tile, what does better, and the
+//! numbers that tell which.
+//!
+//! * **A tile of an image**: [`Seamless`] applies a [`Method`] to one raster, a color picture, or all maps of a material
+//!   along the same cut. [`Periodic`](Method::Periodic) keeps all fine detail and needs no margin;
+//!   [`SoftCut`] suits grains and costs a margin; [`SplineProject`] is the paper's, which smooths, and hides a seam only
+//!   where the image was made periodic before ([`PeriodicThenProject`](Method::PeriodicThenProject)). [`Feather`] and
+//!   [`Mirror`](Method::Mirror) are the usual baselines.
+//! * **What it cost**: [`SeamReport`] compares the steps across the wrap with those inside, at four scales, and counts the
+//!   detail that was kept.
+//! * **A map of a tile**: [`repeat`] and [`repeat_into`] fill any size; [`Disturbance`] varies the copies inside and keeps
+//!   their borders; [`CornerTiles`] are sets that fit in any order; [`MatchBorders`] makes unlike tiles fit.
+//! * **Blending**: [`BlendMap`] finds where a texture has its cracks, [`rank_equalize`] makes any raster a mask that covers
+//!   exactly its share, and [`blend`] mixes materials by weights, heights or masks, plainly or in bands.
+//!
+//! ```
+//! use dapple_tile::raster::Raster;
+//! use dapple_tile::{Method, SeamOptions, SeamReport, Seamless, repeat};
+//!
+//! let image = Raster::from_fn([64, 64], |x, y| (x * x % 37 + y * y % 23) as f32 + 0.5 * x as f32)?;
+//! let tile = Seamless::new(Method::Periodic).apply(&image)?;
+//! let report = SeamReport::beside(&image, &tile, &SeamOptions::default())?;
+//! println!("{report}");
+//! let map = repeat(&tile, [1000, 700])?;
+//! assert_eq!(map.row(640)[64], tile.row(0)[0]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! An image that a generator of this workspace makes is best made periodic there: every one of them takes a period, and
+//! repeats exactly without losing anything. The methods here are for images whose source is not at hand.
+//!
+//! Rasters are `f32`, and what is solved is solved in `f64`. All results have the same bits on every platform and on any
+//! number of threads. The crate knows no file format and touches no file.
 
 #![forbid(unsafe_code)]
 

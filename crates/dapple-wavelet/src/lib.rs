@@ -28,19 +28,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! What a halving loses is noise without low frequencies, if the samples were white. [`WaveletNoise2`] and
-//! [`WaveletNoise3`] are that noise at any position, in one band or several; [`wavelet_tile`] sums bands of it, each made
-//! at its own size, to a raster that repeats without a seam.
-//!
-//! ```
-//! use dapple_wavelet::{WaveletNoise2, hash::Seed, raster::Field, raster::Window, raster::glam::DVec2};
-//!
-//! let noise = WaveletNoise2::new(64, Seed(7))?;
-//! let window = Window::new(DVec2::ZERO, DVec2::splat(64.0), [256, 256])?;
-//! let raster = noise.to_raster(&window)?;
-//! assert!(raster.pixels().iter().all(|value| value.abs() <= noise.bound()));
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! Lines are `f64`. Rasters and volumes are `f32`, filtered in `f64` and rounded after each axis. All results have the same
+//! bits on every platform and on any number of threads.
 //!
 //! # The paper's equations
 //!
@@ -68,8 +57,21 @@
 //! * Pixels are coefficients and not values of the function, as in the paper; [`SplineFilter::coefficients`] and
 //!   [`SplineFilter::samples`] are the way from one to the other.
 //!
-//! Lines are `f64`. Rasters and volumes are `f32`, filtered in `f64` and rounded after each axis. All results have the same
-//! bits on every platform and on any number of threads.
+//! # Wavelet noise
+//!
+//! What halving loses of white noise is noise of one octave. [`WaveletNoise2`] and [`WaveletNoise3`] are that noise at any
+//! position, in one band or several, with its gradient and with a period. [`wavelet_tile`] sums bands of it, each made at its
+//! own size, to a raster that repeats without a seam.
+//!
+//! ```
+//! use dapple_wavelet::{WaveletNoise2, hash::Seed, raster::Field, raster::Window, raster::glam::DVec2};
+//!
+//! let noise = WaveletNoise2::new(64, Seed(7))?;
+//! let window = Window::new(DVec2::ZERO, DVec2::splat(64.0), [256, 256])?;
+//! let raster = noise.to_raster(&window)?;
+//! assert!(raster.pixels().iter().all(|value| value.abs() <= noise.bound()));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 #![forbid(unsafe_code)]
 

@@ -28,7 +28,7 @@ impl WaveletNoise2 {
             let row = CellHash::new(words, [row.into()]);
             (0..size).map(move |column| white(row, column))
         })?;
-        let low = project(&white)?;
+        let low = SplineFilter::default().project(&white, 1, [Border::Periodic; 2])?;
         Self::from_white(size, seed, white.pixels(), low.pixels())
     }
 }
@@ -50,7 +50,9 @@ impl WaveletNoise3 {
             let row = CellHash::new(words, [row, slice]);
             (0..size).map(move |column| white(row, column))
         })?;
-        let low = project_volume(white.pixels(), size)?;
+        let periodic = [Border::Periodic; 3];
+        let filter = SplineFilter::default();
+        let low = filter.project_volume(white.pixels(), [size; 3], 1, periodic)?;
         Self::from_white(size, seed, white.pixels(), &low)
     }
 }
@@ -95,30 +97,4 @@ fn check_size(size: u32, axes: u32, range: &'static str) -> Result<(), WaveletEr
 /// The seed of the white noise.
 fn white_words(seed: Seed) -> Seed {
     seed.child("wavelet noise", 0)
-}
-
-/// The projection of a plane onto half as many coefficients along each axis.
-fn project(plane: &Raster<f32>) -> Result<Raster<f32>, WaveletError> {
-    SplineFilter::default().project(plane, 1, [Border::Periodic; 2])
-}
-
-/// The projection of a cube along its three axes: that of its slices, and then of its sections along the first and the
-/// last axis. To project twice along the first changes nothing.
-fn project_volume(cube: &[f32], size: u32) -> Result<Vec<f32>, WaveletError> {
-    let side = size as usize;
-    let mut low = Vec::with_capacity(cube.len());
-    for slice in cube.chunks_exact(side * side) {
-        let slice = Raster::from_vec([size; 2], slice.to_vec())?;
-        low.extend_from_slice(project(&slice)?.pixels());
-    }
-    for row in 0..side {
-        let rows = low.chunks_exact(side).skip(row).step_by(side);
-        let section = Raster::from_vec([size; 2], rows.flatten().copied().collect())?;
-        let section = project(&section)?;
-        let rows = low.chunks_exact_mut(side).skip(row).step_by(side);
-        for (row, projected) in rows.zip(section.view().rows()) {
-            row.copy_from_slice(projected);
-        }
-    }
-    Ok(low)
 }

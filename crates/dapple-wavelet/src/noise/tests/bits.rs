@@ -279,6 +279,6 @@ fn value_stability_wavelet_noise() {
             space.sample(position),
             plane.bound(),
         ],
-        [-1.8847088, -2.018241, -0.4602263, 6.531162]
+        [-1.8847088, -2.018241, -0.46022633, 6.531162]
     );
 }
