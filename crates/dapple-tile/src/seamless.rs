@@ -1,7 +1,7 @@
 //! The front door: an image in, a tile out, by one of several methods.
 
 use crate::map::{check_planes, color_from_planes, color_planes};
-use crate::{Feather, Map, SoftCut, SplineProject, TileError, WrapGradient};
+use crate::{Feather, Map, SoftCut, SplineProject, TileError, TileErrorKind, WrapGradient};
 use crate::{feather, mirror, periodic, poisson, soft_cut, spline_project};
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
@@ -101,7 +101,10 @@ impl Seamless {
     ///
     /// # Errors
     ///
-    /// Maps of different sizes, pixels that are not finite, sizes or margins that the method cannot have.
+    /// [`Count`](TileErrorKind::Count) without maps, [`Raster`](TileErrorKind::Raster) for maps of different sizes,
+    /// [`NotFinite`](TileErrorKind::NotFinite) for pixels that are NaN or infinite, [`TooSmall`](TileErrorKind::TooSmall) for a
+    /// side of a single pixel along an axis that shall repeat; and [`Wavelet`](TileErrorKind::Wavelet),
+    /// [`Margin`](TileErrorKind::Margin) or [`Range`](TileErrorKind::Range) for sizes and options that the method cannot have.
     pub fn apply_maps(&self, maps: &[Map]) -> Result<Vec<Map>, TileError> {
         let planes: Vec<_> = maps.iter().flat_map(Map::planes).collect();
         let mut tiles = self.planes(&planes)?.into_iter();
@@ -113,7 +116,12 @@ impl Seamless {
     }
 
     fn planes(&self, planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
-        check_planes(planes)?;
+        let size = check_planes(planes)?;
+        for (length, repeats) in size.into_iter().zip(self.axes) {
+            if repeats && length < 2 {
+                return Err(TileError::new(TileErrorKind::TooSmall { length, least: 2 }));
+            }
+        }
         match &self.method {
             Method::Periodic => periodic::tile(planes, self.axes),
             Method::Poisson(wrap) => poisson::tile(planes, *wrap, self.axes),

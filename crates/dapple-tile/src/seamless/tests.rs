@@ -1,5 +1,5 @@
 use super::*;
-use crate::TileErrorKind;
+use crate::{Crossfade, TileErrorKind};
 use dapple_color::Normal;
 use dapple_raster::RasterErrorKind;
 use proptest::prelude::*;
@@ -86,6 +86,45 @@ fn maps_that_do_not_fit_together_are_refused() {
     );
 }
 
+#[test]
+fn a_side_of_one_pixel_cannot_be_made_to_repeat_by_any_method() {
+    let cut = SoftCut {
+        margin: 1,
+        half_width: 0.0,
+        ..SoftCut::default()
+    };
+    let margin = Feather::Margin {
+        margin: 1,
+        crossfade: Crossfade::Linear,
+    };
+    let others = [
+        Method::SoftCut(cut),
+        Method::SplineProject(SplineProject::default()),
+        Method::PeriodicThenProject(SplineProject::default()),
+        Method::Feather(Feather::HalfShift),
+        Method::Feather(margin),
+        Method::Mirror,
+    ];
+    for method in methods().into_iter().chain(others) {
+        for (size, axes) in [
+            ([1, 1], [true, true]),
+            ([1, 8], [true, false]),
+            ([8, 1], [false, true]),
+        ] {
+            let refused = Seamless::new(method).with_axes(axes).apply(&ramp(size));
+            let error = refused.expect_err("a pixel has no neighbor");
+            assert_eq!(
+                *error.kind(),
+                TileErrorKind::TooSmall {
+                    length: 1,
+                    least: 2
+                },
+                "{method:?}"
+            );
+        }
+    }
+}
+
 proptest! {
     #[test]
     fn pixels_that_are_not_finite_are_refused_with_their_place(
@@ -105,7 +144,7 @@ proptest! {
     }
 
     #[test]
-    fn any_size_gives_a_tile_of_that_size(width in 1_u32..40, height in 1_u32..40, axes: [bool; 2]) {
+    fn any_size_gives_a_tile_of_that_size(width in 2_u32..40, height in 2_u32..40, axes: [bool; 2]) {
         for method in methods() {
             let tile = Seamless::new(method).with_axes(axes).apply(&ramp([width, height]));
             let tile = tile.expect("any size can be made periodic");
