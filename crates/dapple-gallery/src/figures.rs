@@ -1,5 +1,6 @@
 //! The list of all figures, paper by paper.
 
+mod fractal;
 mod house;
 mod pups;
 mod worley;
