@@ -14,12 +14,12 @@ mod fig_extra_radial;
 mod hull;
 mod polygonize;
 
+use super::fractal::FractalNoise;
 use crate::{Panel, Paper};
 use dapple_color::{ColorRamp, LinearRgb, NormalOptions, NormalY, normal_map};
-use dapple_points::Domain;
 use dapple_preview::{Scene, Supersampling};
-use dapple_pups::{OctavesOptions, Spacing, hash::Seed, octaves};
-use dapple_raster::{Field, Raster, Window, Wrap};
+use dapple_pups::hash::Seed;
+use dapple_raster::{Raster, Window, Wrap};
 use dapple_worley::{Cellular, Combination, Plane};
 use glam::{DVec2, DVec3};
 
@@ -78,35 +78,6 @@ fn relief(height: &Raster<f32>, ramp: &ColorRamp, depth: f64) -> anyhow::Result<
         let light = 0.25 + 0.95 * normal.dot(toward).max(0.0);
         ramp.at(height) * light as f32
     })?)
-}
-
-/// Fractal noise as a tile that repeats after 1 along both axes, from 0 to 1.
-#[derive(Clone, Debug)]
-struct FractalNoise {
-    tile: Raster<f32>,
-}
-
-impl FractalNoise {
-    /// Octaves of noise, the first with control points that are `spacing` apart.
-    fn new(spacing: f64, seed: Seed) -> anyhow::Result<Self> {
-        let options = OctavesOptions {
-            domain: Domain::torus(DVec2::ZERO, DVec2::ONE),
-            spacing: Spacing::from(spacing),
-            octaves: 5,
-            ..OctavesOptions::default()
-        };
-        let tile = octaves(&options, seed)?.to_raster(&Window::unit([512; 2])?)?;
-        let range = tile.statistics();
-        let scale = 1.0 / (range.max - range.min).max(f32::MIN_POSITIVE);
-        Ok(Self {
-            tile: tile.map(|value| (value - range.min) * scale),
-        })
-    }
-
-    /// The noise at a position of the plane.
-    fn at(&self, position: DVec2) -> f32 {
-        self.tile.sample_bilinear(position, [Wrap::Repeat; 2])
-    }
 }
 
 /// The picture of a scene, three samples along each side of a pixel.

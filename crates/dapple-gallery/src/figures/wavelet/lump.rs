@@ -1,0 +1,156 @@
+//! Rounded lumps that lie over each other: pebbles, crumbs.
+
+use super::patch::{Dice, Patch, Spot, smooth_step};
+use crate::figures::fractal::FractalNoise;
+use dapple_color::LinearRgb;
+use dapple_points::{hash::Seed, poisson_disk};
+use dapple_raster::Raster;
+use glam::DVec2;
+
+/// Lumps of about one size, which lie next to each other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layer {
+    /// How far apart their middles are, at least.
+    pub(super) spacing: f64,
+    /// Their radii, at least and at most.
+    pub(super) radius: [f64; 2],
+    /// The height that they lie on, from 0 to 1.
+    pub(super) ground: f64,
+    /// How high they are, over their radius, with 1 as the depth of the relief.
+    pub(super) steepness: f64,
+    /// How much of the places have one, from 0 to 1.
+    pub(super) share: f64,
+    /// How rough they are, from 0.
+    pub(super) roughness: f64,
+    /// How often the noise that roughens them is repeated on the torus, a whole number.
+    pub(super) noise_scale: f64,
+    /// How much longer than wide they are, at most.
+    pub(super) elongation: f64,
+    /// How wide the dark gap around each is.
+    pub(super) gap: f64,
+    /// How dark the gap is, from 0 to 1.
+    pub(super) darkness: f64,
+}
+
+/// One lump.
+struct Lump {
+    center: DVec2,
+    radius: f64,
+    /// The longer axis.
+    axis: DVec2,
+    elongation: f64,
+    /// How the outline departs from an ellipse: two lobes and three.
+    lobes: [DVec2; 2],
+    color: LinearRgb,
+    surface: DVec2,
+    rank: f64,
+}
+
+impl Layer {
+    /// Lays the lumps over what is there; `color` gives each one its color.
+    pub(super) fn lay(
+        &self,
+        patch: &Patch,
+        spots: &mut Raster<Spot>,
+        noise: &FractalNoise,
+        seed: Seed,
+        color: impl Fn(&mut Dice) -> LinearRgb,
+    ) -> anyhow::Result<()> {
+        let centers = poisson_disk(patch.domain, self.spacing, seed.child("centers", 0))?;
+        let mut lumps: Vec<Lump> = (0..)
+            .zip(centers.positions())
+            .map(|(index, &center)| (Dice::new(seed.child("lumps", 0), index), center))
+            .filter_map(|(mut dice, center)| {
+                let there = dice.between(0.0, 1.0) < self.share;
+                there.then(|| self.lump(&mut dice, center, &color))
+            })
+            .collect();
+        lumps.sort_by(|a, b| a.rank.total_cmp(&b.rank));
+        for lump in &lumps {
+            self.paint(patch, spots, noise, lump);
+        }
+        Ok(())
+    }
+
+    fn lump(&self, dice: &mut Dice, center: DVec2, color: impl Fn(&mut Dice) -> LinearRgb) -> Lump {
+        Lump {
+            center,
+            radius: dice.between(self.radius[0], self.radius[1]),
+            axis: dice.direction(),
+            elongation: dice.between(1.0, self.elongation),
+            lobes: [0.10, 0.06].map(|size| dice.direction() * dice.between(0.0, size)),
+            color: color(dice),
+            surface: DVec2::new(dice.between(0.0, 1.0), dice.between(0.0, 1.0)),
+            rank: dice.between(0.0, 1.0),
+        }
+    }
+
+    fn paint(&self, patch: &Patch, spots: &mut Raster<Spot>, noise: &FractalNoise, lump: &Lump) {
+        let soft = 0.5 * patch.pixel().max(1.0);
+        let shadow_shift = DVec2::new(0.35, 0.45) * self.gap;
+        let unevenness = self.roughness * lump.radius;
+        let margin = 0.1 * lump.radius + 0.5 * unevenness + 1.6 * self.gap;
+        let reach = lump.half_size() + DVec2::splat(margin);
+        patch.paint(spots, lump.center, reach, |at, spot| {
+            let (outside, part) = lump.outline(at);
+            if outside > margin {
+                return;
+            }
+            let place = ((lump.center + at) / patch.period() + lump.surface) * self.noise_scale;
+            let lumpy = f64::from(noise.at(place)) - 0.5;
+            let (outside, part) = (outside + unevenness * lumpy, part + self.roughness * lumpy);
+            let cover = 1.0 - smooth_step(-soft, soft, outside);
+            if cover < 1.0 {
+                let (outside_shadow, _) = lump.outline(at - shadow_shift);
+                let shadow = 1.0 - smooth_step(-0.3, 1.0, outside_shadow / self.gap);
+                let dark = 1.0 - smooth_step(0.3, 1.0, outside / self.gap);
+                spot.color = spot.color * (1.0 - self.darkness * shadow.max(dark)) as f32;
+                // A lump never ends at something higher, which would be lit as a wall.
+                let near = 1.0 - smooth_step(0.0, 0.6, outside / self.gap);
+                spot.height -= (spot.height - self.ground as f32).max(0.0) * near as f32;
+                spot.gap = spot.gap.max(dark as f32);
+            }
+            if cover > 0.0 {
+                let grain = f64::from(noise.at(place * 4.0)) - 0.5;
+                spot.cover(self.body(lump, part, lumpy, grain), cover as f32);
+            }
+        });
+    }
+
+    /// The spot at a part of the way from the middle to the outline.
+    fn body(&self, lump: &Lump, part: f64, lumpy: f64, grain: f64) -> Spot {
+        let part = part.clamp(0.0, 1.0);
+        let dome = (1.0 - part * part * part).sqrt();
+        let relief = dome + self.roughness * (lumpy + 0.4 * grain);
+        let tone = (1.0 + 0.8 * lumpy + 0.5 * grain) * (0.4 + 0.6 * dome);
+        Spot {
+            height: (self.ground + self.steepness * lump.radius * relief) as f32,
+            color: lump.color * tone.max(0.0) as f32,
+            gap: 0.0,
+        }
+    }
+}
+
+impl Lump {
+    /// Half the width and half the height of the ellipse that the outline is about.
+    fn half_size(&self) -> DVec2 {
+        let (long, short) = (self.axis * self.elongation, self.axis.perp());
+        (long * long + short * short).map(f64::sqrt) * self.radius
+    }
+
+    /// How far a place, seen from the center, lies outside of the outline (inside, if negative), about; and how much of
+    /// the way to the outline it is from the center.
+    fn outline(&self, at: DVec2) -> (f64, f64) {
+        let along = DVec2::new(
+            at.dot(self.axis) / self.elongation,
+            at.dot(self.axis.perp()),
+        );
+        let length = along.length();
+        let way = along / length.max(1e-9);
+        // The direction at twice and three times the angle.
+        let twice = way.rotate(way);
+        let thrice = twice.rotate(way);
+        let radius = self.radius * (1.0 + self.lobes[0].dot(twice) + self.lobes[1].dot(thrice));
+        (length - radius, length / radius)
+    }
+}
