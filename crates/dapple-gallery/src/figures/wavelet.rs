@@ -1,6 +1,13 @@
 //! The figures of "Wavelet and Blend maps for texture synthesis".
 
+mod fig_01;
+mod fig_02;
+mod fig_03;
+mod fig_04;
+mod fig_05;
 mod fig_extra_materials;
+mod fig_extra_methods;
+mod fig_extra_terrain;
 mod functions;
 mod grass;
 mod lump;
@@ -11,14 +18,103 @@ mod soil;
 mod stone;
 
 use crate::Paper;
+use dapple_pups::hash::Seed;
+use dapple_raster::{Raster, Wrap};
+use dapple_tile::{Basis, BlendMap, Pixels, SeamOptions, SeamReport, SplineProject};
+use dapple_wavelet::{Degree, Phase};
+use grass::grass;
+use patch::{Edges, Material};
+use pebble::pebble;
+use perlin::perlin;
+use stone::stone;
 
 /// The paper, with its figures in its own order.
 pub(super) const PAPER: Paper = Paper {
     key: "wavelet",
     title: "Wavelet and Blend maps for texture synthesis",
     reference: "Du Jin-Lian, Wang Song and Meng Xianhai, Beijing University of Technology",
-    figures: &[fig_extra_materials::FIGURE],
+    figures: &[
+        fig_01::FIGURE,
+        fig_02::FIGURE,
+        fig_03::FIGURE,
+        fig_04::FIGURE,
+        fig_05::FIGURE,
+        fig_extra_terrain::FIGURE,
+        fig_extra_methods::FIGURE,
+        fig_extra_materials::FIGURE,
+    ],
 };
+
+/// The paper's blend tile: halved and doubled once, in the phase that leaves less of a step.
+const BLEND_TILE: SplineProject = SplineProject {
+    levels: 1,
+    phase: Phase::CookDeRose,
+    basis: Basis::Spline(Degree::Quadratic),
+    pixels: Pixels::Coefficients,
+};
+
+/// The side of a tile in a figure of `size` pixels: a quarter, as the paper's 128 are of 512, and a multiple of 8.
+fn tile_side(size: u32) -> u32 {
+    (size / 32 * 8).max(16)
+}
+
+/// Blend tiles as the paper begins with, by name: of the features of two textures, and of noise. None of them repeats.
+fn originals(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
+    let features = |ground: Material| {
+        let features = BlendMap::new(0.25 * f64::from(side)).with_wrap([Wrap::Mirror; 2]);
+        features.apply_color(&ground.color)
+    };
+    Ok([
+        ("stone", features(stone(side, Seed(4), Edges::Cropped)?)?),
+        ("pebble", features(pebble(side, Seed(2), Edges::Cropped)?)?),
+        ("one octave of noise", perlin(side, 5.3, 1, Seed(1))?),
+        ("five octaves of noise", perlin(side, 3.3, 5, Seed(2))?),
+    ])
+}
+
+/// Pictures in gray that do not repeat, by name: what the methods are compared on.
+fn crops(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
+    let gray = |ground: Material| ground.color.map(|color| color.luminance().sqrt());
+    Ok([
+        ("noise", perlin(side, 4.3, 5, Seed(2))?),
+        ("stone", gray(stone(side, Seed(4), Edges::Cropped)?)),
+        ("pebble", gray(pebble(side, Seed(2), Edges::Cropped)?)),
+        ("grass", gray(grass(side, Seed(3), Edges::Cropped)?)),
+    ])
+}
+
+/// What is measured of a tile beside its original.
+fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<SeamReport> {
+    let options = SeamOptions {
+        lattice: [1 << BLEND_TILE.levels; 2],
+        ..SeamOptions::default()
+    };
+    Ok(SeamReport::beside(original, tile, &options)?)
+}
+
+/// A raster with every pixel as a square of `times × times` pixels.
+fn enlarged<T: Copy>(raster: &Raster<T>, times: u32) -> anyhow::Result<Raster<T>> {
+    let size = raster.size().map(|side| side * times);
+    Ok(Raster::from_fn(size, |column, row| {
+        raster.row(row / times)[(column / times) as usize]
+    })?)
+}
+
+/// A tile at the upper left of the map that is made of it, on a sheet of one color.
+fn beside<T: Copy>(tile: &Raster<T>, map: &Raster<T>, paper: T) -> anyhow::Result<Raster<T>> {
+    let gap = tile.width() / 8;
+    let left = tile.width() + gap;
+    let size = [left + map.width(), map.height()];
+    Ok(Raster::from_fn(size, |column, row| {
+        if column >= left {
+            map.row(row)[(column - left) as usize]
+        } else if column < tile.width() && row < tile.height() {
+            tile.row(row)[column as usize]
+        } else {
+            paper
+        }
+    })?)
+}
 
 #[cfg(test)]
 mod tests {
