@@ -29,15 +29,20 @@ impl Map {
         }
     }
 
+    /// How many planes the map is made of.
+    pub(crate) fn n_planes(&self) -> usize {
+        match self {
+            Self::Value(_) => 1,
+            Self::Color(_) => 3,
+            Self::Normal(_) => 2,
+        }
+    }
+
     /// The numbers of the map, a raster for each channel: 1, 3, or 2 for slopes.
     pub(crate) fn planes(&self) -> Vec<Raster<f32>> {
         match self {
             Self::Value(raster) => vec![raster.clone()],
-            Self::Color(raster) => vec![
-                raster.map(|color| color.r),
-                raster.map(|color| color.g),
-                raster.map(|color| color.b),
-            ],
+            Self::Color(raster) => color_planes(raster).into(),
             Self::Normal(raster) => vec![
                 raster.map(|normal| normal.x / normal.z.max(LEAST_Z)),
                 raster.map(|normal| normal.y / normal.z.max(LEAST_Z)),
@@ -47,28 +52,45 @@ impl Map {
 
     /// A map of this kind from its planes, in the order of [`planes`](Self::planes).
     pub(crate) fn with_planes(&self, planes: Vec<Raster<f32>>) -> Result<Self, TileError> {
-        let count = planes.len();
-        let mut planes = planes.into_iter();
-        let mut next = || {
-            planes.next().ok_or(TileError::new(TileErrorKind::Count {
-                what: "planes",
-                count,
-                needed: "more",
-            }))
-        };
         Ok(match self {
-            Self::Value(_) => Self::Value(next()?),
-            Self::Color(_) => {
-                let [r, g, b] = [next()?, next()?, next()?];
-                let rg = r.zip_map(&g, |&r, &g| [r, g])?;
-                Self::Color(rg.zip_map(&b, |&[r, g], &b| LinearRgb::new(r, g, b))?)
+            Self::Value(_) => {
+                let [value] = exactly(planes)?;
+                Self::Value(value)
             }
+            Self::Color(_) => Self::Color(color_from_planes(planes)?),
             Self::Normal(_) => {
-                let [x, y] = [next()?, next()?];
+                let [x, y] = exactly(planes)?;
                 Self::Normal(x.zip_map(&y, |&x, &y| from_slopes(x, y))?)
             }
         })
     }
+}
+
+/// Red, green and blue of a color raster.
+pub(crate) fn color_planes(image: &Raster<LinearRgb>) -> [Raster<f32>; 3] {
+    [
+        image.map(|color| color.r),
+        image.map(|color| color.g),
+        image.map(|color| color.b),
+    ]
+}
+
+/// The color raster of the planes red, green and blue.
+pub(crate) fn color_from_planes(planes: Vec<Raster<f32>>) -> Result<Raster<LinearRgb>, TileError> {
+    let [r, g, b] = exactly(planes)?;
+    let rg = r.zip_map(&g, |&r, &g| [r, g])?;
+    Ok(rg.zip_map(&b, |&[r, g], &b| LinearRgb::new(r, g, b))?)
+}
+
+/// The planes one by one, if there are `N`.
+fn exactly<const N: usize>(planes: Vec<Raster<f32>>) -> Result<[Raster<f32>; N], TileError> {
+    planes.try_into().map_err(|planes: Vec<_>| {
+        TileError::new(TileErrorKind::Count {
+            what: "planes",
+            count: planes.len(),
+            needed: "as many as the map has channels",
+        })
+    })
 }
 
 /// The unit vector along (x, y, 1).

@@ -1,10 +1,256 @@
 //! The periodic part of an image: Moisan's periodic plus smooth decomposition.
+//!
+//! Source: Lionel Moisan, "Periodic plus smooth image decomposition", Journal of Mathematical Imaging and Vision 39,
+//! 2011, doi 10.1007/s10851-010-0227-1.
+//!
+//! An image is `u = p + s`. The smooth part solves `Δs = v` on the torus, where `Δ` is the sum of the four neighbors
+//! less four times the pixel, and `v` is zero but at the borders: there it is the jump to the pixel across the wrap. The
+//! mean of `s` is zero, so that `p = u − s` keeps the mean; it also keeps all detail, since `s` has none. `p` is the
+//! image whose differences are nearest, by least squares, to those of `u` inside and to zero across the wrap.
+//!
+//! Departures. The jumps across x and those across y are solved one after the other, which their sum allows: with
+//! frequencies along the border only, the solution across it is a difference of two powers, `ρ^(n−1−x) − ρ^x`, known
+//! without a second transform. Along an axis that does not repeat there are no jumps, and the image is continued by its
+//! mirror image, as the least squares want it. A side of one pixel repeats already and is left alone.
+//!
+//! Everything is `f64` up to the pixels of the result.
 
 use crate::TileError;
+use crate::fourier::{BAND, Element, Fourier, LANES, par_flat_map, par_map, times};
+use core::f64::consts::PI;
 use dapple_raster::Raster;
+
+/// Powers below this are taken as zero: it is far below the rounding of all sums, and far above numbers that are slow.
+const NEGLIGIBLE: f64 = 1e-40;
 
 /// The periodic parts of all planes.
 pub(crate) fn tile(planes: &[Raster<f32>], axes: [bool; 2]) -> Result<Vec<Raster<f32>>, TileError> {
-    let _ = (planes, axes);
-    todo!()
+    let tile = |plane| {
+        let jump = |axis: usize| axes[axis].then(|| jumps(plane, axis));
+        without_jumps(plane, &[jump(0), jump(1)])
+    };
+    planes.iter().map(tile).collect()
 }
+
+/// For each pixel of the first border across an axis, the pixel of the last border less it.
+pub(crate) fn jumps(plane: &Raster<f32>, axis: usize) -> Vec<f64> {
+    let last = border(plane, axis, plane.size()[axis] - 1);
+    let differences = last.zip(border(plane, axis, 0));
+    differences.map(|(last, first)| last - first).collect()
+}
+
+/// The column (axis 0) or the row (axis 1) at `index`.
+pub(crate) fn border(
+    plane: &Raster<f32>,
+    axis: usize,
+    index: u32,
+) -> impl Iterator<Item = f64> + '_ {
+    let [width, index] = [plane.width() as usize, index as usize];
+    let (first, step) = [(index, width), (index * width, 1)][axis];
+    let pixels = plane.pixels().iter().skip(first).step_by(step);
+    let count = plane.size()[1 - axis] as usize;
+    pixels.take(count).map(|&value| f64::from(value))
+}
+
+/// A plane less its smooth part.
+///
+/// `jumps` holds, for each axis that repeats, the jump at each pixel of the first border across it.
+pub(crate) fn without_jumps(
+    plane: &Raster<f32>,
+    jumps: &[Option<Vec<f64>>; 2],
+) -> Result<Raster<f32>, TileError> {
+    let [width, height] = plane.size().map(|length| length as usize);
+    let smooth = Smooth::new([width, height], jumps);
+    let pixels = par_flat_map(height.div_ceil(BAND), |band| {
+        let values = plane.pixels()[band * BAND * width..].iter();
+        let less = |(&value, smooth)| (f64::from(value) - smooth) as f32;
+        values.zip(smooth.rows(band)).map(less).collect()
+    });
+    Ok(Raster::from_vec(plane.size(), pixels)?)
+}
+
+/// The image with mean zero whose Laplacian is zero but for the jumps at the first borders, and their opposites at the
+/// last ones.
+pub(crate) struct Smooth {
+    size: [usize; 2],
+    /// What the jumps across x give, in bands whose lines are columns.
+    across_x: Vec<Vec<Element>>,
+    across_y: Option<Layer>,
+}
+
+impl Smooth {
+    pub(crate) fn new(size: [usize; 2], jumps: &[Option<Vec<f64>>; 2]) -> Self {
+        let layer = |axis: usize| {
+            let repeats = jumps[1 - axis].is_some();
+            let jumps = jumps[axis].as_ref()?;
+            Some(Layer::new(jumps, repeats, size[axis]))
+        };
+        let bands = |layer: Layer| par_map(size[0].div_ceil(BAND), |band| layer.band(band));
+        Self {
+            size,
+            across_x: layer(0).map(bands).unwrap_or_default(),
+            across_y: layer(1),
+        }
+    }
+
+    /// Up to [`BAND`] rows from row `band * BAND` on.
+    pub(crate) fn rows(&self, band: usize) -> Vec<f64> {
+        let [width, height] = self.size;
+        let rows = band * BAND..height.min((band + 1) * BAND);
+        let mut smooth = vec![0.0; rows.len() * width];
+        if let Some(layer) = &self.across_y {
+            add_rows(&mut smooth, &layer.band(band));
+        }
+        for (column, elements) in self.across_x.iter().enumerate() {
+            add_columns(&mut smooth, width, column * BAND, &elements[rows.clone()]);
+        }
+        smooth
+    }
+}
+
+/// Adds a band whose lines are rows.
+fn add_rows(rows: &mut [f64], elements: &[Element]) {
+    for (line, row) in rows.chunks_exact_mut(elements.len()).enumerate() {
+        for (value, element) in row.iter_mut().zip(elements) {
+            *value += element[line];
+        }
+    }
+}
+
+/// Adds a band whose lines are columns, from column `first` on.
+fn add_columns(rows: &mut [f64], width: usize, first: usize, elements: &[Element]) {
+    for (row, element) in rows.chunks_exact_mut(width).zip(elements) {
+        for (value, line) in row[first..].iter_mut().zip(element) {
+            *value += line;
+        }
+    }
+}
+
+/// The smooth image of the jumps across one axis.
+struct Layer {
+    /// The number of pixels across the borders.
+    across: usize,
+    /// The number of pixels along a border.
+    along: usize,
+    fourier: Fourier,
+    /// The mean of the jumps.
+    mean: f64,
+    /// The frequencies along the border, from 1 to the middle one.
+    modes: Vec<Mode>,
+}
+
+/// A frequency along the border.
+struct Mode {
+    /// The factor from one pixel to the next, away from the border: ρ.
+    decay: f64,
+    /// The complex number of which the profile of the mode is a multiple.
+    amplitude: [f64; 2],
+}
+
+impl Layer {
+    /// The layer of jumps along a border that repeats, or is mirrored at its ends.
+    fn new(jumps: &[f64], repeats: bool, across: usize) -> Self {
+        let mirrored = jumps.iter().rev().filter(|_| !repeats);
+        let line = jumps.iter().chain(mirrored);
+        let mut spectrum: Vec<_> = line.map(|&jump| only_first(jump)).collect();
+        let n = spectrum.len();
+        let fourier = Fourier::new(n);
+        fourier.forward(&mut spectrum);
+        let mode = |k: usize| {
+            let jump = [spectrum[k][0], spectrum[k][LANES]];
+            Mode::new(k, n, jump, across)
+        };
+        Self {
+            across,
+            along: jumps.len(),
+            fourier,
+            mean: spectrum[0][0] / n as f64,
+            modes: (1..=n / 2).map(mode).collect(),
+        }
+    }
+
+    /// The [`BAND`] lines along the border from line `band * BAND` on; those past the last are of no use.
+    fn band(&self, band: usize) -> Vec<Element> {
+        let n = self.fourier.length();
+        let first = band * BAND;
+        let mut elements = vec![[0.0; BAND]; n];
+        elements[0] = ramp(first, self.across).map(|height| height * self.mean);
+        for (k, mode) in (1..).zip(&self.modes) {
+            let profile = mode.profile(first, self.across);
+            if profile == [0.0; BAND] {
+                // Higher frequencies decay faster still.
+                break;
+            }
+            let [re, im] = mode.amplitude;
+            elements[k] = times(&profile, [re, im]);
+            elements[n - k] = times(&profile, [re, -im]);
+        }
+        self.fourier.backward(&mut elements);
+        elements.truncate(self.along);
+        elements
+    }
+}
+
+impl Mode {
+    /// Frequency `k` of `n` along the border, with the spectrum of the jumps there.
+    ///
+    /// `ρ + 1/ρ = 4 − 2 cos φ` makes every `ρ^x` a solution away from the borders; the factor makes the difference of
+    /// `ρ^(across − 1 − x)` and `ρ^x` right at the borders.
+    fn new(k: usize, n: usize, jump: [f64; 2], across: usize) -> Self {
+        let sine = libm::sin(PI * (k as f64 / n as f64));
+        // 1 − cos φ, without a difference of nearly equal numbers.
+        let rise = 2.0 * sine * sine;
+        let decay = 1.0 / (1.0 + rise + (rise * (2.0 + rise)).sqrt());
+        let scale = decay / ((1.0 + decay) * (1.0 - power(decay, across)));
+        Self {
+            decay,
+            amplitude: jump.map(|part| part * scale / n as f64),
+        }
+    }
+
+    /// `ρ^(across − 1 − x) − ρ^x` for [`BAND`] positions from `first` on.
+    fn profile(&self, first: usize, across: usize) -> Element {
+        let mut profile = [0.0; BAND];
+        let mut near = power(self.decay, first);
+        for value in &mut profile {
+            *value -= near;
+            near *= self.decay;
+        }
+        let last = (across - 1).min(first + BAND - 1);
+        let mut far = power(self.decay, across - 1 - last);
+        for value in profile[..=last - first].iter_mut().rev() {
+            *value += far;
+            far *= self.decay;
+        }
+        profile
+    }
+}
+
+/// The solution for a jump of 1 all along the border: straight from border to border.
+fn ramp(first: usize, across: usize) -> Element {
+    let middle = 0.5 * (across - 1) as f64;
+    core::array::from_fn(|at| ((first + at) as f64 - middle) / across as f64)
+}
+
+/// A real element in the first line.
+fn only_first(value: f64) -> Element {
+    let mut element = [0.0; BAND];
+    element[0] = value;
+    element
+}
+
+/// `base^exponent` for a base from 0 to 1, or 0 where that is [`NEGLIGIBLE`].
+fn power(base: f64, exponent: usize) -> f64 {
+    let (mut square, mut product, mut rest) = (base, 1.0, exponent);
+    while rest > 0 && product > NEGLIGIBLE {
+        if rest % 2 == 1 {
+            product *= square;
+        }
+        square *= square;
+        rest /= 2;
+    }
+    if product > NEGLIGIBLE { product } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,18 @@
 //! The image whose gradients are nearest to those of the source, once around the torus.
+//!
+//! Source: the guided interpolation of Patrick Pérez, Michel Gangnet and Andrew Blake, "Poisson image editing", ACM
+//! Transactions on Graphics 22 (SIGGRAPH 2003), doi 10.1145/882262.882269, here without a boundary: a torus has none.
+//!
+//! The field to be met is that of the differences between neighbors: inside they are those of the source, across the
+//! wrap they are chosen by [`WrapGradient`]. The result is nearest to the field by least squares, and keeps the mean.
+//! Along an axis that does not repeat, the image ends as it likes.
+//!
+//! Inside, the source meets the field already; what is left is the error across the wrap. So the result is the source
+//! less the smooth part of [`periodic`](crate::periodic), with that error in place of the jump. With
+//! [`WrapGradient::Zero`] error and jump are the same, and so are both methods, bit for bit.
 
 use crate::TileError;
+use crate::periodic::{border, jumps, without_jumps};
 use dapple_raster::Raster;
 
 /// The gradient that is wanted across the wrap, where the source has none.
@@ -11,7 +23,7 @@ use dapple_raster::Raster;
     serde(rename_all = "snake_case")
 )]
 pub enum WrapGradient {
-    /// None: the last pixel continues to the first.
+    /// None: the last pixel continues to the first. The same image as [`Method::Periodic`](crate::Method::Periodic).
     #[default]
     Zero,
     /// The mean of the gradients just inside of the two borders.
@@ -24,6 +36,28 @@ pub(crate) fn tile(
     wrap: WrapGradient,
     axes: [bool; 2],
 ) -> Result<Vec<Raster<f32>>, TileError> {
-    let _ = (planes, wrap, axes);
-    todo!()
+    let tile = |plane| {
+        let error = |axis: usize| axes[axis].then(|| wrap_errors(plane, wrap, axis));
+        without_jumps(plane, &[error(0), error(1)])
+    };
+    planes.iter().map(tile).collect()
 }
+
+/// The gradient that is wanted across the wrap less the one that is there, for each pixel of a border.
+fn wrap_errors(plane: &Raster<f32>, wrap: WrapGradient, axis: usize) -> Vec<f64> {
+    let mut errors = jumps(plane, axis);
+    if wrap == WrapGradient::Extrapolate {
+        let last = plane.size()[axis] - 1;
+        // With one pixel there is no second one, and the gradient is zero.
+        let second = last.min(1);
+        for (index, sign) in [(0, -0.5), (second, 0.5), (last - second, -0.5), (last, 0.5)] {
+            for (error, value) in errors.iter_mut().zip(border(plane, axis, index)) {
+                *error += sign * value;
+            }
+        }
+    }
+    errors
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,6 @@
 //! The front door: an image in, a tile out, by one of several methods.
 
-use crate::map::check_planes;
+use crate::map::{check_planes, color_from_planes, color_planes};
 use crate::{Feather, Map, SoftCut, SplineProject, TileError, WrapGradient};
 use crate::{feather, mirror, periodic, poisson, soft_cut, spline_project};
 use dapple_color::LinearRgb;
@@ -33,6 +33,19 @@ pub enum Method {
 }
 
 /// Makes images repeat along one or both axes.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_raster::Raster;
+/// use dapple_tile::Seamless;
+///
+/// let slope = Raster::from_fn([64, 64], |column, row| (column + row) as f32)?;
+/// let tile = Seamless::default().apply(&slope)?;
+/// let step = tile.row(0)[63] - tile.row(0)[0];
+/// assert!(step < 1.0, "of a jump of 63, less than the old slope is left");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
@@ -81,11 +94,7 @@ impl Seamless {
     ///
     /// See [`apply_maps`](Self::apply_maps).
     pub fn apply_color(&self, image: &Raster<LinearRgb>) -> Result<Raster<LinearRgb>, TileError> {
-        let map = Map::Color(image.clone());
-        let [r, g, b] = [0, 1, 2];
-        let planes = self.planes(&map.planes())?;
-        let rg = planes[r].zip_map(&planes[g], |&r, &g| [r, g])?;
-        Ok(rg.zip_map(&planes[b], |&[r, g], &b| LinearRgb::new(r, g, b))?)
+        color_from_planes(self.planes(&color_planes(image))?)
     }
 
     /// The tiles of all maps of a material, which are cut along the same lines.
@@ -96,12 +105,11 @@ impl Seamless {
     pub fn apply_maps(&self, maps: &[Map]) -> Result<Vec<Map>, TileError> {
         let planes: Vec<_> = maps.iter().flat_map(Map::planes).collect();
         let mut tiles = self.planes(&planes)?.into_iter();
-        maps.iter()
-            .map(|map| {
-                let n_planes = map.planes().len();
-                map.with_planes(tiles.by_ref().take(n_planes).collect())
-            })
-            .collect()
+        let with_tiles = |map: &Map| {
+            let tiles = tiles.by_ref().take(map.n_planes());
+            map.with_planes(tiles.collect())
+        };
+        maps.iter().map(with_tiles).collect()
     }
 
     fn planes(&self, planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
@@ -120,3 +128,6 @@ impl Seamless {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,69 @@
+//! Lines side by side, and the way of planes through them.
+
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
+
+/// How many complex lines are transformed side by side: what fills vector registers and leaves lines of a few thousand
+/// elements in the second-level cache.
+pub(crate) const LANES: usize = 8;
+
+/// How many real lines these are.
+pub(crate) const BAND: usize = 2 * LANES;
+
+/// The elements of [`BAND`] real lines at one place. Line `l` below [`LANES`] and line `LANES + l` are the real and the
+/// imaginary part of one complex line.
+pub(crate) type Element = [f64; BAND];
+
+/// All complex lines times a complex factor.
+pub(crate) fn times(element: &Element, [re, im]: [f64; 2]) -> Element {
+    let mut product = [0.0; BAND];
+    for lane in 0..LANES {
+        product[lane] = element[lane] * re - element[LANES + lane] * im;
+        product[LANES + lane] = element[lane] * im + element[LANES + lane] * re;
+    }
+    product
+}
+
+/// The [`BAND`] columns of a plane from `first` on, with zeros past the last.
+pub(crate) fn columns(plane: &[f64], width: usize, first: usize) -> Vec<Element> {
+    let n_columns = BAND.min(width - first);
+    let element = |row: &[f64]| {
+        let mut element = [0.0; BAND];
+        element[..n_columns].copy_from_slice(&row[first..first + n_columns]);
+        element
+    };
+    plane.chunks_exact(width).map(element).collect()
+}
+
+/// Changes the columns of a plane, [`BAND`] at once, and gives the transposed plane of what they became.
+///
+/// `change` must treat the real and the imaginary parts as lines of their own, as every linear map with real
+/// coefficients does.
+pub(crate) fn map_columns(
+    plane: &[f64],
+    width: usize,
+    change: impl Fn(Vec<Element>) -> Vec<Element> + Sync,
+) -> Vec<f64> {
+    par_flat_map(width.div_ceil(BAND), |band| {
+        let first = band * BAND;
+        let elements = change(columns(plane, width, first));
+        let line = |line| elements.iter().map(move |element: &Element| element[line]);
+        (0..BAND.min(width - first)).flat_map(line).collect()
+    })
+}
+
+/// What `make` gives for each index below `count`, one after the other, on all cores where the feature `rayon` is on.
+pub(crate) fn par_flat_map<T: Copy + Send>(
+    count: usize,
+    make: impl Fn(usize) -> Vec<T> + Sync,
+) -> Vec<T> {
+    par_map(count, make).concat()
+}
+
+/// What `make` gives for each index below `count`, in order, on all cores where the feature `rayon` is on.
+pub(crate) fn par_map<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    #[cfg(feature = "rayon")]
+    return (0..count).into_par_iter().map(&make).collect();
+    #[cfg(not(feature = "rayon"))]
+    return (0..count).map(make).collect();
+}

@@ -1,0 +1,159 @@
+//! Lengths with small factors only: one pass over all lines for each factor.
+
+use super::{BAND, Element, LANES, turn};
+
+/// The radices, in the order in which they are taken out of a length.
+const RADICES: [usize; 5] = [4, 2, 3, 5, 7];
+
+/// Splits transforms into `radix` times as many, `radix` times as short.
+///
+/// Before the pass there are `stride` transforms of `radix * blocks` elements, which lie `stride` apart.
+#[derive(Debug)]
+pub(super) struct Pass {
+    radix: usize,
+    blocks: usize,
+    stride: usize,
+    /// By block, then by output of the butterfly: its factor, as cosine and sine.
+    twiddles: Vec<[f64; 2]>,
+    /// `exp(−2πi j/radix)`.
+    roots: Vec<[f64; 2]>,
+}
+
+/// The passes for a length, if it has no other prime factor than 2, 3, 5 and 7.
+pub(super) fn plan(length: usize) -> Option<Vec<Pass>> {
+    let mut passes = Vec::new();
+    let mut rest = length;
+    for radix in RADICES {
+        while rest.is_multiple_of(radix) {
+            passes.push(Pass::new(radix, rest, length / rest));
+            rest /= radix;
+        }
+    }
+    (rest == 1).then_some(passes)
+}
+
+/// Transforms all lines.
+pub(super) fn run(passes: &[Pass], lines: &mut Vec<Element>) {
+    let mut other = vec![[0.0; BAND]; lines.len()];
+    for pass in passes {
+        match pass.radix {
+            4 => pass.run(lines, &mut other, butterfly4),
+            2 => pass.run(lines, &mut other, butterfly2),
+            3 => pass.run(lines, &mut other, butterfly_odd::<3>),
+            5 => pass.run(lines, &mut other, butterfly_odd::<5>),
+            _ => pass.run(lines, &mut other, butterfly_odd::<7>),
+        }
+        core::mem::swap(lines, &mut other);
+    }
+}
+
+/// The real and the imaginary parts of the elements of a small transform.
+type Parts<const R: usize> = ([f64; R], [f64; R]);
+
+impl Pass {
+    fn new(radix: usize, length: usize, stride: usize) -> Self {
+        let blocks = length / radix;
+        let outputs = |block| (0..radix).map(move |output| (block * output) as u64);
+        Self {
+            radix,
+            blocks,
+            stride,
+            twiddles: (0..blocks)
+                .flat_map(outputs)
+                .map(|step| turn(step, length as u64))
+                .collect(),
+            roots: (0..radix as u64)
+                .map(|step| turn(step, radix as u64))
+                .collect(),
+        }
+    }
+
+    /// Applies the butterfly of the radix, `R`, everywhere.
+    #[inline(always)]
+    fn run<const R: usize>(
+        &self,
+        from: &[Element],
+        to: &mut [Element],
+        butterfly: impl Fn(Parts<R>, &[[f64; 2]; R]) -> Parts<R>,
+    ) {
+        let roots: [[f64; 2]; R] = core::array::from_fn(|j| self.roots[j]);
+        let step = self.blocks * self.stride;
+        for (block, to) in to.chunks_exact_mut(R * self.stride).enumerate() {
+            let twiddles: [[f64; 2]; R] = core::array::from_fn(|j| self.twiddles[block * R + j]);
+            for at in 0..self.stride {
+                let first = block * self.stride + at;
+                let inputs: [&Element; R] = core::array::from_fn(|j| &from[first + j * step]);
+                let mut outputs = [[0.0; BAND]; R];
+                for lane in 0..LANES {
+                    let re = core::array::from_fn(|j| inputs[j][lane]);
+                    let im = core::array::from_fn(|j| inputs[j][LANES + lane]);
+                    let (re, im) = butterfly((re, im), &roots);
+                    for j in 0..R {
+                        let [cos, sin] = twiddles[j];
+                        outputs[j][lane] = re[j] * cos - im[j] * sin;
+                        outputs[j][LANES + lane] = re[j] * sin + im[j] * cos;
+                    }
+                }
+                for j in 0..R {
+                    to[at + j * self.stride] = outputs[j];
+                }
+            }
+        }
+    }
+}
+
+/// The transform of two elements.
+#[inline(always)]
+fn butterfly2((re, im): Parts<2>, _: &[[f64; 2]; 2]) -> Parts<2> {
+    (
+        [re[0] + re[1], re[0] - re[1]],
+        [im[0] + im[1], im[0] - im[1]],
+    )
+}
+
+/// The transform of four elements.
+#[inline(always)]
+fn butterfly4((re, im): Parts<4>, _: &[[f64; 2]; 4]) -> Parts<4> {
+    let even_re = [re[0] + re[2], re[0] - re[2]];
+    let even_im = [im[0] + im[2], im[0] - im[2]];
+    // The differences of the odd ones are times −i, the first root.
+    let odd_re = [re[1] + re[3], im[1] - im[3]];
+    let odd_im = [im[1] + im[3], re[3] - re[1]];
+    let join = |even: [f64; 2], odd: [f64; 2]| {
+        [
+            even[0] + odd[0],
+            even[1] + odd[1],
+            even[0] - odd[0],
+            even[1] - odd[1],
+        ]
+    };
+    (join(even_re, odd_re), join(even_im, odd_im))
+}
+
+/// The transform of an odd number of elements: outputs `j` and `R − j` share their sums.
+#[inline(always)]
+fn butterfly_odd<const R: usize>((re, im): Parts<R>, roots: &[[f64; 2]; R]) -> Parts<R> {
+    let mut out = ([0.0; R], [0.0; R]);
+    out.0[0] = re[0];
+    out.1[0] = im[0];
+    for l in 1..=R / 2 {
+        out.0[0] += re[l] + re[R - l];
+        out.1[0] += im[l] + im[R - l];
+    }
+    for j in 1..=R / 2 {
+        let mut cosines = [re[0], im[0]];
+        let mut sines = [0.0, 0.0];
+        for l in 1..=R / 2 {
+            let [cos, sin] = roots[(j * l) % R];
+            cosines[0] += (re[l] + re[R - l]) * cos;
+            cosines[1] += (im[l] + im[R - l]) * cos;
+            sines[0] += (re[l] - re[R - l]) * sin;
+            sines[1] += (im[l] - im[R - l]) * sin;
+        }
+        out.0[j] = cosines[0] - sines[1];
+        out.1[j] = cosines[1] + sines[0];
+        out.0[R - j] = cosines[0] + sines[1];
+        out.1[R - j] = cosines[1] - sines[0];
+    }
+    out
+}

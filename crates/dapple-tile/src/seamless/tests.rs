@@ -1,0 +1,116 @@
+use super::*;
+use crate::TileErrorKind;
+use dapple_color::Normal;
+use dapple_raster::RasterErrorKind;
+use proptest::prelude::*;
+
+fn ramp(size: [u32; 2]) -> Raster<f32> {
+    Raster::from_fn(size, |column, row| {
+        (column * column + 3 * row) as f32 / 16.0
+    })
+    .expect("the size is small and not empty")
+}
+
+/// Methods that change every plane on its own, for any size.
+fn methods() -> [Method; 3] {
+    [
+        Method::Periodic,
+        Method::Poisson(WrapGradient::Zero),
+        Method::Poisson(WrapGradient::Extrapolate),
+    ]
+}
+
+#[test]
+fn colors_and_maps_have_the_tiles_of_their_planes() {
+    let value = ramp([9, 6]);
+    let color = value.map(|&v| LinearRgb::new(v, 2.0 - v, v * v));
+    for method in methods() {
+        let seamless = Seamless::new(method).with_axes([true, false]);
+        let plane = |plane: &Raster<f32>| seamless.apply(plane).expect("all is finite");
+        let tile = seamless.apply_color(&color).expect("all is finite");
+        assert_eq!(tile.map(|c| c.r), plane(&color.map(|c| c.r)), "red");
+        assert_eq!(tile.map(|c| c.g), plane(&color.map(|c| c.g)), "green");
+        assert_eq!(tile.map(|c| c.b), plane(&color.map(|c| c.b)), "blue");
+        let maps = [Map::Color(color.clone()), Map::Value(value.clone())];
+        let tiles = seamless.apply_maps(&maps).expect("all is finite");
+        assert_eq!(
+            tiles,
+            [Map::Color(tile), Map::Value(plane(&value))],
+            "in order"
+        );
+    }
+}
+
+#[test]
+fn normals_come_back_as_long_as_one_and_flat_ones_stay_flat() {
+    let tilted = ramp([8, 8]).map(|&v| Normal {
+        x: 0.6 * (v - 4.0) / 10.0,
+        y: -0.3,
+        z: 0.8,
+    });
+    let flat = tilted.map(|_| Normal::FLAT);
+    let maps = [Map::Normal(tilted), Map::Normal(flat.clone())];
+    let tiles = Seamless::default()
+        .apply_maps(&maps)
+        .expect("all is finite");
+    let [Map::Normal(tilted), Map::Normal(still)] = tiles.as_slice() else {
+        panic!("{tiles:?} are other kinds");
+    };
+    for normal in tilted.pixels() {
+        let length_sq = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;
+        // Three squares, each rounded to f32.
+        assert!(
+            (length_sq - 1.0).abs() < 5e-7,
+            "{normal:?} is not as long as 1"
+        );
+    }
+    assert_eq!(*still, flat, "a constant slope has no jump");
+}
+
+#[test]
+fn maps_that_do_not_fit_together_are_refused() {
+    let seamless = Seamless::default();
+    let maps = [Map::Value(ramp([4, 4])), Map::Value(ramp([4, 5]))];
+    let error = seamless.apply_maps(&maps).expect_err("the sizes differ");
+    let TileErrorKind::Raster(error) = error.kind() else {
+        panic!("{error} is of another kind");
+    };
+    assert!(
+        matches!(error.kind(), RasterErrorKind::SizeMismatch { .. }),
+        "{error}"
+    );
+    let error = seamless.apply_maps(&[]).expect_err("there is no map");
+    assert!(
+        matches!(error.kind(), TileErrorKind::Count { count: 0, .. }),
+        "{error}"
+    );
+}
+
+proptest! {
+    #[test]
+    fn pixels_that_are_not_finite_are_refused_with_their_place(
+        width in 1_u32..9, height in 1_u32..9, at in 0_usize..81,
+        bad in prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(f32::NEG_INFINITY)],
+    ) {
+        let mut plane = ramp([width, height]);
+        let at = at % plane.pixels().len();
+        plane.pixels_mut()[at] = bad;
+        for method in methods() {
+            let error = Seamless::new(method).apply(&plane).expect_err("a pixel is not finite");
+            let TileErrorKind::NotFinite { column, row, .. } = *error.kind() else {
+                panic!("{error} is of another kind");
+            };
+            prop_assert_eq!((row * width + column) as usize, at);
+        }
+    }
+
+    #[test]
+    fn any_size_gives_a_tile_of_that_size(width in 1_u32..40, height in 1_u32..40, axes: [bool; 2]) {
+        for method in methods() {
+            let tile = Seamless::new(method).with_axes(axes).apply(&ramp([width, height]));
+            let tile = tile.expect("any size can be made periodic");
+            prop_assert_eq!(tile.size(), [width, height]);
+            prop_assert!(tile.pixels().iter().all(|value| value.is_finite()), "all is finite");
+        }
+    }
+}
