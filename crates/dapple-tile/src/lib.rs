@@ -34,6 +34,7 @@ pub use error::{TileError, TileErrorKind};
 pub use feather::Feather;
 pub use map::Map;
 pub use poisson::WrapGradient;
+pub use report::{DetailKept, Seam, SeamOptions, SeamRatio, SeamReport};
 pub use seamless::{Method, Seamless};
 pub use soft_cut::{Crossfade, SoftCut};
 pub use spline_project::{Basis, Pixels, SplineProject};
