@@ -1,10 +1,46 @@
 //! The image beside its mirror image.
+//!
+//! Nothing is lost, and the seam is exact: along each axis that repeats, the last pixel meets itself, and the first too.
+//! The price is a tile twice as long and a kaleidoscope: a baseline to compare with.
 
 use crate::TileError;
-use dapple_raster::Raster;
+use dapple_raster::{Raster, Wrap};
 
 /// The tiles of all planes, twice as large along each axis that repeats.
 pub(crate) fn tile(planes: &[Raster<f32>], axes: [bool; 2]) -> Result<Vec<Raster<f32>>, TileError> {
-    let _ = (planes, axes);
-    todo!()
+    planes.iter().map(|plane| mirrored(plane, axes)).collect()
+}
+
+fn mirrored(plane: &Raster<f32>, axes: [bool; 2]) -> Result<Raster<f32>, TileError> {
+    let side = |axis: usize| match axes[axis] {
+        true => plane.size()[axis].saturating_mul(2),
+        false => plane.size()[axis],
+    };
+    Ok(Raster::from_rows([side(0), side(1)], |row| {
+        let row = plane.row(Wrap::Mirror.index(row.into(), plane.height()));
+        row.iter().chain(row.iter().rev()).copied()
+    })?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::tile;
+    use dapple_raster::{Raster, Wrap};
+
+    #[test]
+    fn tile_is_the_image_and_its_mirror_image() {
+        for size in [[1, 1], [2, 2], [1, 5], [5, 1], [3, 4]] {
+            let image = Raster::from_fn(size, |x, y| (x + 10 * y) as f32).unwrap();
+            for axes in [[false; 2], [true, false], [false, true], [true; 2]] {
+                let tiles = tile(&[image.clone(), image.map(|value| -value)], axes).unwrap();
+                let [width, height] = [0, 1].map(|axis| size[axis] * (1 + u32::from(axes[axis])));
+                let wrap = [Wrap::Mirror; 2];
+                let expected =
+                    Raster::from_fn([width, height], |x, y| *image.at(x.into(), y.into(), wrap));
+                let expected = expected.unwrap();
+                assert_eq!(tiles[0], expected, "{size:?} {axes:?}");
+                assert_eq!(tiles[1], expected.map(|value| -value), "{size:?} {axes:?}");
+            }
+        }
+    }
 }

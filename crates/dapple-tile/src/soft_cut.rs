@@ -1,31 +1,33 @@
 //! A margin laid over the opposite side, and a soft cut along the line of least difference.
+//!
+//! The last columns are laid over the first ones, and where the two are most alike the picture changes from one to the
+//! other: the cut of Alexei A. Efros and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer",
+//! SIGGRAPH 2001, DOI 10.1145/383259.383296. Rows follow in the same way, on the result, which repeats along x already.
+//!
+//! * The difference is the sum over all planes of squares, each plane divided by its own variance, so that a height in
+//!   meters counts as much as a color. All planes are cut along the same line.
+//! * The cut is not hard. Across it the weights rise along a smooth ramp that never leaves the margin, and they keep the
+//!   variance, with regard to how alike the two sides are there: see [`Crossfade`].
+//! * The cut along y runs across columns that repeat, so it has to close: it ends where it began. The one along x need
+//!   not, for where its two ends meet there is the other cut.
+//!
+//! Widths are in pixels.
 
-use crate::TileError;
+use crate::axis::{Axis, each_axis};
+use crate::cut_path::{closed_path, open_path};
+use crate::overlap::{check_margin, ends, overlap};
+use crate::{Crossfade, TileError};
 use dapple_raster::Raster;
-
-/// How two sides are mixed where they lie over each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Crossfade {
-    /// By weights that keep the variance, with the mean of each plane put aside.
-    #[default]
-    KeepVariance,
-    /// By weights whose sum is one, which flattens what is mixed.
-    Linear,
-}
 
 /// The tile is smaller than the image by the margin, along each axis that repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct SoftCut {
-    /// How wide the two sides lie over each other, in pixels. By default 32.
+    /// How wide the two sides lie over each other, in pixels, from 1 to half of the side. By default 32.
     pub margin: u32,
-    /// Half of the width over which the cut is softened, in pixels. By default 2.
+    /// Half of the width over which the cut is softened, in pixels, from 0 (a hard cut) to half of the margin. By default
+    /// 4.
     pub half_width: f32,
     /// How the sides are mixed there. By default the variance is kept.
     pub crossfade: Crossfade,
@@ -35,7 +37,7 @@ impl Default for SoftCut {
     fn default() -> Self {
         Self {
             margin: 32,
-            half_width: 2.0,
+            half_width: 4.0,
             crossfade: Crossfade::KeepVariance,
         }
     }
@@ -47,6 +49,77 @@ pub(crate) fn tile(
     cut: &SoftCut,
     axes: [bool; 2],
 ) -> Result<Vec<Raster<f32>>, TileError> {
-    let _ = (planes, cut, axes);
-    todo!()
+    check_margin(planes, cut.margin, axes)?;
+    let half_width = f64::from(cut.half_width);
+    TileError::check(
+        (0.0..=f64::from(cut.margin) / 2.0).contains(&half_width),
+        "half width of the cut",
+        half_width,
+        "from 0 to half of the margin",
+    )?;
+    each_axis(planes, axes, |planes, axis| {
+        let differences = differences(planes, cut)?;
+        let path = match axis {
+            Axis::Y if axes[0] => closed_path(&differences),
+            Axis::X | Axis::Y => open_path(&differences),
+        };
+        overlap(planes, &weights(&path, cut)?, cut.crossfade)
+    })
 }
+
+/// How many columns at both ends of the margin the cut keeps away from, so that its ramp stays inside.
+fn inset(cut: &SoftCut) -> u32 {
+    (cut.half_width.ceil() as u32).saturating_sub(1)
+}
+
+/// The difference of the two ends of the planes, in the columns that the cut may visit.
+fn differences(planes: &[Raster<f32>], cut: &SoftCut) -> Result<Raster<f64>, TileError> {
+    let height = planes.first().map_or(1, Raster::height);
+    let width = cut.margin - 2 * inset(cut);
+    let mut sum = Raster::filled([width, height], 0.0)?;
+    for plane in planes {
+        let deviation = plane.statistics().deviation;
+        // A plane of one value has no differences.
+        let scale = if deviation > 0.0 {
+            1.0 / deviation
+        } else {
+            0.0
+        };
+        let [first, last] = ends(plane, cut.margin)?;
+        let from = inset(cut) as usize;
+        for (row, to) in (0..).zip(sum.view_mut().rows_mut()) {
+            let [first, last] = [&first, &last].map(|end| &end.row(row)[from..]);
+            for ((to, first), last) in to.iter_mut().zip(first).zip(last) {
+                let difference = (f64::from(*first) - f64::from(*last)) * scale;
+                *to += difference * difference;
+            }
+        }
+    }
+    Ok(sum)
+}
+
+/// The weights of the first columns: 0 on the left of the cut, 1 on the right, ½ on it.
+fn weights(path: &[u32], cut: &SoftCut) -> Result<Raster<f64>, TileError> {
+    let half_width = f64::from(cut.half_width);
+    let weight = |from_cut: f64| match half_width > 0.0 {
+        true => cubic_ramp((from_cut + half_width) / (2.0 * half_width)),
+        false => f64::from(u8::from(from_cut >= 0.0)),
+    };
+    let inset = inset(cut);
+    Ok(Raster::from_fn(
+        [cut.margin, path.len() as u32],
+        |column, row| {
+            let cut = path[row as usize] + inset;
+            weight(f64::from(column) - f64::from(cut))
+        },
+    )?)
+}
+
+/// The cubic 3t² − 2t³ from 0 to 1, flat outside.
+fn cubic_ramp(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,96 @@
+//! Work along one axis after the other.
+//!
+//! What is written for rows serves columns too: the planes are transposed before and after.
+
+use crate::TileError;
+use dapple_raster::Raster;
+
+/// The axes in the order in which they are worked on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Axis {
+    X,
+    Y,
+}
+
+/// Changes the rows of all planes if x repeats, then the columns of what results if y repeats.
+///
+/// `along_rows` sees planes whose rows run along the axis that it is told.
+pub(crate) fn each_axis(
+    planes: &[Raster<f32>],
+    axes: [bool; 2],
+    along_rows: impl Fn(&[Raster<f32>], Axis) -> Result<Vec<Raster<f32>>, TileError>,
+) -> Result<Vec<Raster<f32>>, TileError> {
+    let mut planes = planes.to_vec();
+    if axes[0] {
+        planes = along_rows(&planes, Axis::X)?;
+    }
+    if axes[1] {
+        let columns = along_rows(&transpose_all(&planes)?, Axis::Y)?;
+        planes = transpose_all(&columns)?;
+    }
+    Ok(planes)
+}
+
+fn transpose_all(planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
+    planes.iter().map(transpose).collect()
+}
+
+/// How many columns and rows are read at a time, so that what is read and what is written stay in the cache.
+const BLOCK: usize = 32;
+
+/// The raster with columns for rows.
+fn transpose(raster: &Raster<f32>) -> Result<Raster<f32>, TileError> {
+    let [width, height] = raster.size().map(|side| side as usize);
+    let from = raster.pixels();
+    let mut to = vec![0.0; from.len()];
+    for top in (0..height).step_by(BLOCK) {
+        for left in (0..width).step_by(BLOCK) {
+            for y in top..(top + BLOCK).min(height) {
+                for x in left..(left + BLOCK).min(width) {
+                    to[x * height + y] = from[y * width + x];
+                }
+            }
+        }
+    }
+    let [width, height] = raster.size();
+    Ok(Raster::from_vec([height, width], to)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Axis, each_axis, transpose};
+    use dapple_raster::Raster;
+
+    #[test]
+    fn transpose_swaps_columns_and_rows() {
+        for size in [[1, 1], [1, 70], [33, 2], [65, 40]] {
+            let raster = Raster::from_fn(size, |x, y| (x + 100 * y) as f32).unwrap();
+            let turned = transpose(&raster).unwrap();
+            let expected = Raster::from_fn([size[1], size[0]], |x, y| (y + 100 * x) as f32);
+            assert_eq!(turned, expected.unwrap(), "{size:?}");
+        }
+    }
+
+    #[test]
+    fn each_axis_works_on_x_first_and_only_where_asked() {
+        let raster = Raster::from_fn([3, 2], |x, y| (x + 10 * y) as f32).unwrap();
+        // Adds the position along the axis once for x, a hundred times for y.
+        let sum = |planes: &[Raster<f32>], axis: Axis| {
+            let factor = if axis == Axis::X { 1.0 } else { 100.0 };
+            let size = planes[0].size();
+            let out = Raster::from_fn(size, |x, y| {
+                planes[0].row(y)[x as usize] + x as f32 * factor
+            });
+            Ok(vec![out?])
+        };
+        for axes in [[false; 2], [true, false], [false, true], [true; 2]] {
+            let out = each_axis(core::slice::from_ref(&raster), axes, sum).unwrap();
+            let expected = Raster::from_fn([3, 2], |x, y| {
+                let along = [x as f32, 100.0 * y as f32];
+                let added = along.iter().zip(axes).filter(|(_, repeats)| *repeats);
+                (x + 10 * y) as f32 + added.map(|(value, _)| value).sum::<f32>()
+            });
+            assert_eq!(out, [expected.unwrap()], "{axes:?}");
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! The cheapest path from the top of a grid of costs to its bottom.
+//!
+//! A path visits one cell of every row and steps at most one cell to the side from row to row. Its price is the sum of
+//! the costs of its cells, in the order of the rows. The open path is found by dynamic programming, as in Alexei A. Efros
+//! and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer", SIGGRAPH 2001, DOI 10.1145/383259.383296.
+//!
+//! A closed path ends in the cell below which it began, or beside it, so that it goes on where the grid repeats. The
+//! cheapest path through each first cell is another problem of the same kind; the cheapest of all comes from halving the
+//! first cells: two paths that swap places can trade their ends without a change of the total, so paths of neighboring
+//! first cells need not cross, and the path of the middle one bounds both halves. That takes O(rows · width · log width)
+//! and is exact.
+
+use dapple_raster::Raster;
+
+/// The column of the cheapest path in every row; of equally cheap ones, with the smaller columns from the end on.
+///
+/// Costs are finite.
+pub(crate) fn open_path(costs: &Raster<f64>) -> Vec<u32> {
+    let [left, right] = whole_band(costs);
+    Search::new(costs).cheapest(&left, &right, None).columns
+}
+
+/// The same for the cheapest closed path; of equally cheap ones, the one that begins in the smallest column.
+pub(crate) fn closed_path(costs: &Raster<f64>) -> Vec<u32> {
+    let [left, right] = whole_band(costs);
+    let mut search = Search::new(costs);
+    let mut best = search.cheapest(&left, &right, Some(0));
+    let left = best.columns.clone();
+    search.halve([1, costs.width()], &left, &right, &mut best);
+    best.columns
+}
+
+/// A path and its price.
+struct Path {
+    price: f64,
+    columns: Vec<u32>,
+}
+
+impl Path {
+    fn first(&self) -> Option<&u32> {
+        self.columns.first()
+    }
+}
+
+/// The smallest and the largest column of each row, when all may be used.
+fn whole_band(costs: &Raster<f64>) -> [Vec<u32>; 2] {
+    [0, costs.width() - 1].map(|column| vec![column; costs.height() as usize])
+}
+
+/// The grid, and memory for one search after another.
+struct Search<'a> {
+    costs: &'a Raster<f64>,
+    /// The prices of the cheapest paths to the cells of this row and of the one above, which begin [`PAD`] cells
+    /// before the first column.
+    prices: [Vec<f64>; 2],
+    /// How a cell is reached best: from the column before (0), the same (1) or the one after (2).
+    steps: Vec<u8>,
+}
+
+/// How many cells around a band cost infinitely much: a step goes one cell to the side, and the band of the next row may
+/// begin and end one cell further out.
+const PAD: usize = 2;
+
+impl<'a> Search<'a> {
+    fn new(costs: &'a Raster<f64>) -> Self {
+        let prices = vec![f64::INFINITY; costs.width() as usize + 2 * PAD];
+        Self {
+            costs,
+            prices: [prices.clone(), prices],
+            steps: vec![1; costs.pixels().len()],
+        }
+    }
+
+    /// Looks for closed paths that begin in `first[0]..first[1]` and stay in the band.
+    fn halve(&mut self, first: [u32; 2], left: &[u32], right: &[u32], best: &mut Path) {
+        if first[0] >= first[1] {
+            return;
+        }
+        let middle = first[0] + (first[1] - first[0]) / 2;
+        let path = self.cheapest(left, right, Some(middle));
+        self.halve([first[0], middle], left, &path.columns, best);
+        self.halve([middle + 1, first[1]], &path.columns, right, best);
+        if path.price < best.price || (path.price == best.price && path.first() < best.first()) {
+            *best = path;
+        }
+    }
+
+    /// The cheapest path between `left` and `right`, both included; closed, if it has to begin in a given column.
+    fn cheapest(&mut self, left: &[u32], right: &[u32], begin: Option<u32>) -> Path {
+        let last = left.len() - 1;
+        let [from, to] = begin.map_or([left[0], right[0]], |column| [column; 2]);
+        self.begin([left[0], right[0]], [from, to]);
+        for row in 1..=last {
+            self.advance(row, [left[row], right[row]]);
+        }
+        let [mut from, mut to] = [left[last], right[last]];
+        if let Some(column) = begin {
+            from = from.max(column.saturating_sub(1));
+            to = to.min(column + 1);
+        }
+        self.trace(last, [from, to])
+    }
+
+    /// The prices of the first row: only cells `from..=to` can be the first.
+    fn begin(&mut self, band: [u32; 2], [from, to]: [u32; 2]) {
+        let [low, high] = band.map(|column| column as usize + PAD);
+        let prices = &mut self.prices[0];
+        prices[low - PAD..=high + PAD].fill(f64::INFINITY);
+        for column in from..=to {
+            prices[column as usize + PAD] = self.costs.row(0)[column as usize];
+        }
+    }
+
+    /// The prices of the next row, whose band begins and ends at most one cell beside that of the last.
+    fn advance(&mut self, row: usize, band: [u32; 2]) {
+        let [low, high] = band.map(|column| column as usize);
+        let width = self.costs.width() as usize;
+        let costs = &self.costs.pixels()[row * width..][..width];
+        let steps = &mut self.steps[row * width..][..width];
+        let [above, prices] = &mut self.prices;
+        prices[low..low + PAD].fill(f64::INFINITY);
+        prices[high + PAD + 1..=high + 2 * PAD].fill(f64::INFINITY);
+        for column in low..=high {
+            let mut best = above[column + PAD - 1];
+            let mut step = 0;
+            if above[column + PAD] < best {
+                (best, step) = (above[column + PAD], 1);
+            }
+            if above[column + PAD + 1] < best {
+                (best, step) = (above[column + PAD + 1], 2);
+            }
+            prices[column + PAD] = best + costs[column];
+            steps[column] = step;
+        }
+        self.prices.swap(0, 1);
+    }
+
+    /// The path to the cheapest of the cells `from..=to` of the last row.
+    fn trace(&self, last: usize, [from, to]: [u32; 2]) -> Path {
+        let price = |column: u32| self.prices[0][column as usize + PAD];
+        let cheaper = |best, column| {
+            if price(column) < price(best) {
+                column
+            } else {
+                best
+            }
+        };
+        let end = (from + 1..=to).fold(from, cheaper);
+        let width = self.costs.width() as usize;
+        let mut columns = vec![end; last + 1];
+        for row in (1..=last).rev() {
+            let step = self.steps[row * width + columns[row] as usize];
+            columns[row - 1] = (columns[row] + u32::from(step)).saturating_sub(1);
+        }
+        Path {
+            price: price(end),
+            columns,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{closed_path, open_path};
+    use dapple_hash::{Seed, hash2};
+    use dapple_raster::Raster;
+
+    /// Costs that are small whole numbers, so that sums are exact in any order and ties abound.
+    fn costs(seed: u64, size: [u32; 2]) -> Raster<f64> {
+        let cost = |x: u32, y: u32| hash2(Seed(seed), [x.into(), y.into()], 0) % 7;
+        Raster::from_fn(size, |x, y| cost(x, y) as f64).unwrap()
+    }
+
+    fn price(costs: &Raster<f64>, path: &[u32]) -> f64 {
+        assert_eq!(path.len(), costs.height() as usize, "one cell per row");
+        let cells = (0..).zip(path);
+        cells
+            .map(|(row, &column)| costs.row(row)[column as usize])
+            .sum()
+    }
+
+    /// The cheapest price of a path from any of `begin` to any of `ends`, cell by cell, without a band.
+    fn brute_force(costs: &Raster<f64>, begin: &[u32], ends: impl Fn(u32) -> bool) -> f64 {
+        let at = |column: u32, row| costs.row(row)[column as usize];
+        let mut prices: Vec<_> = (0..costs.width())
+            .map(|x| {
+                if begin.contains(&x) {
+                    at(x, 0)
+                } else {
+                    f64::INFINITY
+                }
+            })
+            .collect();
+        for row in 1..costs.height() {
+            prices = (0..costs.width())
+                .map(|x| {
+                    let near = prices
+                        .iter()
+                        .zip(0..)
+                        .filter(|(_, from)| x.abs_diff(*from) <= 1);
+                    near.fold(f64::INFINITY, |best, (price, _)| best.min(*price)) + at(x, row)
+                })
+                .collect();
+        }
+        let ends = prices.iter().zip(0..).filter(|(_, column)| ends(*column));
+        ends.fold(f64::INFINITY, |best, (price, _)| best.min(*price))
+    }
+
+    fn steps_are_short(path: &[u32]) -> bool {
+        path.windows(2).all(|pair| pair[0].abs_diff(pair[1]) <= 1)
+    }
+
+    #[test]
+    fn open_path_is_as_cheap_as_the_best_of_all() {
+        for seed in 0..40 {
+            for size in [[1, 1], [1, 9], [7, 1], [2, 5], [9, 13]] {
+                let costs = costs(seed, size);
+                let path = open_path(&costs);
+                let all: Vec<_> = (0..size[0]).collect();
+                assert!(steps_are_short(&path), "{path:?}");
+                assert_eq!(price(&costs, &path), brute_force(&costs, &all, |_| true));
+            }
+        }
+    }
+
+    #[test]
+    fn closed_path_is_as_cheap_as_the_best_of_all_first_cells() {
+        for seed in 0..60 {
+            for size in [[1, 1], [1, 9], [7, 1], [2, 2], [5, 30], [16, 11], [13, 40]] {
+                let costs = costs(seed, size);
+                let path = closed_path(&costs);
+                let ends = path[0].abs_diff(path[path.len() - 1]);
+                assert!(steps_are_short(&path) && ends <= 1, "{path:?}");
+                let best = (0..size[0])
+                    .map(|first| brute_force(&costs, &[first], |end| end.abs_diff(first) <= 1))
+                    .fold(f64::INFINITY, f64::min);
+                assert_eq!(price(&costs, &path), best, "seed {seed}, {size:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn paths_of_equal_costs_keep_to_the_smallest_column() {
+        let flat = Raster::filled([6, 20], 1.0).unwrap();
+        assert_eq!(open_path(&flat), [0; 20]);
+        assert_eq!(closed_path(&flat), [0; 20]);
+    }
+
+    #[test]
+    fn value_stability_paths() {
+        let costs = costs(3, [8, 12]);
+        assert_eq!(open_path(&costs), [2, 1, 2, 3, 2, 3, 2, 1, 1, 1, 1, 0]);
+        assert_eq!(closed_path(&costs), [3, 4, 5, 5, 5, 6, 6, 5, 4, 3, 4, 4]);
+    }
+}

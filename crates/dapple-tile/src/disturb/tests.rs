@@ -1,0 +1,228 @@
+//! Disturbed copies: what stays, what changes, windows, and the variance.
+
+use super::{Disturbance, shift};
+use crate::test_fields::{gravel, same_on_threads, seam_ratio_of, variance};
+use crate::{Map, TileErrorKind};
+use dapple_color::LinearRgb;
+use dapple_hash::Seed;
+use dapple_raster::Raster;
+
+#[test]
+fn render_keeps_the_frozen_border_of_every_copy_bit_for_bit() {
+    let tile = gravel(1, [48, 56], true);
+    let disturbance = Disturbance {
+        frozen: 5,
+        ramp: 10,
+        seed: Seed(3),
+    };
+    let map = disturbance.render(&tile, [-96, -56], [192, 168]).unwrap();
+    let mut n_changed = 0;
+    for row in 0..168 {
+        for column in 0..192 {
+            let [x, y] = [column % 48, row % 56];
+            let from_border = x.min(47 - x).min(y.min(55 - y));
+            let [own, there] = [tile.row(y)[x as usize], map.row(row)[column as usize]];
+            if from_border < 5 {
+                assert_eq!(own.to_bits(), there.to_bits(), "column {column}, row {row}");
+            } else {
+                n_changed += usize::from(own != there);
+            }
+        }
+    }
+    // Stones are equally bright inside, so that some pixels are met by their like.
+    assert!(n_changed > 192 * 168 / 4, "only {n_changed} pixels changed");
+}
+
+#[test]
+fn render_shows_a_shifted_tile_in_the_middle_of_each_copy() {
+    let tile = gravel(2, [40, 40], true);
+    let disturbance = Disturbance {
+        frozen: 2,
+        ramp: 12,
+        seed: Seed(4),
+    };
+    let map = disturbance.render(&tile, [0, 0], [80, 40]).unwrap();
+    let twice = tile.tile([2, 2]).unwrap();
+    let middles = [[20, 20], [60, 20]].map(|[x, y]| map.crop([x - 1, y - 1], [3, 3]).unwrap());
+    let shifts = middles.each_ref().map(|middle| {
+        let shifts = (0..40).flat_map(|y| (0..40).map(move |x| [x, y]));
+        let fits = |at: &[u32; 2]| twice.crop(*at, [3, 3]).unwrap().pixels() == middle.pixels();
+        shifts.filter(fits).collect::<Vec<_>>()
+    });
+    assert!(
+        shifts.iter().all(|found| !found.is_empty()),
+        "a piece of the tile: {shifts:?}"
+    );
+    assert_ne!(middles[0], middles[1], "copies differ");
+}
+
+#[test]
+fn render_of_a_window_is_the_crop_of_the_whole() {
+    let tile = gravel(3, [41, 44], true);
+    let disturbance = Disturbance::new(Seed(5));
+    let whole = disturbance.render(&tile, [-100, -70], [260, 200]).unwrap();
+    for (first, size) in [
+        ([0, 0], [1, 1]),
+        ([37, 90], [120, 60]),
+        ([259, 0], [1, 200]),
+    ] {
+        let origin = [first[0] as i64 - 100, first[1] as i64 - 70];
+        let part = disturbance.render(&tile, origin, size).unwrap();
+        assert_eq!(part, whole.crop(first, size).unwrap(), "{first:?} {size:?}");
+    }
+    for far in [i64::MIN, i64::MAX] {
+        assert!(
+            disturbance.render(&tile, [far; 2], [50, 50]).is_ok(),
+            "no overflow"
+        );
+    }
+}
+
+#[test]
+fn render_keeps_the_variance_and_has_no_seam() {
+    let (mut tiles, mut maps, mut ratio) = (Vec::new(), Vec::new(), 0.0);
+    for seed in 0..12 {
+        let tile = gravel(seed, [63, 63], true);
+        let map = Disturbance::new(Seed(seed))
+            .render(&tile, [0, 0], [252, 252])
+            .unwrap();
+        let [left, right] = [[0, 0], [63, 0]].map(|first| map.crop(first, [63, 252]).unwrap());
+        ratio += seam_ratio_of(&left, &right, 1) / 12.0;
+        tiles.push(tile);
+        maps.push(map);
+    }
+    let kept = variance(&maps) / variance(&tiles);
+    // 12 tiles of 49 stones, whose variance is known to some percent.
+    assert!((0.95..1.05).contains(&kept), "variance {kept}");
+    // The frozen border is the one piece of the tile that does not vary: 12 · 63 pixels of stones of 9.
+    assert!((0.85..1.15).contains(&ratio), "seam ratio {ratio}");
+}
+
+#[test]
+fn render_sets_in_smoothly() {
+    // A tile whose mean is 0 and whose shifted self is its negative shows the weights themselves.
+    let profile = Disturbance::default().profile(64).unwrap();
+    assert_eq!(profile[..4], [0.0; 4]);
+    assert_eq!(profile[20..44], [1.0; 24]);
+    for at in 0..63 {
+        assert_eq!(profile[at], profile[63 - at], "the same from both sides");
+    }
+    // Second differences of a quintic over 16 pixels are at most 10 / √3 / 16² = 0.0226, and change by at most 60 / 16³
+    // from pixel to pixel.
+    let second: Vec<_> = profile
+        .windows(3)
+        .map(|w| w[0] - 2.0 * w[1] + w[2])
+        .collect();
+    assert!(second.iter().all(|d| d.abs() < 0.0227), "{second:?}");
+    assert!(
+        second
+            .windows(2)
+            .all(|w| (w[1] - w[0]).abs() < 60.0 / 4096.0),
+        "{second:?}"
+    );
+}
+
+#[test]
+fn render_maps_shifts_all_maps_alike() {
+    let tile = gravel(6, [48, 48], true);
+    let color = tile.map(|&value| LinearRgb::new(value, value, value));
+    let maps = [Map::Value(tile.clone()), Map::Color(color)];
+    let disturbance = Disturbance::new(Seed(8));
+    let maps = disturbance.render_maps(&maps, [7, -9], [100, 70]).unwrap();
+    let expected = disturbance.render(&tile, [7, -9], [100, 70]).unwrap();
+    assert_eq!(maps[0], Map::Value(expected.clone()));
+    assert_eq!(
+        maps[1],
+        Map::Color(expected.map(|&value| LinearRgb::new(value, value, value)))
+    );
+    assert!(
+        disturbance
+            .render_maps(&[], [0, 0], [9, 9])
+            .unwrap()
+            .is_empty(),
+        "no maps"
+    );
+    let other = Map::Value(gravel(6, [48, 49], true));
+    assert!(
+        disturbance
+            .render_maps(&[maps[0].clone(), other], [0, 0], [9, 9])
+            .is_err()
+    );
+}
+
+#[test]
+fn shift_is_at_least_a_quarter_of_the_side_either_way_round() {
+    for side in [1, 2, 3, 7, 40, 1 << 20] {
+        for bits in [0, 1 << 31, 1 << 63, u64::MAX] {
+            let shift = shift(bits, side);
+            assert!(
+                shift >= side / 4 && side - shift >= side / 4,
+                "{shift} of {side}"
+            );
+            assert!(shift < side, "{shift} of {side}");
+        }
+    }
+}
+
+#[test]
+fn render_refuses_what_does_not_fit() {
+    let disturbance = Disturbance::new(Seed(1));
+    for size in [[1, 1], [2, 2], [1, 64], [64, 39]] {
+        let error = disturbance.render(
+            &gravel(1, [64, 64], true).crop([0, 0], size).unwrap(),
+            [0, 0],
+            [9, 9],
+        );
+        let kind = error.unwrap_err().kind().clone();
+        assert!(
+            matches!(kind, TileErrorKind::Margin { margin: 20, .. }),
+            "{size:?}: {kind:?}"
+        );
+    }
+    let hard = Disturbance {
+        frozen: 0,
+        ramp: 0,
+        seed: Seed(1),
+    };
+    for size in [[1, 1], [2, 2], [1, 5], [5, 4]] {
+        let tile = Raster::from_fn(size, |x, y| (x + y) as f32).unwrap();
+        assert!(hard.render(&tile, [-3, -3], [9, 9]).is_ok(), "{size:?}");
+    }
+    let vast = Disturbance {
+        frozen: u32::MAX,
+        ramp: u32::MAX,
+        seed: Seed(1),
+    };
+    let tile = gravel(1, [64, 64], true);
+    assert!(matches!(
+        vast.render(&tile, [0, 0], [9, 9]).unwrap_err().kind(),
+        TileErrorKind::Margin { .. }
+    ));
+    let empty = disturbance.render(&tile, [0, 0], [0, 9]).unwrap_err();
+    assert!(matches!(empty.kind(), TileErrorKind::Raster(_)), "{empty}");
+    let bad = tile.map(|_| f32::NAN);
+    assert!(matches!(
+        disturbance.render(&bad, [0, 0], [9, 9]).unwrap_err().kind(),
+        TileErrorKind::NotFinite { .. }
+    ));
+}
+
+#[test]
+fn render_has_the_same_bits_on_any_number_of_threads() {
+    let tile = gravel(3, [41, 44], true);
+    let disturbance = Disturbance::new(Seed(5));
+    assert!(same_on_threads(|| disturbance
+        .render(&tile, [-9, 4], [150, 170])
+        .unwrap()));
+}
+
+#[test]
+fn value_stability_disturb() {
+    let tile = gravel(9, [48, 40], true);
+    let map = Disturbance::new(Seed(7))
+        .render(&tile, [-30, -30], [90, 90])
+        .unwrap();
+    let bits = [[0, 0], [10, 15], [50, 50], [89, 89]]
+        .map(|[x, y]: [usize; 2]| map.row(y as u32)[x].to_bits());
+    assert_eq!(bits, [1051352163, 1062009822, 1063550235, 1053281590]);
+}

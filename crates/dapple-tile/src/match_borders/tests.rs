@@ -1,0 +1,166 @@
+//! Matched borders: that any two tiles fit, and what does not change.
+
+use super::{BorderSource, MatchBorders};
+use crate::TileErrorKind;
+use crate::test_fields::{fbm, gravel, seam_ratio_of, top_power, turned};
+use dapple_raster::Raster;
+
+fn matched(source: BorderSource, tiles: &[Raster<f32>]) -> Vec<Raster<f32>> {
+    MatchBorders { width: 16, source }.apply(tiles).unwrap()
+}
+
+/// The mean seam ratio of each ordered pair of tiles, along both axes, over many sets of tiles.
+fn pair_ratios(source: BorderSource, set: impl Fn(u64) -> [Raster<f32>; 3]) -> [f64; 9] {
+    let n_sets = 12;
+    let mut ratios = [0.0; 9];
+    for seed in 0..n_sets {
+        let tiles = matched(source, &set(3 * seed));
+        let turned: Vec<_> = tiles.iter().map(turned).collect();
+        for (pair, ratio) in ratios.iter_mut().enumerate() {
+            let [a, b] = [pair / 3, pair % 3];
+            let both =
+                seam_ratio_of(&tiles[a], &tiles[b], 1) + seam_ratio_of(&turned[a], &turned[b], 1);
+            *ratio += both / (2.0 * n_sets as f64);
+        }
+    }
+    ratios
+}
+
+#[test]
+fn every_tile_fits_beside_every_other() {
+    let size = [72, 72];
+    for texture in [fbm, gravel] {
+        let repeating = |seed: u64| [0, 1, 2].map(|index| texture(seed + index, size, true));
+        let others = |seed: u64| [0, 1, 2].map(|index| texture(seed + index, size, false));
+        for (what, ratios) in [
+            (
+                "tiles that repeat",
+                pair_ratios(BorderSource::Border, repeating),
+            ),
+            (
+                "tiles that do not",
+                pair_ratios(BorderSource::Middle, others),
+            ),
+        ] {
+            // 12 sets, 144 pixels of border each.
+            assert!(
+                ratios.iter().all(|ratio| (0.8..1.25).contains(ratio)),
+                "{what}: {ratios:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn borders_of_all_tiles_are_the_same_pixels() {
+    let tiles = [0, 1, 2].map(|seed| gravel(seed, [64, 48], false));
+    for source in [BorderSource::Border, BorderSource::Middle] {
+        let tiles = matched(source, &tiles);
+        for (x, y) in (0..48).flat_map(|y| (0..64).map(move |x| (x, y))) {
+            if x.min(63 - x).min(y.min(47 - y)) < 4 {
+                let [a, b, c] = [0, 1, 2].map(|tile: usize| tiles[tile].row(y)[x as usize]);
+                assert!(a == b && b == c, "{source:?} at {x}, {y}: {a} {b} {c}");
+            }
+        }
+    }
+}
+
+#[test]
+fn pixels_past_the_width_are_unchanged() {
+    let tiles = [0, 1].map(|seed| fbm(seed, [50, 60], false));
+    for source in [BorderSource::Border, BorderSource::Middle] {
+        for (before, after) in tiles.iter().zip(matched(source, &tiles)) {
+            let inside = |tile: &Raster<f32>| tile.crop([16, 16], [18, 28]).unwrap();
+            assert_eq!(inside(before), inside(&after), "{source:?}");
+        }
+    }
+}
+
+#[test]
+fn equal_tiles_that_repeat_hardly_change_and_the_first_not_at_all() {
+    let tile = gravel(4, [72, 72], true);
+    let tiles = matched(BorderSource::Border, &[tile.clone(), tile.clone()]);
+    assert_eq!(tiles[0], tile);
+    let pixels = tiles[1].pixels().iter().zip(tile.pixels());
+    let worst = pixels.fold(0.0_f32, |worst, (a, b)| worst.max((a - b).abs()));
+    // Mixed in `f64` by shares whose sum is 1 within rounding.
+    assert!(worst < 1e-6, "{worst}");
+}
+
+#[test]
+fn matched_tiles_keep_their_detail() {
+    let mut sums = [0.0; 2];
+    for seed in 0..16 {
+        let tiles = [2 * seed, 2 * seed + 1].map(|seed| gravel(seed, [72, 72], true));
+        let after = matched(BorderSource::Middle, &tiles);
+        sums[0] += tiles.iter().map(top_power).sum::<f64>();
+        sums[1] += after.iter().map(top_power).sum::<f64>();
+    }
+    let kept = sums[1] / sums[0];
+    // 32 tiles of 64 stones.
+    assert!(
+        (0.95..1.05).contains(&kept),
+        "power of the top octave {kept}"
+    );
+}
+
+#[test]
+fn apply_refuses_what_does_not_fit() {
+    let kind = |width, tiles: &[Raster<f32>]| {
+        let options = MatchBorders {
+            width,
+            ..MatchBorders::default()
+        };
+        options.apply(tiles).unwrap_err().kind().clone()
+    };
+    let tile = gravel(1, [20, 30], true);
+    let two = [tile.clone(), tile.clone()];
+    assert!(matches!(
+        kind(4, &[]),
+        TileErrorKind::Count {
+            what: "tiles",
+            count: 0,
+            ..
+        }
+    ));
+    assert_eq!(
+        kind(11, &two),
+        TileErrorKind::Margin {
+            margin: 11,
+            length: 20,
+            most: 10
+        }
+    );
+    assert!(matches!(kind(0, &two), TileErrorKind::Range { .. }));
+    let other = gravel(1, [20, 31], true);
+    assert!(matches!(
+        kind(4, &[tile.clone(), other]),
+        TileErrorKind::Raster(_)
+    ));
+    let bad = tile.map(|_| f32::NAN);
+    assert!(matches!(
+        kind(4, &[tile, bad]),
+        TileErrorKind::NotFinite { .. }
+    ));
+    for size in [[1, 1], [1, 9], [3, 1]] {
+        let tiles = [1.0, 2.0].map(|value| Raster::filled(size, value).unwrap());
+        assert!(
+            matches!(kind(1, &tiles), TileErrorKind::Margin { most: 0, .. }),
+            "{size:?}"
+        );
+    }
+    for source in [BorderSource::Border, BorderSource::Middle] {
+        let tiles = [1.0, 2.0].map(|value| Raster::filled([2, 3], value).unwrap());
+        let tiles = MatchBorders { width: 1, source }.apply(&tiles).unwrap();
+        assert_eq!(tiles[1].row(0), [1.0, 1.0], "{source:?}");
+    }
+}
+
+#[test]
+fn value_stability_match_borders() {
+    let tiles = [1, 2].map(|seed| gravel(seed, [40, 44], false));
+    let tiles = matched(BorderSource::Middle, &tiles);
+    let bits =
+        [[0, 0], [7, 9], [10, 30]].map(|[x, y]: [usize; 2]| tiles[1].row(y as u32)[x].to_bits());
+    assert_eq!(bits, [1044736711, 3151649367, 1056983977]);
+}

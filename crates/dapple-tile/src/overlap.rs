@@ -1,0 +1,70 @@
+//! The two ends of rows laid over each other.
+
+use crate::crossfade::Pair;
+use crate::{Crossfade, TileError, TileErrorKind};
+use dapple_raster::Raster;
+
+/// Refuses a margin of no pixel, and one of more than half of a side along which the planes shall repeat.
+pub(crate) fn check_margin(
+    planes: &[Raster<f32>],
+    margin: u32,
+    axes: [bool; 2],
+) -> Result<(), TileError> {
+    let sizes = planes.iter().map(Raster::size);
+    let sides = sizes.flat_map(|size| [0, 1].map(|axis| (size[axis], axes[axis])));
+    for (length, _) in sides.filter(|(_, repeats)| *repeats) {
+        let most = length / 2;
+        if margin > most {
+            return Err(TileError::new(TileErrorKind::Margin {
+                margin,
+                length,
+                most,
+            }));
+        }
+    }
+    let what = "margin";
+    TileError::check(margin >= 1, what, margin.into(), "at least 1")
+}
+
+/// The first and the last `margin` columns.
+pub(crate) fn ends(plane: &Raster<f32>, margin: u32) -> Result<[Raster<f32>; 2], TileError> {
+    let size = [margin, plane.height()];
+    let last = plane.crop([plane.width() - margin, 0], size)?;
+    Ok([plane.crop([0, 0], size)?, last])
+}
+
+/// The planes without their last columns, which are mixed into the first.
+///
+/// The weights, from 0 to 1, are those of the first columns; there are as many columns of them as of the margin.
+pub(crate) fn overlap(
+    planes: &[Raster<f32>],
+    weights: &Raster<f64>,
+    crossfade: Crossfade,
+) -> Result<Vec<Raster<f32>>, TileError> {
+    planes
+        .iter()
+        .map(|plane| {
+            let margin = weights.width();
+            let [first, last] = ends(plane, margin)?;
+            let pair = Pair {
+                images: [&last, &first],
+                means: [plane.statistics().mean; 2],
+            };
+            let mixed = crossfade.mix(pair, weights)?;
+            join(&mixed, plane)
+        })
+        .collect()
+}
+
+/// The mixed columns, and then those that belong to one end only.
+fn join(mixed: &Raster<f32>, plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
+    let margin = mixed.width();
+    let rest = margin as usize..(plane.width() - margin) as usize;
+    Ok(Raster::from_rows(
+        [plane.width() - margin, plane.height()],
+        |row| {
+            let middle = &plane.row(row)[rest.clone()];
+            mixed.row(row).iter().chain(middle).copied()
+        },
+    )?)
+}
