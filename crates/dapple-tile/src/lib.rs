@@ -90,6 +90,7 @@ pub use poisson::WrapGradient;
 pub use pyramid::Pyramid;
 pub use rank::rank_equalize;
 pub use repeat::{repeat, repeat_into};
+pub use report::{DetailKept, Seam, SeamOptions, SeamRatio, SeamReport};
 pub use seamless::{Method, Seamless};
 pub use soft_cut::SoftCut;
 pub use spline_project::{Basis, Pixels, SplineProject};

@@ -1,1 +1,220 @@
 //! How well a tile repeats, in numbers.
+//!
+//! Three questions, each with a number that an eye may check. Does the wrap show? [`Seam`] compares the step across it
+//! with the steps inside of the tile. Has the method paid for that with detail? [`DetailKept`] compares the tile with its
+//! source, octave by octave, and in contrast. Has it done so in one place, where a band of the tile has gone soft?
+//! [`lowest_local_detail`](SeamReport::lowest_local_detail) looks for the softest.
+//!
+//! The measures are ours, and each is defined where its field is. One of them is a trap: a spline tile changes more
+//! across some pixel boundaries than across others, and a wrap that cannot be told from the boundaries of its own kind
+//! scores 1.19 beside all of them. [`SeamOptions::lattice`] says which are of its kind.
+//!
+//! Sums are in `f64` and in a fixed order, so that a report is the same everywhere. No number of it is NaN or infinite:
+//! a quotient is 1 where both of its parts are zero, and at most [`MOST`](SeamReport::MOST).
+
+mod local;
+mod octaves;
+mod seam;
+mod table;
+
+pub use seam::{Seam, SeamRatio};
+
+use crate::map::check_finite;
+use crate::{TileError, TileErrorKind};
+use dapple_raster::{Raster, Wrap};
+
+/// What is measured, and against what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
+pub struct SeamOptions {
+    /// Along which axes the tile repeats, x first. By default both. The others are not measured.
+    pub axes: [bool; 2],
+    /// How many pixels apart the boundaries are that are like the wrap, along each axis: divisors of the sides. By
+    /// default 1, which is every boundary.
+    ///
+    /// What is made on a lattice differs more across some boundaries than across others. Give `2^levels` for a tile of
+    /// splines, and the pixels per cell for cellular noise.
+    pub lattice: [u32; 2],
+}
+
+impl Default for SeamOptions {
+    fn default() -> Self {
+        Self {
+            axes: [true; 2],
+            lattice: [1; 2],
+        }
+    }
+}
+
+/// How well a tile repeats.
+///
+/// `Display` writes it as a table of at most 80 columns.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_tile::{SeamOptions, SeamReport, raster::Raster};
+///
+/// let ramp = Raster::from_fn([64, 64], |x, _| x as f32)?;
+/// let report = SeamReport::of(&ramp, &SeamOptions { axes: [true, false], ..Default::default() })?;
+/// let one_pixel = report.seams[0].x.expect("64 pixels are enough");
+/// assert_eq!(one_pixel.ratio, 63.0);
+/// assert!(!report.passes());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SeamReport {
+    /// Columns and rows of the tile.
+    pub size: [u32; 2],
+    /// What was measured.
+    pub options: SeamOptions,
+    /// The steps across the wrap, for means of 1, 2, 4 and 8 pixels.
+    pub seams: [Seam; 4],
+    /// The detail of the softest band of the tile as a fraction of that of the whole tile, from 0 to 1.
+    ///
+    /// Detail is what the mean of 3 × 3 pixels, with weights 1 2 1 along each axis, takes away. A band is 8 columns or 8
+    /// rows wide (all of them, if there are fewer) and reaches from side to side; along axes that repeat it may lie
+    /// across the wrap. The number is the root mean square of the detail in the band that has the least, divided by that
+    /// of the whole tile. It is never quite 1: about 0.7 for photographs, less where they vary, and 0 if a band is flat.
+    pub lowest_local_detail: f64,
+    /// The tile beside its source, if there was one.
+    pub kept: Option<DetailKept>,
+}
+
+/// What a tile has kept of its source. Their sizes may differ.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct DetailKept {
+    /// Columns and rows of the source.
+    pub source_size: [u32; 2],
+    /// The power of the tile in each octave as a multiple of that of the source, finest first.
+    ///
+    /// The first octave holds the frequencies above ¼ up to ½ cycles per pixel along x or y, whichever is higher: what an
+    /// image of half the size cannot show. The next holds those above ⅛ up to ¼, and so on for as long as an octave
+    /// begins at 4 cycles per side or more, in the smaller of the two images; below 16 pixels there is none. Powers are
+    /// per pixel, under a Hann window, so that neither wrap plays a part.
+    pub octaves: Vec<f64>,
+    /// The standard deviation of the tile as a multiple of that of the source.
+    pub contrast: f64,
+    /// [`SeamReport::lowest_local_detail`] of the source, whose borders are mirrored.
+    pub source_lowest_local_detail: f64,
+}
+
+impl SeamReport {
+    /// The seam ratios that a tile needs to [pass](Self::passes).
+    pub const ACCEPTED: [f64; 2] = [0.8, 1.25];
+
+    /// The largest ratio that is told: what is larger, or infinite, is told as this.
+    pub const MOST: f64 = 1e9;
+
+    /// How well a tile repeats.
+    ///
+    /// # Errors
+    ///
+    /// [`NotFinite`](TileErrorKind::NotFinite) for a pixel that is NaN or infinite, [`Count`](TileErrorKind::Count) if no
+    /// axis repeats, [`Range`](TileErrorKind::Range) for a lattice that does not divide the side of an axis that does.
+    pub fn of(tile: &Raster<f32>, options: &SeamOptions) -> Result<Self, TileError> {
+        options.check(tile.size())?;
+        check_finite(tile)?;
+        Ok(Self {
+            size: tile.size(),
+            options: *options,
+            seams: seam::seams(tile, options),
+            lowest_local_detail: local::lowest_detail(tile, options.wrap()),
+            kept: None,
+        })
+    }
+
+    /// How well a tile repeats, and what it has kept of the image that it was made of.
+    ///
+    /// # Errors
+    ///
+    /// As [`of`](Self::of), and [`NotFinite`](TileErrorKind::NotFinite) for pixels of the source.
+    pub fn beside(
+        source: &Raster<f32>,
+        tile: &Raster<f32>,
+        options: &SeamOptions,
+    ) -> Result<Self, TileError> {
+        check_finite(source)?;
+        let report = Self::of(tile, options)?;
+        let [kept, all] = [tile, source].map(|image| image.statistics().deviation);
+        Ok(Self {
+            kept: Some(DetailKept {
+                source_size: source.size(),
+                octaves: octaves::kept(source, tile),
+                contrast: quotient(kept, all),
+                source_lowest_local_detail: local::lowest_detail(source, [Wrap::Mirror; 2]),
+            }),
+            ..report
+        })
+    }
+
+    /// Whether the seam ratios over all axes, at 1 and at 4 pixels, are [`ACCEPTED`](Self::ACCEPTED): from 0.8 to 1.25.
+    ///
+    /// A tile that is too small to be measured does not pass.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        let [least, most] = Self::ACCEPTED;
+        let accepted = |seam: &Seam| {
+            seam.both
+                .is_some_and(|both| (least..=most).contains(&both.ratio))
+        };
+        let mut judged = self
+            .seams
+            .iter()
+            .filter(|seam| [1, 4].contains(&seam.width));
+        judged.all(accepted)
+    }
+
+    /// The report as JSON.
+    ///
+    /// # Errors
+    ///
+    /// None that a report could cause; what `serde_json` says.
+    #[cfg(feature = "json")]
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string_pretty(self)
+    }
+}
+
+impl SeamOptions {
+    fn check(&self, size: [u32; 2]) -> Result<(), TileError> {
+        if self.axes == [false; 2] {
+            return Err(TileError::new(TileErrorKind::Count {
+                what: "axes that repeat",
+                count: 0,
+                needed: "at least 1",
+            }));
+        }
+        for axis in (0..2).filter(|&axis| self.axes[axis]) {
+            let lattice = self.lattice[axis];
+            TileError::check(
+                size[axis].checked_rem(lattice) == Some(0),
+                "lattice of the report",
+                f64::from(lattice),
+                "a divisor of the side",
+            )?;
+        }
+        Ok(())
+    }
+
+    /// What lies past the borders of the tile: itself along axes that repeat, its mirror image along others.
+    fn wrap(&self) -> [Wrap; 2] {
+        self.axes
+            .map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Mirror })
+    }
+}
+
+/// `part / whole` of two numbers that are not negative: 1 if both are zero, and at most [`SeamReport::MOST`].
+fn quotient(part: f64, whole: f64) -> f64 {
+    if part == whole {
+        1.0
+    } else {
+        (part / whole).min(SeamReport::MOST)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,83 @@
+//! The power of an image in octaves of frequency.
+
+use super::quotient;
+use crate::fourier::power_spectrum;
+use core::f64::consts::TAU;
+use dapple_raster::Raster;
+
+/// The lowest frequency of an octave that is measured, in cycles per side. Of the Hann window's peak, which is 2 wide to
+/// either side, nothing then reaches an octave from 0.
+const LEAST_CYCLES: u32 = 4;
+
+/// The power of the tile in each octave as a multiple of that of the source, finest first.
+pub(super) fn kept(source: &Raster<f32>, tile: &Raster<f32>) -> Vec<f64> {
+    let sides = source.size().into_iter().chain(tile.size());
+    let shortest = sides.min().unwrap_or(0);
+    let n_octaves = (shortest / (2 * LEAST_CYCLES)).checked_ilog2().unwrap_or(0);
+    let [kept, all] = [tile, source].map(|image| octave_powers(image, n_octaves as usize));
+    let pairs = kept.into_iter().zip(all);
+    pairs.map(|(kept, all)| quotient(kept, all)).collect()
+}
+
+/// The mean square, under the window, of what an image has in each octave.
+fn octave_powers(image: &Raster<f32>, n_octaves: usize) -> Vec<f64> {
+    let mut powers = vec![0.0; n_octaves];
+    if n_octaves == 0 {
+        return powers;
+    }
+    let [width, height] = image.size();
+    let windows = [hann(width), hann(height)];
+    let energy = windows
+        .each_ref()
+        .map(|of| of.iter().map(|w| w * w).sum::<f64>());
+    let size = image.size().map(|side| side as usize);
+    let spectrum = power_spectrum(&windowed(image, &windows), size);
+    let columns: Vec<usize> = (0..width).map(|index| octave(index, width)).collect();
+    for (y, line) in spectrum.chunks_exact(width as usize).enumerate() {
+        let row = octave(y as u32, height);
+        for (power, &column) in line.iter().zip(&columns) {
+            if let Some(sum) = powers.get_mut(row.min(column)) {
+                *sum += power;
+            }
+        }
+    }
+    let scale = 1.0 / (f64::from(width) * f64::from(height) * energy[0] * energy[1]);
+    powers.iter_mut().for_each(|sum| *sum *= scale);
+    powers
+}
+
+/// The pixels less their mean, times the windows of columns and rows.
+fn windowed(image: &Raster<f32>, [columns, rows]: &[Vec<f64>; 2]) -> Vec<f64> {
+    // From the first pixel, so that a flat image is exactly zero.
+    let first = f64::from(image.pixels()[0]);
+    let offset = |&value: &f32| f64::from(value) - first;
+    let mean = image.pixels().iter().map(offset).sum::<f64>() / image.pixels().len() as f64;
+    let mut values = Vec::with_capacity(image.pixels().len());
+    for (line, row) in image.view().rows().zip(rows) {
+        let line = line.iter().zip(columns);
+        values.extend(line.map(|(value, column)| (offset(value) - mean) * (column * row)));
+    }
+    values
+}
+
+/// The Hann window of a side.
+fn hann(n: u32) -> Vec<f64> {
+    let turn = |index: u32| TAU * (f64::from(index) + 0.5) / f64::from(n);
+    (0..n)
+        .map(|index| 0.5 - 0.5 * libm::cos(turn(index)))
+        .collect()
+}
+
+/// The octave of a frequency, 0 for those above ¼ cycle per pixel; `usize::MAX` for that of the mean.
+fn octave(index: u32, n: u32) -> usize {
+    let cycles = u64::from(index.min(n - index));
+    if cycles == 0 {
+        return usize::MAX;
+    }
+    // The frequency is above 2^-(octave + 2).
+    let exact = |octave: &usize| cycles << (octave + 2) > u64::from(n);
+    (0..32).find(exact).unwrap_or(usize::MAX)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,77 @@
+//! A report as text.
+
+use super::{DetailKept, SeamRatio, SeamReport};
+use core::fmt;
+
+/// How wide a cell is: `1.02 ± 0.05`, or a ratio as large as they come.
+const CELL: usize = 16;
+
+/// What stands where nothing was measured.
+const NOTHING: &str = "-";
+
+impl fmt::Display for SeamReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [width, height] = self.size;
+        let verdict = if self.passes() {
+            "passes"
+        } else {
+            "does not pass"
+        };
+        writeln!(f, "a tile of {width} × {height} pixels: {verdict}")?;
+        write!(f, "{:<22}", "seam ratio")?;
+        for axis in ["x", "y", "both"] {
+            write!(f, "{axis:>CELL$}")?;
+        }
+        for seam in &self.seams {
+            write!(f, "\n{:<22}", format!("  at {} px", seam.width))?;
+            for ratio in [seam.x, seam.y, seam.both] {
+                write!(f, "{:>CELL$}", cell(ratio))?;
+            }
+        }
+        write!(f, "\n{:<22}", "lowest local detail")?;
+        write!(f, "{:>CELL$.3}", self.lowest_local_detail)?;
+        self.kept.as_ref().map_or(Ok(()), |kept| kept.write(f))
+    }
+}
+
+impl DetailKept {
+    /// The lines about the source; the first goes on where the lowest local detail of the tile stands.
+    fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let source = format!("of the source {:.3}", self.source_lowest_local_detail);
+        write!(f, "  ({source})\n{:<22}", "detail kept")?;
+        if self.octaves.is_empty() {
+            write!(f, "{NOTHING:>CELL$}")?;
+        }
+        for (index, kept) in self.octaves.iter().enumerate() {
+            // Three in a line, under the columns of the ratios.
+            if index > 0 && index % 3 == 0 {
+                write!(f, "\n{:<22}", "")?;
+            }
+            let octave = format!("1/{}: {}", 2_u64 << index, number(*kept));
+            write!(f, "{octave:>CELL$}")?;
+        }
+        let contrast = number(self.contrast);
+        write!(f, "\n{:<22}{contrast:>CELL$}", "contrast kept")
+    }
+}
+
+fn cell(ratio: Option<SeamRatio>) -> String {
+    let Some(SeamRatio { ratio, spread }) = ratio else {
+        return NOTHING.to_owned();
+    };
+    match spread {
+        Some(spread) => format!("{} ± {}", number(ratio), number(spread)),
+        None => number(ratio),
+    }
+}
+
+/// A number in at most six characters.
+fn number(value: f64) -> String {
+    if value < 100.0 {
+        format!("{value:.2}")
+    } else if value < 1e5 {
+        format!("{value:.0}")
+    } else {
+        format!("{value:.0e}")
+    }
+}

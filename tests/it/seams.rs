@@ -1,0 +1,105 @@
+//! The wraps of tiles that repeat by construction: no different from any other boundary.
+//!
+//! Every generator of the workspace that has a period draws one period, 32 units of 8 pixels, with 50 seeds. The step
+//! across the wrap is to be, on average and at every scale, the step across the boundaries of the same kind inside: those
+//! of cells for what has cells, all of them for control points, which lie anywhere.
+
+mod generators;
+
+use anyhow::Result;
+use dapple_hash::Seed;
+use dapple_raster::{Raster, Window, glam::DVec2};
+use dapple_tile::{Seam, SeamOptions, SeamReport};
+use generators::GENERATORS;
+use rayon::prelude::*;
+
+/// After how many units a tile repeats: the cells of cellular noise.
+const PERIOD: u32 = 32;
+
+/// How many pixels a unit is wide.
+const UNIT: u32 = 8;
+
+/// How many tiles of a generator are averaged.
+const N_TILES: u64 = 50;
+
+/// How many crops are: they are far from 1.
+const N_CROPS: u64 = 8;
+
+/// The largest standard error that a mean ratio may have.
+const LARGEST_ERROR: f64 = 0.02;
+
+/// Something that draws a window of a texture with a period.
+struct Generator {
+    name: &'static str,
+    options: SeamOptions,
+    /// Pixels per unit.
+    unit: u32,
+    draw: fn(Seed, &Window) -> Result<Raster<f32>>,
+}
+
+/// A mean seam ratio over all seeds, with its standard error.
+#[derive(Debug)]
+struct Ratio {
+    width: u32,
+    mean: f64,
+    error: f64,
+}
+
+#[test]
+fn tiles_of_generators_have_no_seam() -> Result<()> {
+    let mut problems = Vec::new();
+    for generator in GENERATORS {
+        let t = std::time::Instant::now();
+        let ratios = generator.ratios(PERIOD, N_TILES)?;
+        eprintln!("{:?} {} {ratios:.3?}", t.elapsed(), generator.name);
+        for Ratio { width, mean, error } in ratios {
+            let off = (mean - 1.0).abs() / error;
+            if !(off <= 3.0 && error < LARGEST_ERROR) {
+                let name = generator.name;
+                problems.push(format!("{name} at {width} px: {mean:.4} ± {error:.4}"));
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+    Ok(())
+}
+
+#[test]
+fn crops_of_generators_have_a_seam() -> Result<()> {
+    for generator in GENERATORS {
+        let [Ratio { mean, error, .. }, ..] = generator.ratios(PERIOD * 3 / 4, N_CROPS)?;
+        eprintln!("{} {mean} {error}", generator.name);
+        let clearly = mean - 1.0 > 5.0 * error && mean > SeamReport::ACCEPTED[1];
+        assert!(clearly, "{}: {mean:.4} ± {error:.4}", generator.name);
+    }
+    Ok(())
+}
+
+impl Generator {
+    /// The mean ratios of square pictures over all axes that repeat, at 1, 2, 4 and 8 pixels.
+    fn ratios(&self, units: u32, n_seeds: u64) -> Result<[Ratio; 4]> {
+        let extent = DVec2::splat(f64::from(units));
+        let window = &Window::new(DVec2::ZERO, extent, [units * self.unit; 2])?;
+        let seams = |seed| -> Result<[Seam; 4]> {
+            let tile = (self.draw)(Seed(seed), window)?;
+            Ok(SeamReport::of(&tile, &self.options)?.seams)
+        };
+        let all: Result<Vec<_>> = (0..n_seeds).into_par_iter().map(seams).collect();
+        let all = all?;
+        Ok(core::array::from_fn(|index| {
+            let both = all.iter().filter_map(|seams| seams[index].both);
+            let ratios: Vec<f64> = both.map(|both| both.ratio).collect();
+            let n = ratios.len() as f64;
+            let mean = ratios.iter().sum::<f64>() / n;
+            let squares: f64 = ratios
+                .iter()
+                .map(|ratio| (ratio - mean) * (ratio - mean))
+                .sum();
+            Ratio {
+                width: all[0][index].width,
+                mean,
+                error: (squares / (n - 1.0) / n).sqrt(),
+            }
+        }))
+    }
+}
