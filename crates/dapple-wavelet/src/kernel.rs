@@ -128,7 +128,7 @@ fn coefficient_poles(degree: Degree) -> &'static [f64] {
         Degree::Constant => &[],
         Degree::Linear => &[SQRT_8_MINUS_3],
         Degree::Quadratic => &[-1.0 / 3.0],
-        Degree::Cubic => &[-0.446_462_692_171_689_57, -0.039_566_129_896_580_03],
+        Degree::Cubic => &[-0.446_462_692_171_689_55, -0.039_566_129_896_580_04],
     }
 }
 

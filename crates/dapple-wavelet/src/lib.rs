@@ -37,7 +37,7 @@
 //! |---|---|---|
 //! | 1 | a function is a weighted sum of shifted splines | [`SplineFilter::value_line`] |
 //! | 2, 3 | the spaces of such functions, coarse and fine | [`Degree::value`], its shifts, and those of half the width |
-//! | 4 | a spline is a sum of splines of half the width | the weights of [`Degree`], placed by [`Phase`] |
+//! | 4 | a spline is a sum of splines of half the width | the weights `2^-d C(d + 1, k)` of [`Degree`] d, placed by [`Phase`] |
 //! | 5, 6 | a coarse function is a fine one | [`SplineFilter::up_line`] |
 //! | 7 | the coarse function nearest to a fine one | [`SplineFilter::down_line`] |
 //! | 8, 13 | 6 along both axes | [`SplineFilter::up`] |
@@ -49,8 +49,8 @@
 //!
 //! # What the paper leaves open
 //!
-//! * The filter of equation 7 has no end. Cook and DeRose cut it off after 32 taps, with an error of 1e-3; here it is exact, as
-//!   a recursion, in a time that does not depend on its length.
+//! * The filter of equation 7 has no end. Cook and DeRose cut it off after 32 taps, with an rms error of 1.2e-3 on white noise
+//!   of variance 1; here it is exact, as a recursion, in linear time.
 //! * Its indices wrap ([`Border::Periodic`]). The whole effect on the seam of a tile comes from that; [`Border::Mirror`] is
 //!   for pictures that do not repeat.
 //! * Where the coarse coefficients lie is [`Phase`], which spline is [`Degree`], and what nearest means is [`Fit`].

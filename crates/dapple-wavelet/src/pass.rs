@@ -56,7 +56,7 @@ pub(crate) fn filter_lines(filter: &LineFilter, values: &[f32]) -> Vec<f32> {
     result
 }
 
-/// Writes up to `LANES` lines side by side, two at a time.
+/// Writes up to `LANES` lines side by side, two at a time, which is faster than one.
 fn interleave(lines: &[f32], target: &mut [[f64; LANES]]) {
     let len = target.len();
     for (block, target) in target.chunks_mut(BLOCK).enumerate() {
@@ -97,12 +97,12 @@ pub(crate) fn fill_chunks<S>(
     #[cfg(feature = "rayon")]
     {
         use rayon::prelude::*;
-        values
-            .par_chunks_mut(size)
-            .enumerate()
-            .for_each_init(scratch, |scratch, (chunk, values)| {
+        values.par_chunks_mut(size).enumerate().for_each_init(
+            scratch,
+            |scratch, (chunk, values)| {
                 fill(scratch, chunk, values);
-            });
+            },
+        );
     }
     #[cfg(not(feature = "rayon"))]
     {

@@ -1,8 +1,9 @@
 //! The filter that halves a line, and the prefilters: a short sum, then recursions, over several lines side by side.
 //!
-//! A recursion needs what came before the first value. Both lines are therefore continued past their ends, by as many values
-//! as the recursion needs to forget that it began with zero: less than the last bit of a result. One rule so serves lines
-//! that repeat and lines that are mirrored, of any length.
+//! A recursion needs what came before the first value. The lines are therefore continued past their ends, by as many values as
+//! the recursion needs to forget that it began with zero: what is left is less than the last bit of a result. One rule so
+//! serves lines that repeat and lines that are mirrored, of any length; to a rounding, it gives a periodic line the start
+//! `s / (1 − pⁿ)` that is usual, of one whole turn `s`.
 //!
 //! All arithmetic is `f64`, with the same operations in the same order for every lane, so that a line has the same bits
 //! whatever lies beside it.
@@ -17,10 +18,11 @@ pub(crate) struct LineFilter {
     kernel: Kernel,
     pub(crate) source: Line,
     pub(crate) target: Line,
-    /// How many source values a target value goes on by.
+    /// How many source values there are to a target value: 1 or 2.
     step: usize,
     /// Where the first tap of the first target value lies in the source.
     start: i64,
+    /// How many target values are continued past each end.
     reach: usize,
 }
 

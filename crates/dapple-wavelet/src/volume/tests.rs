@@ -43,9 +43,8 @@ fn volumes_equal_lines_bit_for_bit() {
         for size in [[9, 6, 11], [2, 2, 2], [3, 20, 2]] {
             let fine = noise_volume(size);
             let (mut needed, mut needed_size) = (fine.clone(), size);
-            for axis in 0..3 {
-                let halve =
-                    |line: &[f64]| filter.down_line(line, borders[axis]).expect("a good line");
+            for (axis, &border) in borders.iter().enumerate() {
+                let halve = |line: &[f64]| filter.down_line(line, border).expect("a good line");
                 (needed, needed_size) = along(&needed, needed_size, axis, halve);
             }
             let coarse = filter
