@@ -34,9 +34,9 @@ const GRASS: f32 = 0.35;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let side = tile_side(size);
-    let stone = stone(side, Seed(4), Edges::Repeating)?;
-    let pebble = pebble(side, Seed(2), Edges::Repeating)?;
-    let grass = grass(size, Seed(3), Edges::Repeating)?;
+    let stone = stone(side, Seed(1), Edges::Repeating)?;
+    let pebble = pebble(side, Seed(1), Edges::Repeating)?;
+    let grass = grass(size, Seed(1), Edges::Repeating)?;
     let on_stone = overgrown(&stone, &grass.color)?;
     let on_pebble = overgrown(&pebble, &grass.color)?;
     Ok(vec![
@@ -95,8 +95,8 @@ mod tests {
     #[test]
     fn grass_grows_in_the_cracks_and_not_on_the_stones() {
         for (name, ground) in [
-            ("stone", stone(128, Seed(4), Edges::Repeating).unwrap()),
-            ("pebble", pebble(128, Seed(2), Edges::Repeating).unwrap()),
+            ("stone", stone(128, Seed(1), Edges::Repeating).unwrap()),
+            ("pebble", pebble(128, Seed(1), Edges::Repeating).unwrap()),
         ] {
             // Where grass of another color gives another picture, there is grass.
             let [on_black, on_white] = [0.0, 1.0].map(|gray| {

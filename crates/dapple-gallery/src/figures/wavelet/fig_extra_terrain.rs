@@ -12,7 +12,7 @@ use super::stone::stone;
 use super::tile_side;
 use crate::figure::source;
 use crate::{Figure, Panel};
-use dapple_color::{LinearRgb, NormalOptions, normal_map};
+use dapple_color::{NormalOptions, normal_map};
 use dapple_pups::hash::Seed;
 use dapple_raster::{Raster, Window};
 use dapple_tile::{
@@ -46,9 +46,9 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let weights = weights(&land, &normals.map(|normal| normal.z))?;
     let side = 2 * tile_side(size);
     let tiles = [
-        stone(side, Seed(4), Edges::Repeating)?,
-        grass(side, Seed(3), Edges::Repeating)?,
-        soil(side, Seed(5), Edges::Repeating)?,
+        stone(side, Seed(1), Edges::Repeating)?,
+        grass(side, Seed(1), Edges::Repeating)?,
+        soil(side, Seed(1), Edges::Repeating)?,
     ];
     let mut maps = Vec::new();
     for tile in &tiles {
