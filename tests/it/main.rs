@@ -5,6 +5,8 @@ mod docs;
 mod figures;
 mod golden;
 mod readme;
+mod seams;
+mod tiles;
 
 /// The result of `work` in a pool of `n` threads.
 fn with_threads<T: Send>(n: usize, work: impl FnOnce() -> T + Send) -> T {

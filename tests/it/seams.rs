@@ -49,9 +49,7 @@ struct Ratio {
 fn tiles_of_generators_have_no_seam() -> Result<()> {
     let mut problems = Vec::new();
     for generator in GENERATORS {
-        let t = std::time::Instant::now();
         let ratios = generator.ratios(PERIOD, N_TILES)?;
-        eprintln!("{:?} {} {ratios:.3?}", t.elapsed(), generator.name);
         for Ratio { width, mean, error } in ratios {
             let off = (mean - 1.0).abs() / error;
             if !(off <= 3.0 && error < LARGEST_ERROR) {
@@ -68,7 +66,6 @@ fn tiles_of_generators_have_no_seam() -> Result<()> {
 fn crops_of_generators_have_a_seam() -> Result<()> {
     for generator in GENERATORS {
         let [Ratio { mean, error, .. }, ..] = generator.ratios(PERIOD * 3 / 4, N_CROPS)?;
-        eprintln!("{} {mean} {error}", generator.name);
         let clearly = mean - 1.0 > 5.0 * error && mean > SeamReport::ACCEPTED[1];
         assert!(clearly, "{}: {mean:.4} ± {error:.4}", generator.name);
     }

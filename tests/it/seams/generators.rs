@@ -281,8 +281,7 @@ fn pups_cow(seed: Seed, window: &Window) -> Result<Raster<f32>> {
 fn giraffe(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     let options = SpaceGiraffeOptions {
         domain: domain(),
-        spacing: Spacing::from(1.2),
-        pairs: [6, 10],
+        spacing: Spacing::from(1.3),
         ..SpaceGiraffeOptions::default()
     };
     Ok(space_giraffe(&options, seed)?.to_raster(window)?)
