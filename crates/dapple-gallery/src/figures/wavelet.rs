@@ -18,6 +18,7 @@ mod soil;
 mod stone;
 
 use crate::Paper;
+use anyhow::Context;
 use dapple_pups::hash::Seed;
 use dapple_raster::{Raster, Wrap};
 use dapple_tile::{Basis, BlendMap, Pixels, SeamOptions, SeamReport, SplineProject};
@@ -83,13 +84,30 @@ fn crops(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     ])
 }
 
-/// What is measured of a tile beside its original.
-fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<SeamReport> {
+/// The [`SeamReport`] of a tile beside its original, in four short lines.
+fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> {
     let options = SeamOptions {
         lattice: [1 << BLEND_TILE.levels; 2],
         ..SeamOptions::default()
     };
-    Ok(SeamReport::beside(original, tile, &options)?)
+    let report = SeamReport::beside(original, tile, &options)?;
+    let kept = report.kept.as_ref().context("there is an original")?;
+    let row = |numbers: &mut dyn Iterator<Item = f64>| -> String {
+        numbers.map(|number| format!("{number:6.2}")).collect()
+    };
+    let seams = row(&mut report
+        .seams
+        .iter()
+        .filter_map(|seam| Some(seam.both?.ratio)));
+    let octaves = row(&mut kept.octaves.iter().copied());
+    let local = row(&mut [report.lowest_local_detail, kept.source_lowest_local_detail].into_iter());
+    let contrast = row(&mut core::iter::once(kept.contrast));
+    Ok(format!(
+        "seam at 1, 2, 4, 8 px{seams}\n\
+         detail, finest first {octaves}\n\
+         least detail, before {local}\n\
+         contrast             {contrast}\n"
+    ))
 }
 
 /// A raster with every pixel as a square of `times × times` pixels.

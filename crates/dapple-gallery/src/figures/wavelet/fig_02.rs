@@ -1,6 +1,5 @@
-//! Large blend maps made by tiling R_n: on the left each blend tile, on the right the map tiled by it.
-//!
-//! One tile comes from a texture, the other from Perlin noise.
+//! Large blend maps made by tiling R_n: on the left each blend tile, of a texture and of Perlin noise, on the right the map
+//! tiled by it. One level hides the seams of the texture, and not those of the noise.
 
 use super::{BLEND_TILE, beside, originals, report, tile_side};
 use crate::figure::source;
@@ -12,7 +11,10 @@ pub(super) const FIGURE: Figure = Figure {
     parameters: &[
         ("tile", "128 × 128"),
         ("map", "512 × 512"),
-        ("filters", "quadratic B-spline, one level, Cook and DeRose's phase"),
+        (
+            "filters",
+            "quadratic B-spline, one level, Cook and DeRose's phase",
+        ),
     ],
     source: source!(),
     render,

@@ -21,7 +21,7 @@ use dapple_tile::{
 pub(super) const FIGURE: Figure = Figure {
     number: "4",
     parameters: &[
-        ("tile, map", "128 × 128, 512 × 512"),
+        ("tile, map", "128 × 128, 256 × 256"),
         ("grass", "35 % of the area"),
         ("gain of the mask", "8"),
     ],
@@ -34,16 +34,20 @@ const GRASS: f32 = 0.35;
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let side = tile_side(size);
+    let map = [2 * side; 2];
     let stone = stone(side, Seed(1), Edges::Repeating)?;
     let pebble = pebble(side, Seed(1), Edges::Repeating)?;
-    let grass = grass(size, Seed(1), Edges::Repeating)?;
+    let grass = grass(map[0], Seed(1), Edges::Repeating)?;
     let on_stone = overgrown(&stone, &grass.color)?;
     let on_pebble = overgrown(&pebble, &grass.color)?;
     Ok(vec![
-        Panel::color("stone", repeat(&stone.color, [size; 2])?),
-        Panel::color("pebble", repeat(&pebble.color, [size; 2])?),
+        Panel::color("stone", repeat(&stone.color, map)?),
+        Panel::color("pebble", repeat(&pebble.color, map)?),
         Panel::color("grass", grass.color),
-        Panel::gray("blend tile of the stone, tiled", repeat(&blend_tile(&stone)?, [size; 2])?),
+        Panel::gray(
+            "blend tile of the stone, tiled",
+            repeat(&blend_tile(&stone)?, map)?,
+        ),
         Panel::color("c1: stone with grass", on_stone),
         Panel::color("c2: pebble with grass", on_pebble),
     ])
@@ -58,10 +62,7 @@ fn blend_tile(ground: &Material) -> anyhow::Result<Raster<f32>> {
 }
 
 /// The ground, tiled, with grass where its blend tile is low.
-fn overgrown(
-    ground: &Material,
-    grass: &Raster<LinearRgb>,
-) -> anyhow::Result<Raster<LinearRgb>> {
+fn overgrown(ground: &Material, grass: &Raster<LinearRgb>) -> anyhow::Result<Raster<LinearRgb>> {
     let size = grass.size();
     let mask = repeat(&blend_tile(ground)?, size)?;
     let maps = [

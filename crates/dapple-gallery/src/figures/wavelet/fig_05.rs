@@ -29,7 +29,7 @@ type Function = fn(&Raster<f32>) -> anyhow::Result<Raster<LinearRgb>>;
 /// Each function with its name, and the cells across its tile.
 const FUNCTIONS: [(&str, f64, Function); 3] = [
     ("marble", 2.5, |noise| marble(noise, 8)),
-    ("wood grain", 1.5, |noise| wood(noise, 6)),
+    ("wood grain", 1.5, |noise| wood(noise, 12)),
     ("clouds", 3.3, cloud),
 ];
 
@@ -41,9 +41,9 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         let raw = perlin(side, cells, 5, Seed(5).child(name, 0))?;
         let tile = ours.apply(&raw)?;
         rows[0].push(Panel::gray(format!("tile for {name}"), enlarged(&raw, 4)?));
-        for (row, label, tile) in [(1, "raw tile", &raw), (2, "our tile", &tile)] {
+        for (row, label, tile) in [(1, "the raw tile", &raw), (2, "our tile", &tile)] {
             let picture = function(&repeat(tile, [size; 2])?)?;
-            let panel = Panel::color(format!("{name} of the {label}"), picture);
+            let panel = Panel::color(format!("{name} of {label}"), picture);
             rows[row].push(panel.with_note(report(&raw, tile)?));
         }
     }

@@ -23,7 +23,10 @@ pub(super) const FIGURE: Figure = Figure {
         ("margin", "32 pixels, where a method has one"),
         ("seam", "ratio at 1 and at 4 pixels, both axes"),
         ("fine", "power kept in the finest octave"),
-        ("contrast, least", "deviation kept; least local detail over that of the source"),
+        (
+            "contrast, least",
+            "deviation kept; least local detail over that of the source",
+        ),
     ],
     source: source!(),
     render,
@@ -39,7 +42,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
                 Some(method) => Seamless::new(method).apply(crop),
                 None => Ok(crop.clone()),
             });
-            let mut note = String::from("          seam 1  seam 4    fine  contrast   least\n");
+            let mut note = String::from("       seam 1 seam 4   fine contr. least\n");
             for ((crop_name, crop), tile) in crops.iter().zip(&tiles) {
                 let tile = tile.as_ref().map_err(Clone::clone)?;
                 note += &line(crop_name, crop, tile)?;
@@ -115,17 +118,21 @@ fn line(name: &str, crop: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<St
     };
     let report = SeamReport::beside(crop, tile, &options)?;
     let ratio = |index: usize| report.seams[index].both.map_or(f64::NAN, |both| both.ratio);
-    let (fine, contrast, least) = report.kept.as_ref().map_or((f64::NAN, f64::NAN, f64::NAN), |kept| {
-        (
-            kept.octaves.first().copied().unwrap_or(f64::NAN),
-            kept.contrast,
-            report.lowest_local_detail / kept.source_lowest_local_detail,
-        )
-    });
+    let (fine, contrast, least) =
+        report
+            .kept
+            .as_ref()
+            .map_or((f64::NAN, f64::NAN, f64::NAN), |kept| {
+                (
+                    kept.octaves.first().copied().unwrap_or(f64::NAN),
+                    kept.contrast,
+                    report.lowest_local_detail / kept.source_lowest_local_detail,
+                )
+            });
     let mut line = String::new();
     writeln!(
         line,
-        "{name:<8} {:7.2} {:7.2} {fine:7.3} {contrast:9.2} {least:7.2}",
+        "{name:<6} {:6.2} {:6.2} {fine:6.2} {contrast:6.2} {least:5.2}",
         ratio(0),
         ratio(2)
     )?;

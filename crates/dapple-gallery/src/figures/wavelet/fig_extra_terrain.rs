@@ -34,12 +34,12 @@ pub(super) const FIGURE: Figure = Figure {
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let window = Window::unit([size; 2])?;
-    let noise = FractalNoise::new(0.35, Seed(12))?;
+    let noise = FractalNoise::new(0.6, Seed(12))?;
     let land = Raster::from_window(&window, |at| noise.at(at))?;
     let normals = normal_map(
         &land,
         &NormalOptions {
-            strength: 0.45,
+            strength: 0.3,
             ..NormalOptions::default()
         },
     )?;
@@ -63,10 +63,11 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
             height: None,
         })
         .collect();
-    let tile = wavelet_tile([tile_side(size); 2], &[0.2, 0.5, 1.0, 1.0], Seed(6))?;
+    let tile = wavelet_tile([tile_side(size); 2], &[0.1, 0.3, 0.6, 1.0], Seed(6))?;
     let mask = repeat(&rank_equalize(&tile)?, [size; 2])?;
     let by_tile = Blend::new(Weighting::Mask { gain: 5.0 }, Mixing::KeepVariance);
-    let toward = DVec3::new(-0.6, 0.6, 0.6).normalize();
+    // The textures are lit as level ground, which stays as it is.
+    let toward = DVec3::new(-0.5, 0.5, 1.0);
     [
         ("linear splatting", blend(&layers, &Blend::default())?),
         ("by tiles", blend_by_tile(&layers, &mask, &by_tile)?),
@@ -78,23 +79,23 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         };
         let lit = color.zip_map(&normals, |&color, normal| {
             let normal = DVec3::from_array(normal.to_array().map(f64::from));
-            color * (0.15 + 1.25 * normal.dot(toward).max(0.0)) as f32
+            color * (0.2 + 0.8 * normal.dot(toward).max(0.0)) as f32
         })?;
         Ok(Panel::color(label, lit))
     })
     .collect()
 }
 
-/// How much stone, grass and soil there is at each place, from its height and how level it is.
+/// How much stone, grass and soil there is at each place, from how much of the land is lower, and how level it is.
 fn weights(land: &Raster<f32>, level: &Raster<f32>) -> anyhow::Result<[Raster<f32>; 3]> {
     let rise = |from: f32, to: f32, value: f32| ((value - from) / (to - from)).clamp(0.0, 1.0);
-    let stone = land.zip_map(level, |&height, &level| {
-        rise(0.75, 0.45, level).max(rise(0.6, 0.8, height))
+    let lower = rank_equalize(land)?;
+    let stone = lower.zip_map(level, |&lower, &level| {
+        rise(0.8, 0.65, level).max(rise(0.6, 0.9, lower))
     })?;
-    let soil = land.zip_map(level, |&height, &level| {
-        rise(0.9, 0.75, level).max(rise(0.42, 0.55, height))
+    let soil = lower.zip_map(&stone, |&lower, &stone| {
+        rise(0.3, 0.6, lower) * (1.0 - stone)
     })?;
-    let soil = soil.zip_map(&stone, |&soil, &stone| soil * (1.0 - stone))?;
-    let grass = soil.zip_map(&stone, |&soil, &stone| 1.0 - soil - stone)?;
-    Ok([stone, grass.map(|grass| grass.max(0.0)), soil])
+    let grass = soil.zip_map(&stone, |&soil, &stone| (1.0 - soil - stone).max(0.0))?;
+    Ok([stone, grass, soil])
 }
