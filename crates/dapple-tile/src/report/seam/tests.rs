@@ -87,11 +87,9 @@ fn ratios_equal_their_definition() {
 
 #[test]
 fn ratios_of_a_small_raster_are_as_by_hand() {
-    // Along x: the wraps are 5 and 1, the steps inside 1, 2, 2 and 1, 3, 1.
-    // Along y: the wrap is 6, 4, 0, 4 down the columns, and the step inside is the same.
+    // Along x the steps across the wraps are 5 and 5, those inside 1, 2, 2 and 1, 3, 1. Along y a wrap is the step inside.
     let tile = Raster::from_vec([4, 2], vec![0.0, 1.0, 3.0, 5.0, 6.0, 5.0, 2.0, 1.0]).unwrap();
     let [one, two, four, _] = seams(&tile, &SeamOptions::default());
-    // Sums over the two lines: 10 across the wrap; 2, 4 (1 + 3) + … inside.
     let x = one.x.unwrap();
     assert_eq!(x.ratio, 5.0 / ((1.0 + 2.5 + 1.5) / 3.0));
     assert_eq!(one.y.unwrap().ratio, 1.0);
