@@ -1,5 +1,5 @@
 //! Large blend maps made by tiling R_n: on the left each blend tile, of a texture and of Perlin noise, on the right the map
-//! tiled by it. One level hides the seams of the texture, and not those of the noise.
+//! tiled by it. One level softens the seams and does not remove them.
 
 use super::{BLEND_TILE, beside, originals, report, tile_side};
 use crate::figure::source;

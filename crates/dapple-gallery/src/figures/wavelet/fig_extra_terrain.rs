@@ -34,7 +34,7 @@ pub(super) const FIGURE: Figure = Figure {
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let window = Window::unit([size; 2])?;
-    let noise = FractalNoise::new(0.6, Seed(12))?;
+    let noise = FractalNoise::new(0.45, Seed(12))?;
     let land = Raster::from_window(&window, |at| noise.at(at))?;
     let normals = normal_map(
         &land,
