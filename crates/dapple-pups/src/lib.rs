@@ -38,7 +38,6 @@ mod line;
 mod splat;
 mod tile;
 
-mod simd;
 mod sink;
 
 mod assign;

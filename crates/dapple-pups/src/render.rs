@@ -8,13 +8,13 @@
 use crate::line::{Line, runs};
 use crate::net::{Instance, Net};
 use crate::profile::{Cubic, Profile};
-use crate::simd;
 use crate::sink::{Planes, Sink};
 use crate::splat::{Footprint, LANES, Member, ROWS, Splatter};
 use crate::tile::Tiles;
 use crate::weight::AxialWeight;
 use core::ops::Range;
 use dapple_raster::Window;
+use dapple_raster::simd;
 use fearless_simd::{Level, dispatch, prelude::*};
 use glam::DVec2;
 

@@ -7,8 +7,8 @@ use crate::bins::{Bins, Candidates, GROUP};
 use crate::net::{AxisBlock, Net};
 use crate::profile::{Cubic, Profile, minus_u};
 use crate::shift::shift_weights;
-use crate::simd;
 use crate::weight::AxialWeight;
+use dapple_raster::simd;
 use fearless_simd::{dispatch, f32x4, f32x8, prelude::*};
 use glam::DVec2;
 

@@ -29,6 +29,9 @@ mod view;
 mod window;
 mod wrap;
 
+#[cfg(feature = "simd")]
+pub mod simd;
+
 pub use error::{RasterError, RasterErrorKind};
 pub use field::Field;
 pub use glam;

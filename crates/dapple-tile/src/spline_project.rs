@@ -18,9 +18,6 @@ use crate::sines::{self, Axis};
 use dapple_raster::Raster;
 use dapple_wavelet::{Border, Degree, Fit, Phase, SplineFilter};
 
-/// More levels than any side can be halved.
-const MOST_LEVELS: u32 = 32;
-
 /// The functions that a tile is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
@@ -155,27 +152,12 @@ impl SplineProject {
 
     /// The sizes of an image as it is halved, from its own to the last.
     fn sizes(&self, size: [u32; 2], axes: [bool; 2]) -> Result<Vec<[u32; 2]>, TileError> {
-        TileError::check(
-            self.levels <= MOST_LEVELS,
-            "number of levels",
-            self.levels.into(),
-            "at most 32",
-        )?;
         let filter = match self.basis {
             Basis::Spline(degree) => self.filter(degree),
             // Sines are sampled where the pixels of a centered spline of even degree are.
             Basis::Sines => SplineFilter::default(),
         };
-        let borders = borders(axes);
-        let mut sizes = vec![size];
-        for level in 0..self.levels as usize {
-            let mut halved = sizes[level];
-            for (length, border) in halved.iter_mut().zip(borders) {
-                *length = filter.coarse_len(*length as usize, border)? as u32;
-            }
-            sizes.push(halved);
-        }
-        Ok(sizes)
+        Ok(filter.sizes(size, self.levels, borders(axes))?)
     }
 
     fn filter(&self, degree: Degree) -> SplineFilter {

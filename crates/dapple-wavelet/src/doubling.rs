@@ -6,6 +6,7 @@ use crate::ends::{Halving, Line};
 use crate::kernel::two_scale;
 use crate::pass::fill_chunks;
 use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use fearless_simd::{Level, Simd, dispatch};
 
 /// A filter that doubles a line.
 #[derive(Clone, Debug)]
@@ -64,17 +65,32 @@ impl Doubling {
     }
 
     /// Doubles columns, rounds to `f32`, and doubles rows by `along_rows`.
-    pub(crate) fn plane(&self, along_rows: &Self, coarse: &[f32], fine: &mut [f32]) {
+    pub(crate) fn plane(&self, level: Level, along_rows: &Self, coarse: &[f32], fine: &mut [f32]) {
         let width = along_rows.coarse.len;
         let scratch = || vec![0.0; width + 2 * PAD];
         fill_chunks(fine, along_rows.fine.len, scratch, |padded, row, fine| {
-            self.blend(row, coarse, &mut padded[PAD..PAD + width]);
-            along_rows.go_on(padded);
-            along_rows.spread(padded, fine, |value| value as f32);
+            dispatch!(level, simd => self.row(simd, along_rows, row, coarse, (padded, fine)));
         });
     }
 
+    /// A fine row, compiled for the level of `_simd`.
+    #[inline(always)]
+    fn row<S: Simd>(
+        &self,
+        _simd: S,
+        along_rows: &Self,
+        row: usize,
+        coarse: &[f32],
+        (padded, fine): (&mut [f64], &mut [f32]),
+    ) {
+        let width = along_rows.coarse.len;
+        self.blend(row, coarse, &mut padded[PAD..PAD + width]);
+        along_rows.go_on(padded);
+        along_rows.spread(padded, fine, |value| value as f32);
+    }
+
     /// Fine row `row` of the coarse rows, which are as wide as `sums`; rounded to `f32`.
+    #[inline(always)]
     pub(crate) fn blend(&self, row: usize, coarse: &[f32], sums: &mut [f64]) {
         let part = &self.parts[row % 2];
         let width = sums.len();
@@ -93,6 +109,7 @@ impl Doubling {
     }
 
     /// Continues a coarse line that has `PAD` values too many at both ends.
+    #[inline(always)]
     fn go_on(&self, padded: &mut [f64]) {
         let len = self.coarse.len;
         for place in (0..PAD).chain(PAD + len..len + 2 * PAD) {
@@ -101,6 +118,7 @@ impl Doubling {
     }
 
     /// The fine values of a continued coarse line.
+    #[inline(always)]
     fn spread<T>(&self, padded: &[f64], fine: &mut [T], round: impl Fn(f64) -> T) {
         let [even, odd] = &self.parts;
         let from = |part: &Part| &padded[(PAD as i64 + part.first) as usize..];
@@ -138,6 +156,7 @@ impl Part {
 }
 
 /// The weighted sum of rows, rounded to `f32`.
+#[inline(always)]
 fn blend<const T: usize>(weights: [f64; T], rows: [&[f32]; T], sums: &mut [f64]) {
     let rows = rows.map(|row| &row[..sums.len()]);
     for (x, sum) in sums.iter_mut().enumerate() {
@@ -147,6 +166,7 @@ fn blend<const T: usize>(weights: [f64; T], rows: [&[f32]; T], sums: &mut [f64])
 }
 
 /// Even and odd values of a line, each a weighted sum of values from its own place in the coarse line on.
+#[inline(always)]
 fn spread<const T: usize, O>(
     weights: [[f64; T]; 2],
     coarse: [&[f64]; 2],
@@ -166,6 +186,7 @@ fn spread<const T: usize, O>(
 }
 
 /// The sum of weighted terms, in their order.
+#[inline(always)]
 fn weigh<const T: usize>(weights: [f64; T], term: impl Fn(usize) -> f64) -> f64 {
     let mut sum = weights[0] * term(0);
     for (i, weight) in weights.iter().enumerate().skip(1) {

@@ -103,6 +103,7 @@ pub use bands::Bands;
 pub use error::{WaveletError, WaveletErrorKind};
 pub use noise::{WaveletNoise, WaveletNoise2, WaveletNoise3};
 pub use noise_tile::wavelet_tile;
+pub use plane::FilterMemory;
 pub use spline::{Border, Degree, Fit, Phase, SplineFilter};
 
 pub use dapple_hash as hash;

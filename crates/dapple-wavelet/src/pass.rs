@@ -5,26 +5,37 @@
 //! pass reads or writes single values with the stride of a row, which would cost more than the filter.
 
 use crate::recursion::{Lanes, LineFilter};
+use dapple_raster::simd;
+use fearless_simd::{Level, dispatch, f32x8, prelude::*};
 
-/// How many lines are filtered side by side: four registers of the smallest SIMD level.
+/// How many lines are filtered side by side.
 const LANES: usize = 8;
 
 /// How many groups of lines are filtered before they are written to the result: they stay in the cache until then.
 const BATCH: usize = 32;
-
-/// How many values of a line are read at a time: what they are written to stays in the nearest cache.
-const BLOCK: usize = 64;
 
 /// How many rows of the result are written at a time: what they are made of is read in whole cache lines.
 const ROWS: usize = 8;
 
 /// Filters the lines of an array, and rounds to `f32`. Value `i` of line `l` is at `i * lines + l` of the result.
 pub(crate) fn filter_lines(filter: &LineFilter, values: &[f32]) -> Vec<f32> {
+    let mut result = vec![0.0; values.len() / filter.source.len * filter.target.len];
+    filter_lines_into(simd::level(), filter, values, &mut Vec::new(), &mut result);
+    result
+}
+
+/// As [`filter_lines`], at a SIMD level, into memory for the result. What `batch` holds does not matter.
+pub(crate) fn filter_lines_into(
+    level: Level,
+    filter: &LineFilter,
+    values: &[f32],
+    batch: &mut Vec<f32>,
+    result: &mut [f32],
+) {
     let [len, target_len] = [filter.source.len, filter.target.len];
     let n_lines = values.len() / len;
     let group_len = LANES * target_len;
-    let mut result = vec![0.0; n_lines * target_len];
-    let mut batch = vec![0.0; n_lines.div_ceil(LANES).min(BATCH) * group_len];
+    batch.resize(n_lines.div_ceil(LANES).min(BATCH) * group_len, 0.0);
     let batches = values
         .chunks(BATCH * LANES * len)
         .zip((0..n_lines).step_by(BATCH * LANES));
@@ -34,13 +45,10 @@ pub(crate) fn filter_lines(filter: &LineFilter, values: &[f32]) -> Vec<f32> {
         fill_chunks(groups, group_len, Lanes::default, |lanes, group, target| {
             let lines = &values[group * LANES * len..];
             let lines = &lines[..lines.len().min(LANES * len)];
-            let filtered = filter.run(lanes, |target| interleave(lines, target));
-            for (target, &filtered) in target.iter_mut().zip(filtered.as_flattened()) {
-                *target = filtered as f32;
-            }
+            dispatch!(level, simd => filter_group(simd, filter, lanes, lines, target));
         });
         fill_chunks(
-            &mut result,
+            result,
             ROWS * n_lines,
             || (),
             |(), chunk, rows| {
@@ -53,22 +61,62 @@ pub(crate) fn filter_lines(filter: &LineFilter, values: &[f32]) -> Vec<f32> {
             },
         );
     }
-    result
 }
 
-/// Writes up to `LANES` lines side by side, two at a time, which is faster than one.
-fn interleave(lines: &[f32], target: &mut [[f64; LANES]]) {
+/// Filters up to `LANES` lines side by side.
+#[inline(always)]
+fn filter_group<S: Simd>(
+    simd: S,
+    filter: &LineFilter,
+    lanes: &mut Lanes<LANES>,
+    lines: &[f32],
+    target: &mut [f32],
+) {
+    let filtered = filter.run(lanes, |target| interleave(simd, lines, target));
+    for (target, &filtered) in target.iter_mut().zip(filtered.as_flattened()) {
+        *target = filtered as f32;
+    }
+}
+
+/// Writes up to `LANES` lines side by side: squares of values at once, and what is left over one by one.
+#[inline(always)]
+fn interleave<S: Simd>(simd: S, lines: &[f32], target: &mut [[f64; LANES]]) {
     let len = target.len();
-    for (block, target) in target.chunks_mut(BLOCK).enumerate() {
-        for (pair, lines) in lines.chunks(2 * len).enumerate() {
-            let (a, b) = lines.split_at(len);
-            // The last line of an odd number goes beside itself.
-            let b = if b.is_empty() { a } else { b };
-            let [a, b] = [a, b].map(|line| &line[block * BLOCK..][..target.len()]);
-            for ((target, &a), &b) in target.iter_mut().zip(a).zip(b) {
-                let (pairs, _) = target.as_chunks_mut::<2>();
-                pairs[pair] = [f64::from(a), f64::from(b)];
-            }
+    let n_lines = lines.len() / len;
+    // A group that is not full is the last one.
+    let n_squares = if n_lines == LANES { len / LANES } else { 0 };
+    let (squares, rest) = target.split_at_mut(n_squares * LANES);
+    for (square, target) in squares.chunks_exact_mut(LANES).enumerate() {
+        transpose(simd, &lines[square * LANES..], len, target);
+    }
+    for (i, target) in (n_squares * LANES..).zip(rest) {
+        for (line, target) in target[..n_lines].iter_mut().enumerate() {
+            *target = f64::from(lines[line * len + i]);
+        }
+    }
+}
+
+/// The first `LANES` values of as many lines, which begin `len` apart, side by side.
+///
+/// A perfect shuffle of all 64 values turns the six bits of their places by one; three of them exchange the three bits
+/// of the line and of the place in it.
+#[inline(always)]
+fn transpose<S: Simd>(simd: S, lines: &[f32], len: usize, target: &mut [[f64; LANES]]) {
+    let mut square = [f32x8::splat(simd, 0.0); LANES];
+    for (line, values) in square.iter_mut().enumerate() {
+        *values = f32x8::from_slice(simd, &lines[line * len..][..LANES]);
+    }
+    for _ in 0..3 {
+        let before = square;
+        for i in 0..LANES / 2 {
+            square[2 * i] = before[i].zip_low(before[i + LANES / 2]);
+            square[2 * i + 1] = before[i].zip_high(before[i + LANES / 2]);
+        }
+    }
+    for (values, target) in square.into_iter().zip(target) {
+        let values: [f32; LANES] = values.into();
+        for lane in 0..LANES {
+            target[lane] = f64::from(values[lane]);
         }
     }
 }

@@ -6,10 +6,19 @@
 use crate::doubling::Doubling;
 use crate::ends::lengths;
 use crate::line::check_finite;
-use crate::pass::filter_lines;
+use crate::pass::filter_lines_into;
 use crate::recursion::LineFilter;
 use crate::{Border, SplineFilter, WaveletError};
-use dapple_raster::Raster;
+use dapple_raster::{Raster, simd};
+use fearless_simd::Level;
+
+/// What [`SplineFilter::down_into`] needs beside its result, kept from raster to raster: 2 bytes for each fine pixel, and
+/// some more.
+#[derive(Clone, Debug, Default)]
+pub struct FilterMemory {
+    columns: Vec<f32>,
+    batch: Vec<f32>,
+}
 
 impl SplineFilter {
     /// Equations 9 and 12: the nearest raster of half the size.
@@ -22,11 +31,39 @@ impl SplineFilter {
         fine: &Raster<f32>,
         borders: [Border; 2],
     ) -> Result<Raster<f32>, WaveletError> {
+        let [width, height] = self.sizes(fine.size(), 1, borders)?[1];
+        let mut coarse = Raster::filled([width, height], 0.0)?;
+        self.down_into(fine, borders, &mut coarse, &mut FilterMemory::default())?;
+        Ok(coarse)
+    }
+
+    /// As [`down`](Self::down), into a raster of half the size, with memory that was used before: for one raster after
+    /// another, and for large ones, where new memory costs more time than the filter.
+    ///
+    /// # Errors
+    ///
+    /// As [`down`](Self::down), and `Raster` if `coarse` has another size than half of `fine`, as
+    /// [`coarse_len`](Self::coarse_len) says.
+    pub fn down_into(
+        &self,
+        fine: &Raster<f32>,
+        borders: [Border; 2],
+        coarse: &mut Raster<f32>,
+        memory: &mut FilterMemory,
+    ) -> Result<(), WaveletError> {
         let [width, height] = fine.size().map(|side| side as usize);
         let along_rows = LineFilter::halving(*self, width, borders[0])?;
         let along_columns = LineFilter::halving(*self, height, borders[1])?;
+        let size = [&along_rows, &along_columns].map(|filter| filter.target.len as u32);
+        coarse.check_same_size(size)?;
         check_finite(fine.pixels())?;
-        filter(fine, [&along_rows, &along_columns])
+        memory.filter(
+            simd::level(),
+            fine,
+            [&along_rows, &along_columns],
+            coarse.pixels_mut(),
+        );
+        Ok(())
     }
 
     /// Equations 8 and 13: the same function on `fine_size` pixels.
@@ -40,17 +77,43 @@ impl SplineFilter {
         fine_size: [u32; 2],
         borders: [Border; 2],
     ) -> Result<Raster<f32>, WaveletError> {
-        let doubling = |axis: usize| {
-            let [coarse_len, fine_len] = [coarse.size()[axis], fine_size[axis]];
-            Doubling::new(*self, coarse_len as usize, fine_len as usize, borders[axis])
+        let doubled = |axis: usize| {
+            self.doubling(coarse.size()[axis], fine_size[axis], borders[axis])
+                .map(drop)
         };
+        // Refuses a size that does not fit before there is memory for it.
+        doubled(0).and(doubled(1))?;
+        let mut fine = Raster::filled(fine_size, 0.0)?;
+        self.up_into(coarse, borders, &mut fine)?;
+        Ok(fine)
+    }
+
+    /// As [`up`](Self::up), into a raster of the size that is wanted.
+    ///
+    /// # Errors
+    ///
+    /// As [`up`](Self::up).
+    pub fn up_into(
+        &self,
+        coarse: &Raster<f32>,
+        borders: [Border; 2],
+        fine: &mut Raster<f32>,
+    ) -> Result<(), WaveletError> {
+        let doubling =
+            |axis: usize| self.doubling(coarse.size()[axis], fine.size()[axis], borders[axis]);
         let [along_rows, along_columns] = [doubling(0)?, doubling(1)?];
-        // Refuses a size that is too large before there is memory for it.
-        Raster::filled(fine_size, ())?;
         check_finite(coarse.pixels())?;
-        let mut fine = vec![0.0; along_rows.fine.len * along_columns.fine.len];
-        along_columns.plane(&along_rows, coarse.pixels(), &mut fine);
-        Ok(Raster::from_vec(fine_size, fine)?)
+        along_columns.plane(
+            simd::level(),
+            &along_rows,
+            coarse.pixels(),
+            fine.pixels_mut(),
+        );
+        Ok(())
+    }
+
+    fn doubling(&self, coarse: u32, fine: u32, border: Border) -> Result<Doubling, WaveletError> {
+        Doubling::new(*self, coarse as usize, fine as usize, border)
     }
 
     /// Halves a raster `levels` times along each axis and doubles it again; zero levels give the raster itself.
@@ -76,8 +139,12 @@ impl SplineFilter {
         Ok(raster)
     }
 
-    /// The sizes of a raster that is halved `levels` times, from the first to the last.
-    pub(crate) fn sizes(
+    /// The sizes of a raster that is halved `levels` times, from its own to the last.
+    ///
+    /// # Errors
+    ///
+    /// `NotDivisible` with the side and all levels, `TooShort`; `Range` for more than 32 levels.
+    pub fn sizes(
         &self,
         size: [u32; 2],
         levels: u32,
@@ -95,14 +162,33 @@ impl SplineFilter {
 /// The raster, filtered along its rows and then along its columns.
 pub(crate) fn filter(
     raster: &Raster<f32>,
-    [along_rows, along_columns]: [&LineFilter; 2],
+    filters: [&LineFilter; 2],
 ) -> Result<Raster<f32>, WaveletError> {
-    let size = [along_rows, along_columns].map(|filter| filter.target.len as u32);
-    let columns = filter_lines(along_rows, raster.pixels());
-    Ok(Raster::from_vec(
-        size,
-        filter_lines(along_columns, &columns),
-    )?)
+    let size = filters.map(|filter| filter.target.len as u32);
+    let mut filtered = Raster::filled(size, 0.0)?;
+    let pixels = filtered.pixels_mut();
+    FilterMemory::default().filter(simd::level(), raster, filters, pixels);
+    Ok(filtered)
+}
+
+impl FilterMemory {
+    /// Filters a raster along its rows and then along its columns, at a SIMD level.
+    fn filter(
+        &mut self,
+        level: Level,
+        raster: &Raster<f32>,
+        [along_rows, along_columns]: [&LineFilter; 2],
+        filtered: &mut [f32],
+    ) {
+        let Self { columns, batch } = self;
+        let n_values = along_rows.target.len * raster.height() as usize;
+        if columns.len() != n_values {
+            // New memory is zero already where the system gives it; clearing would touch it once more.
+            *columns = vec![0.0; n_values];
+        }
+        filter_lines_into(level, along_rows, raster.pixels(), batch, columns);
+        filter_lines_into(level, along_columns, columns, batch, filtered);
+    }
 }
 
 #[cfg(test)]

@@ -65,6 +65,7 @@ impl LineFilter {
     }
 
     /// Filters the lines that `load` writes into the slice it is given, as long as the source.
+    #[inline(always)]
     pub(crate) fn run<'lanes, const L: usize>(
         &self,
         lanes: &'lanes mut Lanes<L>,
@@ -99,6 +100,7 @@ impl LineFilter {
 }
 
 /// Continues the line that begins at `before` to both ends of the slice.
+#[inline(always)]
 fn go_on<const L: usize>(line: &Line, values: &mut [[f64; L]], before: usize) {
     let after = before + line.len..values.len();
     for place in (0..before).chain(after) {
@@ -107,14 +109,29 @@ fn go_on<const L: usize>(line: &Line, values: &mut [[f64; L]], before: usize) {
 }
 
 /// Each target is the sum of `taps`, which are symmetric, times the values from its place on.
+#[inline(always)]
 fn weigh<const L: usize>(taps: &[f64], source: &[[f64; L]], step: usize, target: &mut [[f64; L]]) {
+    // The paper's filter has eight taps, which then stay in registers.
+    match <&[f64; 8]>::try_from(taps) {
+        Ok(taps) => weigh_by(taps, source, step, target),
+        Err(_) => weigh_by(taps, source, step, target),
+    }
+}
+
+#[inline(always)]
+fn weigh_by<const L: usize>(
+    taps: &[f64],
+    source: &[[f64; L]],
+    step: usize,
+    target: &mut [[f64; L]],
+) {
     let (half, middle) = (taps.len() / 2, taps.len() % 2 == 1);
     for (values, target) in source.windows(taps.len()).step_by(step).zip(target) {
         let mut sum = [0.0; L];
-        let pairs = values.iter().zip(values.iter().rev());
-        for ((a, b), tap) in pairs.zip(&taps[..half]) {
+        for (tap, weight) in taps[..half].iter().enumerate() {
+            let (a, b) = (&values[tap], &values[taps.len() - 1 - tap]);
             for lane in 0..L {
-                sum[lane] += tap * (a[lane] + b[lane]);
+                sum[lane] += weight * (a[lane] + b[lane]);
             }
         }
         if middle {
@@ -127,12 +144,14 @@ fn weigh<const L: usize>(taps: &[f64], source: &[[f64; L]], step: usize, target:
 }
 
 /// Runs the recursion of each pole over the lines, forward and then backward.
+#[inline(always)]
 fn recur<const L: usize, const P: usize>(poles: [f64; P], lines: &mut [[f64; L]]) {
     sweep(poles, lines.iter_mut());
     sweep(poles, lines.iter_mut().rev());
 }
 
 /// Adds to each value the one before, times a pole; for one pole after the other.
+#[inline(always)]
 fn sweep<'lines, const L: usize, const P: usize>(
     poles: [f64; P],
     lines: impl Iterator<Item = &'lines mut [f64; L]>,

@@ -9,6 +9,7 @@ use crate::line::check_finite;
 use crate::pass::{fill_chunks, filter_lines};
 use crate::recursion::LineFilter;
 use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use dapple_raster::simd;
 
 impl SplineFilter {
     /// The nearest volume of half the size, along each axis as [`coarse_len`](Self::coarse_len) says.
@@ -61,7 +62,7 @@ impl SplineFilter {
                 for (value, &sum) in slice.iter_mut().zip(&*sums) {
                     *value = sum as f32;
                 }
-                y.plane(&x, slice, fine);
+                y.plane(simd::level(), &x, slice, fine);
             },
         );
         Ok(fine)

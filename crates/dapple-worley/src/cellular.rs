@@ -4,9 +4,9 @@ use crate::fixed::Place;
 use crate::ranges::range;
 use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
-use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError, WorleyErrorKind, simd};
+use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError, WorleyErrorKind};
 use dapple_hash::{CellHash, Seed, unit_f64};
-use dapple_raster::{Field, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, RasterError, RasterViewMut, Window, simd};
 use glam::DVec2;
 
 /// A scalar texture: a combination of F1 to F4 at every position.

@@ -11,9 +11,9 @@ use crate::cellular::measure_range;
 use crate::fixed::Place;
 use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
-use crate::{Axes, Cellular, Plane, Space, Vector, Worley, WorleyError, simd};
+use crate::{Axes, Cellular, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
-use dapple_raster::{Field, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, RasterError, RasterViewMut, Window, simd};
 use glam::DVec2;
 
 /// How many octaves a fractal sum has, and how they differ.

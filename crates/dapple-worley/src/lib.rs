@@ -66,7 +66,6 @@ mod many;
 mod one;
 mod places;
 mod render;
-mod simd;
 mod sink;
 
 mod error;

@@ -2,7 +2,8 @@
 
 use crate::many::{GROUP, Group, Points, Search};
 use crate::metric::{Chebyshev, Euclidean, Manhattan, Norm};
-use crate::{Axes, Feature, LIMIT, Metric, Space, Vector, Worley, WorleyError, simd};
+use crate::{Axes, Feature, LIMIT, Metric, Space, Vector, Worley, WorleyError};
+use dapple_raster::simd;
 use fearless_simd::{Level, dispatch};
 
 impl<const N: usize> Worley<N>

@@ -5,8 +5,9 @@ use crate::lattice::{Density, Lattice};
 use crate::metric::{Chebyshev, Euclidean, Manhattan, Minkowski, Norm, with_norm};
 use crate::one::nearest_of_neighbors;
 use crate::search::{Hit, nearest};
-use crate::{Axes, Metric, Scatter, Space, Vector, WorleyError, simd};
+use crate::{Axes, Metric, Scatter, Space, Vector, WorleyError};
 use dapple_hash::{Seed, unit_f32};
+use dapple_raster::simd;
 use fearless_simd::{Level, dispatch};
 use std::sync::Arc;
 

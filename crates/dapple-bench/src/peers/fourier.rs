@@ -2,7 +2,7 @@
 //!
 //! Projecting a line adds to each frequency its alias half the sampling rate away: with `H` the transform of the
 //! refinement filter and `B` that of the Gram filter on the coarse line, frequency `k` becomes
-//! `H(k) (C(k) G(k) + C(k + n/2) G(k + n/2))`, where `C = conj(H) · B(fine) / B(coarse) / 2`. The filters are real, so that two lines go
+//! `H(k) (C(k) G(k) + C(k + n/2) G(k + n/2))`, where `C = conj(H) · B(fine) / B(coarse) / 4`. The filters are real, so that two lines go
 //! through one complex transform; columns go through as rows of the transposed raster. Planner, scratch and memory are
 //! kept. The default planner takes the widest vector code of the machine.
 
@@ -40,7 +40,7 @@ impl FourierProjection {
         let angle = |k: usize| TAU * k as f64 / side as f64;
         let as_f32 = |value: Complex<f64>| Complex::new(value.re as f32, value.im as f32);
         let down = (0..side).map(|k| {
-            let weight = gram(angle(k)) / gram(2.0 * angle(k)) / 2.0;
+            let weight = gram(angle(k)) / gram(2.0 * angle(k)) / 4.0;
             as_f32(refinement(angle(k)).conj() * weight)
         });
         let up = (0..side).map(|k| as_f32(refinement(angle(k)) / side as f64));
@@ -142,7 +142,10 @@ mod tests {
         for (at, &value) in fourier.fine.iter().enumerate() {
             let expected: f32 = line[at / 8] * line[at % 8];
             // A transform of 8 values in f32.
-            assert!((value - expected).abs() < 1e-6, "{value} and not {expected}");
+            assert!(
+                (value - expected).abs() < 1e-6,
+                "{value} and not {expected}"
+            );
         }
     }
 }

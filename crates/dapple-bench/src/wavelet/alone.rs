@@ -57,7 +57,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
             theirs,
             |ours, theirs| {
                 // The taps that are left out sum up to less than 1e-3 on either side and axis.
-                confirm_equal(ours.pixels(), &theirs.fine, 4e-3)?;
+                confirm_equal(ours.fine.pixels(), &theirs.fine, 4e-3)?;
                 Ok(Done::both(raster.pixels().len()))
             },
         )?;

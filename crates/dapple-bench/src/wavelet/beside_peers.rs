@@ -48,7 +48,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
             theirs,
             |ours, theirs| {
                 // A transform of 2048 values in f32 loses some 1e-6.
-                confirm_equal(ours.pixels(), &theirs.fine, 1e-5)?;
+                confirm_equal(ours.fine.pixels(), &theirs.fine, 1e-5)?;
                 Ok(Done::both(raster.pixels().len()))
             },
         )?;

@@ -131,9 +131,8 @@ fn add_pairs(out: &mut [f32], after: &[f32], before: &[f32], tap: f32) {
 fn taps() -> [f32; HALF] {
     // `g` is the inverse of the Gram matrix, with its two poles.
     let inverse = |n: i32| {
-        let pole = |scale: f64, pole: f64| {
-            (0..n.abs()).fold(scale, |product: f64, _| product * pole)
-        };
+        let pole =
+            |scale: f64, pole: f64| (0..n.abs()).fold(scale, |product: f64, _| product * pole);
         pole(3.094986498686653508, -0.43057534709997379185)
             + pole(-0.252815576665031024, -0.043096288203264653823)
     };
@@ -155,9 +154,10 @@ mod tests {
 
     #[test]
     fn taps_are_those_of_the_exact_filter() {
-        for (tap, expected) in taps()
-            .into_iter()
-            .zip([0.6553403417, 0.0339789750, -0.2437804297, -0.0259359777])
+        for (tap, expected) in
+            taps()
+                .into_iter()
+                .zip([0.6553403417, 0.0339789750, -0.2437804297, -0.0259359777])
         {
             // Ten digits are known of the taps; f32 has seven.
             assert!(

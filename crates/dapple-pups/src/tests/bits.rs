@@ -3,10 +3,10 @@
 use super::sets::{Case, cases, values};
 use crate::Pups;
 use crate::render::render_at;
-use crate::simd::for_every_level;
 use crate::texture::Mean;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointIdx, poisson_disk, white_noise};
+use dapple_raster::simd::for_every_level;
 use dapple_raster::{Field, Raster, Window};
 use glam::DVec2;
 

@@ -229,7 +229,7 @@ fn sides_that_cannot_be_halved_are_refused_with_their_length() {
     for project in projects() {
         let odd = kind([16, 14], project, [true, true]);
         assert!(
-            matches!(odd, WaveletErrorKind::NotDivisible { .. }),
+            matches!(odd, WaveletErrorKind::NotDivisible { length: 14, .. }),
             "14 is no multiple of 4: {odd:?}"
         );
         let short = kind([16, 1], project, [true, false]);

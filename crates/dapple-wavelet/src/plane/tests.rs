@@ -74,6 +74,70 @@ fn down_and_up_equal_lines_bit_for_bit() {
 }
 
 #[test]
+fn every_simd_level_gives_the_same_bits() {
+    // Full groups of lines and one that is not, squares of values and what is left over.
+    for size in [[38, 46], [16, 24], [6, 4]] {
+        let fine = noise_raster(size);
+        for filter in all_filters() {
+            let [width, height] = size.map(|side| side as usize);
+            let halving = [width, height].map(|len| {
+                LineFilter::halving(filter, len, Border::Periodic).expect("an even length")
+            });
+            let coarse = filter.down(&fine, PERIODIC).expect("a good raster");
+            let doubling = [0, 1].map(|axis| {
+                let doubling = filter.doubling(coarse.size()[axis], size[axis], Border::Periodic);
+                doubling.expect("an even length")
+            });
+            let again = filter.up(&coarse, size, PERIODIC).expect("a good raster");
+            simd::for_every_level(|level| {
+                let mut halved = vec![f32::NAN; coarse.pixels().len()];
+                let filters = [&halving[0], &halving[1]];
+                FilterMemory::default().filter(level, &fine, filters, &mut halved);
+                assert_eq!(halved, coarse.pixels(), "down, {filter:?}, {level:?}");
+                let mut doubled = vec![f32::NAN; fine.pixels().len()];
+                doubling[1].plane(level, &doubling[0], coarse.pixels(), &mut doubled);
+                assert_eq!(doubled, again.pixels(), "up, {filter:?}, {level:?}");
+            });
+        }
+    }
+}
+
+#[test]
+fn memory_that_was_used_before_changes_nothing() {
+    let filter = SplineFilter::default();
+    let mut memory = FilterMemory::default();
+    for size in [[40, 24], [12, 70], [40, 24]] {
+        let fine = noise_raster(size);
+        let mut coarse = Raster::filled(size.map(|side| side / 2), f32::NAN).expect("a good size");
+        filter
+            .down_into(&fine, PERIODIC, &mut coarse, &mut memory)
+            .expect("a good raster");
+        let needed = filter.down(&fine, PERIODIC).expect("a good raster");
+        assert_eq!(coarse, needed, "down, {size:?}");
+        let mut again = Raster::filled(size, f32::NAN).expect("a good size");
+        filter
+            .up_into(&coarse, PERIODIC, &mut again)
+            .expect("a good raster");
+        let needed = filter.up(&coarse, size, PERIODIC).expect("a good raster");
+        assert_eq!(again, needed, "up, {size:?}");
+
+        let mut wrong = Raster::filled([5, 5], 0.0).expect("a good size");
+        let error = filter.down_into(&fine, PERIODIC, &mut wrong, &mut memory);
+        let error = error.expect_err("the size is wrong");
+        assert!(
+            matches!(error.kind(), WaveletErrorKind::Raster(_)),
+            "{error}"
+        );
+        let error = filter.up_into(&coarse, PERIODIC, &mut wrong);
+        let error = error.expect_err("the size is odd");
+        assert!(
+            matches!(error.kind(), WaveletErrorKind::NotDivisible { .. }),
+            "{error}"
+        );
+    }
+}
+
+#[test]
 fn down_is_the_same_on_any_number_of_threads() {
     // Wide enough for more than one batch of lines, and for groups that are not full.
     let fine = noise_raster([70, 301]);

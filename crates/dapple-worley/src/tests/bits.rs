@@ -4,9 +4,9 @@ use super::oracle::{METRICS, SCATTERS, position};
 use crate::fixed::Place;
 use crate::metric::with_norm;
 use crate::search::nearest;
-use crate::simd::for_every_level;
 use crate::{Axes, Combination, FeatureView, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::{Seed, hash1, unit_f64};
+use dapple_raster::simd::for_every_level;
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
 
