@@ -97,5 +97,6 @@ pub use spline_project::{Basis, Pixels, SplineProject};
 pub use weighting::Weighting;
 
 pub use dapple_color as color;
+pub use dapple_hash as hash;
 pub use dapple_raster as raster;
 pub use dapple_wavelet as wavelet;

@@ -15,7 +15,7 @@ pub enum Map {
     Normal(Raster<Normal>),
 }
 
-/// The smallest z that a normal is given before it becomes a slope: slopes are at most 1000.
+/// The smallest z that a normal is given before it becomes a slope: the slopes of unit vectors are at most 1000.
 const LEAST_Z: f32 = 1e-3;
 
 impl Map {
@@ -44,8 +44,8 @@ impl Map {
             Self::Value(raster) => vec![raster.clone()],
             Self::Color(raster) => color_planes(raster).into(),
             Self::Normal(raster) => vec![
-                raster.map(|normal| normal.x / normal.z.max(LEAST_Z)),
-                raster.map(|normal| normal.y / normal.z.max(LEAST_Z)),
+                raster.map(|normal| slope(normal.x, normal.z)),
+                raster.map(|normal| slope(normal.y, normal.z)),
             ],
         }
     }
@@ -93,14 +93,21 @@ fn exactly<const N: usize>(planes: Vec<Raster<f32>>) -> Result<[Raster<f32>; N],
     })
 }
 
-/// The unit vector along (x, y, 1).
-fn from_slopes(x: f32, y: f32) -> Normal {
-    let length = (x * x + y * y + 1.0).sqrt();
-    Normal {
-        x: x / length,
-        y: y / length,
-        z: 1.0 / length,
+/// A part of a normal as a slope; NaN if `z` is not finite.
+fn slope(part: f32, z: f32) -> f32 {
+    if z.is_finite() {
+        part / z.max(LEAST_Z)
+    } else {
+        f32::NAN
     }
+}
+
+/// The unit vector along (x, y, 1), in `f64`, where the squares of all slopes have room.
+fn from_slopes(x: f32, y: f32) -> Normal {
+    let [x, y] = [x, y].map(f64::from);
+    let length = (x * x + y * y + 1.0).sqrt();
+    let [x, y, z] = [x, y, 1.0].map(|part| (part / length) as f32);
+    Normal { x, y, z }
 }
 
 /// Refuses planes that differ in size, that have none, and pixels that are not finite.

@@ -11,7 +11,7 @@
 //! Departures. The jumps across x and those across y are solved one after the other, which their sum allows: with
 //! frequencies along the border only, the solution across it is a difference of two powers, `ρ^(n−1−x) − ρ^x`, known
 //! without a second transform. Along an axis that does not repeat there are no jumps, and the image is continued by its
-//! mirror image, as the least squares want it. A side of one pixel repeats already and is left alone.
+//! mirror image, as the least squares want it.
 //!
 //! Everything is `f64` up to the pixels of the result.
 

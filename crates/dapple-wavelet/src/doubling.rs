@@ -104,6 +104,7 @@ impl Doubling {
             [a] => blend([a], [coarse_row(0)], sums),
             [a, b] => blend([a, b], [0, 1].map(coarse_row), sums),
             [a, b, c] => blend([a, b, c], [0, 1, 2].map(coarse_row), sums),
+            // No spline here has more than five two-scale weights, three of one parity.
             _ => {}
         }
     }
@@ -127,6 +128,7 @@ impl Doubling {
             (&[a], &[d]) => spread([[a], [d]], lines, fine, round),
             (&[a, b], &[d, e]) => spread([[a, b], [d, e]], lines, fine, round),
             (&[a, b, c], &[d, e, f]) => spread([[a, b, c], [d, e, f]], lines, fine, round),
+            // No spline here has more than five two-scale weights, three of one parity.
             _ => {}
         }
     }

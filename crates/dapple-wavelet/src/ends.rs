@@ -146,7 +146,7 @@ pub(crate) fn lengths(
             range: "at most 32",
         }));
     }
-    if border == Border::Periodic && len > 0 && len.trailing_zeros() < levels {
+    if border == Border::Periodic && len > 1 && len.trailing_zeros() < levels {
         return Err(WaveletError::new(WaveletErrorKind::NotDivisible {
             length: len,
             levels,

@@ -93,7 +93,11 @@ impl LineFilter {
             [p] => recur([p], target),
             [p, q] => recur([p, q], target),
             [p, q, r] => recur([p, q, r], target),
-            _ => {}
+            ref poles => {
+                for &pole in poles {
+                    recur([pole], target);
+                }
+            }
         }
         &target[kept]
     }
