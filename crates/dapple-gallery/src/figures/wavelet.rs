@@ -21,7 +21,7 @@ use crate::Paper;
 use anyhow::Context;
 use dapple_pups::hash::Seed;
 use dapple_raster::{Raster, Wrap};
-use dapple_tile::{Basis, BlendMap, Pixels, SeamOptions, SeamReport, SplineProject};
+use dapple_tile::{Basis, BlendMap, Pixels, Seam, SeamOptions, SeamReport, SplineProject, repeat};
 use dapple_wavelet::{Degree, Phase};
 use grass::grass;
 use patch::{Edges, Material};
@@ -56,7 +56,7 @@ const BLEND_TILE: SplineProject = SplineProject {
 
 /// The side of a tile in a figure of `size` pixels: a quarter, as the paper's 128 are of 512, and a multiple of 8.
 fn tile_side(size: u32) -> u32 {
-    (size / 32 * 8).max(16)
+    (size / 32 * 8).max(8)
 }
 
 /// Blend tiles as the paper begins with, by name: of the features of two textures, and of noise. None of them repeats.
@@ -95,10 +95,8 @@ fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> 
     let row = |numbers: &mut dyn Iterator<Item = f64>| -> String {
         numbers.map(|number| format!("{number:6.2}")).collect()
     };
-    let seams = row(&mut report
-        .seams
-        .iter()
-        .filter_map(|seam| Some(seam.both?.ratio)));
+    let ratio = |seam: &Seam| seam.both.map_or(f64::NAN, |both| both.ratio);
+    let seams = row(&mut report.seams.iter().map(ratio));
     let octaves = row(&mut kept.octaves.iter().copied());
     let local = row(&mut [report.lowest_local_detail, kept.source_lowest_local_detail].into_iter());
     let contrast = row(&mut core::iter::once(kept.contrast));
@@ -110,26 +108,25 @@ fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> 
     ))
 }
 
-/// A raster with every pixel as a square of `times × times` pixels.
-fn enlarged<T: Copy>(raster: &Raster<T>, times: u32) -> anyhow::Result<Raster<T>> {
-    let size = raster.size().map(|side| side * times);
-    Ok(Raster::from_fn(size, |column, row| {
-        raster.row(row / times)[(column / times) as usize]
+/// A square raster in another size, each pixel that of the nearest place: enlarged, every pixel becomes a square.
+fn enlarged<T: Copy>(raster: &Raster<T>, size: u32) -> anyhow::Result<Raster<T>> {
+    let nearest = |at: u32| (u64::from(at) * u64::from(raster.width()) / u64::from(size)) as u32;
+    Ok(Raster::from_fn([size; 2], |column, row| {
+        raster.row(nearest(row))[nearest(column) as usize]
     })?)
 }
 
-/// A tile at the upper left of the map that is made of it, on a sheet of one color.
-fn beside<T: Copy>(tile: &Raster<T>, map: &Raster<T>, paper: T) -> anyhow::Result<Raster<T>> {
-    let gap = tile.width() / 8;
-    let left = tile.width() + gap;
-    let size = [left + map.width(), map.height()];
-    Ok(Raster::from_fn(size, |column, row| {
+/// A sheet `width` pixels wide with a tile at its upper left and, on the right, two by two copies of it.
+fn beside(tile: &Raster<f32>, width: u32) -> anyhow::Result<Raster<f32>> {
+    let map = repeat(tile, tile.size().map(|side| 2 * side))?;
+    let left = width.saturating_sub(map.width());
+    Ok(Raster::from_fn([width, map.height()], |column, row| {
         if column >= left {
             map.row(row)[(column - left) as usize]
         } else if column < tile.width() && row < tile.height() {
             tile.row(row)[column as usize]
         } else {
-            paper
+            1.0
         }
     })?)
 }
@@ -141,6 +138,7 @@ mod tests {
     use crate::draw::shrink;
     use dapple_points::hash::Seed;
     use dapple_raster::Raster;
+    use dapple_tile::{SeamOptions, SeamReport};
 
     type Make = fn(u32, Seed, Edges) -> anyhow::Result<Material>;
 
@@ -151,18 +149,10 @@ mod tests {
         ("soil", soil),
     ];
 
-    /// The mean difference between the last and the first column, over that between other neighbors.
+    /// The seam ratio at one pixel, over both axes.
     fn seam_ratio(raster: &Raster<f32>) -> f64 {
-        let [width, height] = raster.size();
-        let difference = |left: u32, right: u32| -> f64 {
-            let rows = (0..height).map(|row| raster.row(row));
-            rows.map(|row| f64::from((row[left as usize] - row[right as usize]).abs()))
-                .sum()
-        };
-        let inside: f64 = (1..width)
-            .map(|column| difference(column - 1, column))
-            .sum();
-        difference(width - 1, 0) * f64::from(width - 1) / inside
+        let report = SeamReport::of(raster, &SeamOptions::default()).unwrap();
+        report.seams[0].both.unwrap().ratio
     }
 
     #[test]

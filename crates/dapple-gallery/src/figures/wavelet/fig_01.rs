@@ -32,6 +32,6 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     })?;
     [("a: R", map), ("b: R_d", sheet), ("c: R_n", full)]
         .into_iter()
-        .map(|(label, raster)| Ok(Panel::gray(label, enlarged(&raster, 4)?)))
+        .map(|(label, raster)| Ok(Panel::gray(label, enlarged(&raster, size)?)))
         .collect()
 }

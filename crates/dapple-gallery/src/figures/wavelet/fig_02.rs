@@ -4,13 +4,13 @@
 use super::{BLEND_TILE, beside, originals, report, tile_side};
 use crate::figure::source;
 use crate::{Figure, Panel};
-use dapple_tile::{Method, Seamless, repeat};
+use dapple_tile::{Method, Seamless};
 
 pub(super) const FIGURE: Figure = Figure {
     number: "2",
     parameters: &[
         ("tile", "128 × 128"),
-        ("map", "512 × 512"),
+        ("map", "256 × 256"),
         (
             "filters",
             "quadratic B-spline, one level, Cook and DeRose's phase",
@@ -27,8 +27,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         .into_iter()
         .map(|(name, original)| {
             let tile = seamless.apply(&original)?;
-            let map = repeat(&tile, [size; 2])?;
-            let picture = beside(&tile, &map, 1.0)?;
+            let picture = beside(&tile, size)?;
             Ok(Panel::gray(name, picture).with_note(report(&original, &tile)?))
         })
         .collect()

@@ -7,7 +7,7 @@ use super::grass::grass;
 use super::patch::{Edges, Material};
 use super::pebble::pebble;
 use super::stone::stone;
-use super::{BLEND_TILE, tile_side};
+use super::{BLEND_TILE, enlarged, report, tile_side};
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_color::LinearRgb;
@@ -40,16 +40,18 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let grass = grass(map[0], Seed(1), Edges::Repeating)?;
     let on_stone = overgrown(&stone, &grass.color)?;
     let on_pebble = overgrown(&pebble, &grass.color)?;
+    let tile = blend_tile(&stone)?;
+    let panel = |label: &str, color: &Raster<LinearRgb>| -> anyhow::Result<Panel> {
+        Ok(Panel::color(label, enlarged(&repeat(color, map)?, size)?))
+    };
     Ok(vec![
-        Panel::color("stone", repeat(&stone.color, map)?),
-        Panel::color("pebble", repeat(&pebble.color, map)?),
-        Panel::color("grass", grass.color),
-        Panel::gray(
-            "blend tile of the stone, tiled",
-            repeat(&blend_tile(&stone)?, map)?,
-        ),
-        Panel::color("c1: stone with grass", on_stone),
-        Panel::color("c2: pebble with grass", on_pebble),
+        panel("stone", &stone.color)?,
+        panel("pebble", &pebble.color)?,
+        panel("grass", &grass.color)?,
+        Panel::gray("blend tile of the stone", enlarged(&tile, size)?)
+            .with_note(report(&tile, &tile)?),
+        panel("c1: stone with grass", &on_stone)?,
+        panel("c2: pebble with grass", &on_pebble)?,
     ])
 }
 

@@ -40,7 +40,10 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     for (name, cells, function) in FUNCTIONS {
         let raw = perlin(side, cells, 5, Seed(5).child(name, 0))?;
         let tile = ours.apply(&raw)?;
-        rows[0].push(Panel::gray(format!("tile for {name}"), enlarged(&raw, 4)?));
+        rows[0].push(Panel::gray(
+            format!("tile for {name}"),
+            enlarged(&raw, size)?,
+        ));
         for (row, label, tile) in [(1, "the raw tile", &raw), (2, "our tile", &tile)] {
             let picture = function(&repeat(tile, [size; 2])?)?;
             let panel = Panel::color(format!("{name} of {label}"), picture);

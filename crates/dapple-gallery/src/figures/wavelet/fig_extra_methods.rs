@@ -19,7 +19,7 @@ use dapple_wavelet::Phase;
 pub(super) const FIGURE: Figure = Figure {
     number: "extra",
     parameters: &[
-        ("crops", "160 × 160"),
+        ("crops", "160 × 160 of a picture of 512"),
         ("margin", "32 pixels, where a method has one"),
         ("seam", "ratio at 1 and at 4 pixels, both axes"),
         ("fine", "power kept in the finest octave"),
@@ -33,7 +33,8 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let margin = tile_side(size) / 4;
+    // A quarter of the tile, and such that two levels fit.
+    let margin = (tile_side(size) / 16 * 4).max(4);
     let crops = crops(tile_side(size) + margin)?;
     methods(margin)
         .into_iter()
@@ -78,7 +79,10 @@ fn methods(margin: u32) -> [(&'static str, Option<Method>); 12] {
             "SplineProject, two levels, Cook and DeRose",
             Some(Method::SplineProject(project(2, Phase::CookDeRose))),
         ),
-        ("Periodic", Some(Method::Periodic)),
+        (
+            "Periodic, which is Poisson with zero",
+            Some(Method::Periodic),
+        ),
         (
             "Poisson, extrapolated",
             Some(Method::Poisson(WrapGradient::Extrapolate)),
@@ -91,6 +95,7 @@ fn methods(margin: u32) -> [(&'static str, Option<Method>); 12] {
             "SoftCut",
             Some(Method::SoftCut(SoftCut {
                 margin,
+                half_width: margin as f32 / 8.0,
                 ..SoftCut::default()
             })),
         ),

@@ -25,7 +25,7 @@ pub(super) const FIGURE: Figure = Figure {
     number: "extra",
     parameters: &[
         ("textures", "three tiles of 256 × 256"),
-        ("blend tile", "128 × 128, four bands of wavelet noise"),
+        ("blend tile", "128 × 128, three bands of wavelet noise"),
         ("gain of the mask", "5"),
     ],
     source: source!(),
@@ -63,7 +63,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
             height: None,
         })
         .collect();
-    let tile = wavelet_tile([tile_side(size); 2], &[0.1, 0.3, 0.6, 1.0], Seed(6))?;
+    let tile = wavelet_tile([tile_side(size); 2], &[0.1, 0.3, 1.0], Seed(6))?;
     let mask = repeat(&rank_equalize(&tile)?, [size; 2])?;
     let by_tile = Blend::new(Weighting::Mask { gain: 5.0 }, Mixing::KeepVariance);
     // The textures are lit as level ground, which stays as it is.
