@@ -17,7 +17,8 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// `NotDivisible` for an odd periodic length, `TooShort` below 2.
+    /// `NotDivisible` for an odd periodic length; `TooShort` for a line that would not become shorter, which is one below 2, or
+    /// below 3 for a mirrored line of an even degree in the phase of Cook and DeRose; `Range` above 2^40.
     pub fn coarse_len(&self, length: usize, border: Border) -> Result<usize, WaveletError> {
         Ok(Halving::new(*self, length, border)?.coarse.len)
     }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::WaveletErrorKind;
+use crate::ends::shortest;
 use crate::oracle::{all_filters, noise};
 use proptest::prelude::*;
 
@@ -43,11 +44,12 @@ fn along(raster: &Raster<f32>, axis: usize, change: impl Fn(&[f64]) -> Vec<f64>)
 #[test]
 fn down_and_up_equal_lines_bit_for_bit() {
     for filter in all_filters() {
+        let least = shortest(filter, Border::Mirror) as u32;
         for (size, borders) in [
             ([26, 34], PERIODIC),
             ([2, 4], PERIODIC),
             ([19, 37], [Border::Mirror; 2]),
-            ([2, 3], [Border::Mirror; 2]),
+            ([least, 3], [Border::Mirror; 2]),
             ([16, 9], [Border::Periodic, Border::Mirror]),
         ] {
             let fine = noise_raster(size);
