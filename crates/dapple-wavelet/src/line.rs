@@ -25,6 +25,9 @@ impl SplineFilter {
 
     /// Equation 7: the nearest line with half as many coefficients.
     ///
+    /// No value is further from zero than 3.82 times the furthest of `fine`, or 2.33 times for degrees below the cubic. Values
+    /// are finite up to `f64::MAX / 4`; beyond it some may be infinite or NaN.
+    ///
     /// # Errors
     ///
     /// As [`coarse_len`](Self::coarse_len), and `NotFinite`.
@@ -62,6 +65,9 @@ impl SplineFilter {
     }
 
     /// Halves a line `levels` times and doubles it again; zero levels give the line itself.
+    ///
+    /// Each level mirrors its own line afresh, which several levels of the mirrored line need not do: see [`Border::Mirror`].
+    /// Values are finite up to `f64::MAX / 4^levels`; beyond it some may be infinite or NaN.
     ///
     /// # Errors
     ///

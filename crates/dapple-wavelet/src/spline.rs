@@ -133,6 +133,11 @@ pub enum Border {
     ///
     /// Coefficient `j` of the result is coefficient `j` of the table of [`Phase`], but `j + 1` for an odd degree in the phase
     /// of Cook and DeRose.
+    ///
+    /// Each level mirrors its own line afresh, by the rule above. One level is exactly that of the fine line mirrored for ever.
+    /// Several levels are so too where the phase is centered and every line that is halved, but the last, has an even
+    /// length for an even degree, or an odd one for an odd degree. Otherwise the mirrors of the fine line lie elsewhere
+    /// in a coarse one than this rule has them, and near the ends the result is another; but for steps, not always.
     Mirror,
 }
 
