@@ -1,6 +1,6 @@
 //! How a line goes on past its ends, and where the coarse line of a fine one ends.
 
-use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use crate::{Border, Phase, SplineFilter, WaveletError, WaveletErrorKind};
 
 /// A line of finite length that goes on for ever.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,12 +28,15 @@ pub(crate) struct Halving {
     pub(crate) offset: i64,
 }
 
+/// No memory holds a longer line, and below it no index overflows.
+const LONGEST: u64 = 1 << 40;
+
 impl Line {
     /// A line of `len` pixels of a spline, at least one.
     ///
     /// # Errors
     ///
-    /// `TooShort` below 1, or 2 if it is mirrored.
+    /// `TooShort` below 1, or 2 if it is mirrored; `Range` above 2^40.
     pub(crate) fn new(
         filter: SplineFilter,
         len: usize,
@@ -48,6 +51,13 @@ impl Line {
             return Err(WaveletError::new(WaveletErrorKind::TooShort {
                 length: len,
                 least,
+            }));
+        }
+        if len as u64 > LONGEST {
+            return Err(WaveletError::new(WaveletErrorKind::Range {
+                what: "length of the line",
+                value: len as f64,
+                range: "at most 2^40",
             }));
         }
         Ok(Self { len, ends })
@@ -76,16 +86,17 @@ impl Halving {
     ///
     /// # Errors
     ///
-    /// `NotDivisible` for an odd periodic length, `TooShort` below 2.
+    /// `NotDivisible` for an odd periodic length, `TooShort` for a line that would not become shorter; `Range` above 2^40.
     pub(crate) fn new(
         filter: SplineFilter,
         len: usize,
         border: Border,
     ) -> Result<Self, WaveletError> {
-        if len < 2 {
+        let least = shortest(filter, border);
+        if len < least {
             return Err(WaveletError::new(WaveletErrorKind::TooShort {
                 length: len,
-                least: 2,
+                least,
             }));
         }
         let fine = Line::new(filter, len, border)?;
@@ -128,6 +139,19 @@ impl Halving {
     }
 }
 
+/// The shortest line that becomes shorter when it is halved.
+///
+/// A mirrored line of 2 keeps its length where its coarse coefficients lie on both mirrors. Halved again and again, what is
+/// not constant in it would grow for ever.
+pub(crate) fn shortest(filter: SplineFilter, border: Border) -> usize {
+    let is_even = filter.degree.order() % 2 == 0;
+    if border == Border::Mirror && filter.phase == Phase::CookDeRose && is_even {
+        3
+    } else {
+        2
+    }
+}
+
 /// The lengths of a line that is halved `levels` times, from the first to the last.
 ///
 /// # Errors
@@ -161,7 +185,7 @@ pub(crate) fn lengths(
     Ok(lengths)
 }
 
-/// More than any raster can be halved; a mirrored line in the phase of Cook and DeRose never becomes shorter than 2.
+/// As often as no raster can be halved: its sides are below 2^32.
 const MOST_LEVELS: u32 = 32;
 
 #[cfg(test)]

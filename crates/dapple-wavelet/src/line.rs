@@ -17,12 +17,16 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// `NotDivisible` for an odd periodic length, `TooShort` below 2.
+    /// `NotDivisible` for an odd periodic length; `TooShort` for a line that would not become shorter, which is one below 2, or
+    /// below 3 for a mirrored line of an even degree in the phase of Cook and DeRose; `Range` above 2^40.
     pub fn coarse_len(&self, length: usize, border: Border) -> Result<usize, WaveletError> {
         Ok(Halving::new(*self, length, border)?.coarse.len)
     }
 
     /// Equation 7: the nearest line with half as many coefficients.
+    ///
+    /// No value is further from zero than 3.82 times the furthest of `fine`, or 2.33 times for degrees below the cubic. Values
+    /// are finite up to `f64::MAX / 4`; beyond it some may be infinite or NaN.
     ///
     /// # Errors
     ///
@@ -61,6 +65,9 @@ impl SplineFilter {
     }
 
     /// Halves a line `levels` times and doubles it again; zero levels give the line itself.
+    ///
+    /// Each level mirrors its own line afresh, which several levels of the mirrored line need not do: see [`Border::Mirror`].
+    /// Values are finite up to `f64::MAX / 4^levels`; beyond it some may be infinite or NaN.
     ///
     /// # Errors
     ///

@@ -12,8 +12,8 @@ use crate::{Border, SplineFilter, WaveletError};
 use dapple_raster::{Raster, simd};
 use fearless_simd::Level;
 
-/// What [`SplineFilter::down_into`] needs beside its result, kept from raster to raster: 2 bytes for each fine pixel, and
-/// some more.
+/// What [`SplineFilter::down_into`] needs beside its result, kept from raster to raster: 2 bytes for each fine pixel of the
+/// largest, and some more.
 #[derive(Clone, Debug, Default)]
 pub struct FilterMemory {
     columns: Vec<f32>,
@@ -22,6 +22,9 @@ pub struct FilterMemory {
 
 impl SplineFilter {
     /// Equations 9 and 12: the nearest raster of half the size.
+    ///
+    /// No pixel is further from zero than 14.6 times the furthest of `fine`, or 5.4 times for degrees below the cubic. Pixels
+    /// are finite up to `f32::MAX / 15`; beyond it some may be infinite or NaN.
     ///
     /// # Errors
     ///
@@ -118,9 +121,12 @@ impl SplineFilter {
 
     /// Halves a raster `levels` times along each axis and doubles it again; zero levels give the raster itself.
     ///
+    /// Each level mirrors its own lines afresh: see [`Border::Mirror`].
+    ///
     /// # Errors
     ///
-    /// As [`down`](Self::down), for each level; `Range` for more than 32 levels.
+    /// As [`down`](Self::down), for each level: `NotFinite` also if a level has made infinite pixels of finite ones, which
+    /// none does up to `f32::MAX / 15^levels`. `Range` for more than 32 levels.
     pub fn project(
         &self,
         fine: &Raster<f32>,
@@ -129,9 +135,12 @@ impl SplineFilter {
     ) -> Result<Raster<f32>, WaveletError> {
         let sizes = self.sizes(fine.size(), levels, borders)?;
         check_finite(fine.pixels())?;
+        let mut memory = FilterMemory::default();
         let mut raster = fine.clone();
-        for _ in 0..levels {
-            raster = self.down(&raster, borders)?;
+        for &size in &sizes[1..] {
+            let mut coarse = Raster::filled(size, 0.0)?;
+            self.down_into(&raster, borders, &mut coarse, &mut memory)?;
+            raster = coarse;
         }
         for &size in sizes[..levels as usize].iter().rev() {
             raster = self.up(&raster, size, borders)?;
@@ -182,10 +191,11 @@ impl FilterMemory {
     ) {
         let Self { columns, batch } = self;
         let n_values = along_rows.target.len * raster.height() as usize;
-        if columns.len() != n_values {
+        if columns.len() < n_values {
             // New memory is zero already where the system gives it; clearing would touch it once more.
             *columns = vec![0.0; n_values];
         }
+        let columns = &mut columns[..n_values];
         filter_lines_into(level, along_rows, raster.pixels(), batch, columns);
         filter_lines_into(level, along_columns, columns, batch, filtered);
     }

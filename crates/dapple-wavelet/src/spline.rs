@@ -118,7 +118,7 @@ pub enum Border {
     /// The line repeats. To be halved, its length must be even.
     #[default]
     Periodic,
-    /// The line is mirrored: with the end pixel twice for even degrees, once for odd ones. Any length from 2 on.
+    /// The line is mirrored: with the end pixel twice for even degrees, once for odd ones.
     ///
     /// The halved line of a mirrored one is mirrored too, and of what would repeat, one copy is kept. A line of `n` has, once
     /// halved, a length of
@@ -128,8 +128,16 @@ pub enum Border {
     /// | even | ⌈n/2⌉ | ⌊n/2⌋ + 1 |
     /// | odd | ⌈n/2⌉ | ⌊n/2⌋ |
     ///
+    /// Any length from 2 on can be halved; in the phase of Cook and DeRose, for even degrees, any from 3 on, since 2 would
+    /// stay 2.
+    ///
     /// Coefficient `j` of the result is coefficient `j` of the table of [`Phase`], but `j + 1` for an odd degree in the phase
     /// of Cook and DeRose.
+    ///
+    /// Each level mirrors its own line afresh, by the rule above. One level is exactly that of the fine line mirrored for ever.
+    /// Several levels are so too where the phase is centered and every line that is halved, but the last, has an even
+    /// length for an even degree, or an odd one for an odd degree. Otherwise the mirrors of the fine line lie elsewhere
+    /// in a coarse one than this rule has them, and near the ends the result is another; but for steps, not always.
     Mirror,
 }
 

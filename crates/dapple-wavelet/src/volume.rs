@@ -14,6 +14,8 @@ use dapple_raster::simd;
 impl SplineFilter {
     /// The nearest volume of half the size, along each axis as [`coarse_len`](Self::coarse_len) says.
     ///
+    /// Values are finite up to `f32::MAX / 56`; beyond it some may be infinite or NaN.
+    ///
     /// # Errors
     ///
     /// `Length` if there are not as many values as `size` says; as [`down_line`](Self::down_line).
@@ -72,7 +74,8 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// As [`down_volume`](Self::down_volume), for each level; `Range` for more than 32 levels.
+    /// As [`down_volume`](Self::down_volume), for each level: `NotFinite` also if a level has made infinite values of finite
+    /// ones, which none does up to `f32::MAX / 56^levels`. `Range` for more than 32 levels.
     pub fn project_volume(
         &self,
         volume: &[f32],

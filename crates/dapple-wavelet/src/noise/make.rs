@@ -10,8 +10,11 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
-/// The most coefficients of a tile: half a gigabyte.
-const MOST_COEFFICIENTS: u64 = 1 << 27;
+/// The largest tile of the plane: below half a gigabyte.
+const LARGEST_2: u32 = 11_584;
+
+/// The largest tile of space: half a gigabyte.
+const LARGEST_3: u32 = 512;
 
 impl WaveletNoise2 {
     /// Noise of the plane that repeats after `size` cells: one band, of weight 1.
@@ -22,7 +25,7 @@ impl WaveletNoise2 {
     ///
     /// [`WaveletErrorKind::Range`] below 4 and above 11584, [`WaveletErrorKind::NotDivisible`] if `size` is odd.
     pub fn new(size: u32, seed: Seed) -> Result<Self, WaveletError> {
-        check_size(size, 2, "from 4 to 11584")?;
+        check_size(size, LARGEST_2, "from 4 to 11584")?;
         let words = white_words(seed);
         let white = Raster::from_rows([size; 2], |row| {
             let row = CellHash::new(words, [row.into()]);
@@ -42,7 +45,7 @@ impl WaveletNoise3 {
     ///
     /// [`WaveletErrorKind::Range`] below 4 and above 512, [`WaveletErrorKind::NotDivisible`] if `size` is odd.
     pub fn new(size: u32, seed: Seed) -> Result<Self, WaveletError> {
-        check_size(size, 3, "from 4 to 512")?;
+        check_size(size, LARGEST_3, "from 4 to 512")?;
         let words = white_words(seed);
         // The slices, one below the other.
         let white = Raster::from_rows([size, size * size], |row| {
@@ -75,10 +78,9 @@ impl<const N: usize> WaveletNoise<N> {
     }
 }
 
-/// Refuses tiles too small to be halved and doubled, odd ones, and those of more coefficients than the limit.
-fn check_size(size: u32, axes: u32, range: &'static str) -> Result<(), WaveletError> {
-    let n_coefficients = u64::from(size).checked_pow(axes);
-    if size < 4 || n_coefficients.is_none_or(|n| n > MOST_COEFFICIENTS) {
+/// Refuses tiles too small to be halved and doubled, those larger than the largest, and odd ones.
+fn check_size(size: u32, largest: u32, range: &'static str) -> Result<(), WaveletError> {
+    if !(4..=largest).contains(&size) {
         return Err(WaveletError::new(WaveletErrorKind::Range {
             what: "size of the tile",
             value: size.into(),

@@ -5,7 +5,8 @@
 //! `Π whole − 2 Π cross + Π low` over the axes, with three sums along a line for each. An impulse suffices to find
 //! them: shifted by two cells it gives the same sums, and shifted by one their mirror images.
 
-use crate::{Border, SplineFilter, WaveletError};
+use crate::kernel::gram;
+use crate::{Border, Degree, SplineFilter, WaveletError};
 
 /// The three sums along one axis, each divided by the number of coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,13 +68,15 @@ fn impulses(length: usize) -> Result<[Vec<f64>; 2], WaveletError> {
 
 /// The integral of the product of two periodic quadratic splines.
 fn inner(a: &[f64], b: &[f64]) -> f64 {
-    // The integrals of the product of a B-spline and another that is 0, 1 or 2 cells away.
-    const OVERLAPS: [f64; 3] = [66.0 / 120.0, 26.0 / 120.0, 1.0 / 120.0];
+    // The integrals of the product of a B-spline and another that is 2, 1 or 0 cells away, all times their sum.
+    let overlaps = gram(Degree::Quadratic);
+    let sum: f64 = overlaps.iter().sum();
+    let [far_overlap, near_overlap, overlap] = [0, 1, 2].map(|i| overlaps[i] / sum);
     let n = a.len();
     let products = a.iter().enumerate().map(|(i, a)| {
         let near = b[(i + 1) % n] + b[(i + n - 1) % n];
         let far = b[(i + 2) % n] + b[(i + n - 2) % n];
-        a * (OVERLAPS[0] * b[i] + OVERLAPS[1] * near + OVERLAPS[2] * far)
+        a * (overlap * b[i] + near_overlap * near + far_overlap * far)
     });
     products.sum()
 }

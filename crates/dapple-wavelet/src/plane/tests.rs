@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::WaveletErrorKind;
-use crate::oracle::{all_filters, noise};
+use crate::ends::shortest;
+use crate::oracle::{all_filters, distance, noise};
 use proptest::prelude::*;
 
 const PERIODIC: [Border; 2] = [Border::Periodic; 2];
@@ -43,11 +44,12 @@ fn along(raster: &Raster<f32>, axis: usize, change: impl Fn(&[f64]) -> Vec<f64>)
 #[test]
 fn down_and_up_equal_lines_bit_for_bit() {
     for filter in all_filters() {
+        let least = shortest(filter, Border::Mirror) as u32;
         for (size, borders) in [
             ([26, 34], PERIODIC),
             ([2, 4], PERIODIC),
             ([19, 37], [Border::Mirror; 2]),
-            ([2, 3], [Border::Mirror; 2]),
+            ([least, 3], [Border::Mirror; 2]),
             ([16, 9], [Border::Periodic, Border::Mirror]),
         ] {
             let fine = noise_raster(size);
@@ -165,34 +167,38 @@ fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
 
 #[test]
 fn rasters_stay_near_lines_without_roundings() {
-    let size = [64, 48];
-    let fine = noise_raster(size);
-    let filter = SplineFilter::default();
-    let projected = filter.project(&fine, 2, PERIODIC).expect("a good raster");
-    // Rows and columns in f64 all the way.
-    let rows: Vec<Vec<f64>> = (0..48)
-        .map(|y| {
-            fine.row(y)
-                .iter()
-                .map(|&value| f64::from(value))
-                .collect::<Vec<_>>()
-        })
-        .map(|row| {
-            filter
-                .project_line(&row, 2, Border::Periodic)
-                .expect("a good line")
-        })
-        .collect();
-    for x in 0..64 {
-        let column: Vec<f64> = rows.iter().map(|row| row[x]).collect();
-        let column = filter
-            .project_line(&column, 2, Border::Periodic)
-            .expect("a good line");
-        for (y, value) in (0..).zip(column) {
-            let gap = (f64::from(projected.row(y)[x]) - value).abs();
-            assert!(gap < 1e-6, "{gap} at {x}, {y}");
-        }
+    let fine = noise_raster([64, 48]);
+    for filter in all_filters() {
+        let projected = filter.project(&fine, 2, PERIODIC).expect("a good raster");
+        let projected: Vec<f64> = projected
+            .pixels()
+            .iter()
+            .map(|&value| value.into())
+            .collect();
+        let gap = distance(&projected, &projected_in_f64(filter, &fine, 2));
+        assert!(gap < 1e-6, "{filter:?}: {gap}");
     }
+}
+
+/// Projects rows, and then columns, in `f64` all the way.
+fn projected_in_f64(filter: SplineFilter, fine: &Raster<f32>, levels: u32) -> Vec<f64> {
+    let project = |line: &[f64]| {
+        let line = filter.project_line(line, levels, Border::Periodic);
+        line.expect("a good line")
+    };
+    let [width, height] = fine.size();
+    let row = |y| {
+        fine.row(y)
+            .iter()
+            .map(|&value| value.into())
+            .collect::<Vec<f64>>()
+    };
+    let rows: Vec<Vec<f64>> = (0..height).map(|y| project(&row(y))).collect();
+    let column = |x: usize| rows.iter().map(|row| row[x]).collect::<Vec<f64>>();
+    let columns: Vec<Vec<f64>> = (0..width as usize).map(|x| project(&column(x))).collect();
+    (0..height as usize)
+        .flat_map(|y| columns.iter().map(move |column| column[y]))
+        .collect()
 }
 
 #[test]
@@ -335,13 +341,44 @@ fn bad_rasters_are_refused() {
 }
 
 #[test]
-fn huge_values_overflow_without_a_panic() {
-    let raster = Raster::from_fn(
-        [8, 8],
-        |x, y| if (x + y) % 3 == 0 { f32::MAX } else { f32::MIN },
-    );
-    let coarse = SplineFilter::default().down(&raster.expect("a good size"), PERIODIC);
-    assert!(coarse.is_ok(), "finite values");
+fn huge_values_stay_finite_up_to_their_bound_only() {
+    for filter in all_filters() {
+        let taps: Vec<f64> = (0..64)
+            .map(|k| {
+                let mut line = [0.0; 64];
+                line[k] = 1.0;
+                filter
+                    .down_line(&line, Border::Periodic)
+                    .expect("a good line")[0]
+            })
+            .collect();
+        // The pixels that give most: each with the sign of its tap.
+        let worst = |size: f32| {
+            let pixel =
+                |x: u32, y: u32| size.copysign((taps[x as usize] * taps[y as usize]) as f32);
+            Raster::from_fn([64, 64], pixel).expect("a good size")
+        };
+        let below = filter
+            .down(&worst(f32::MAX / 15.0), PERIODIC)
+            .expect("a good raster");
+        assert!(
+            below.pixels().iter().all(|value| value.is_finite()),
+            "{filter:?}"
+        );
+        let most = worst(f32::MAX);
+        let is_finite = filter.degree == crate::Degree::Constant;
+        let coarse = filter.down(&most, PERIODIC).expect("finite values");
+        assert_eq!(coarse.pixels()[0].is_finite(), is_finite, "{filter:?}");
+        let projected = filter.project(&most, 1, PERIODIC);
+        match projected {
+            Ok(projected) => assert!(is_finite && projected == most, "{filter:?}"),
+            Err(error) => {
+                let kind = error.kind();
+                let says_so = matches!(kind, WaveletErrorKind::NotFinite { .. });
+                assert!(says_so && !is_finite, "{filter:?}: {error}");
+            }
+        }
+    }
 }
 
 #[test]

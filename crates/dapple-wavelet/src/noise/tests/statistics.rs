@@ -1,5 +1,6 @@
 //! Mean, variance and spectrum.
 
+use super::super::LineSums;
 use super::scattered;
 use crate::{Border, SplineFilter, WaveletNoise2, WaveletNoise3};
 use dapple_hash::Seed;
@@ -58,6 +59,54 @@ fn values_have_a_variance_of_one_for_large_and_tiny_tiles() {
             assert!((mean_square - 1.0).abs() < 0.04, "{size}: {mean_square}");
         }
     }
+}
+
+#[test]
+fn variance_depends_on_the_place_between_coefficients_as_documented() {
+    const N: usize = 32;
+    // The projection as a matrix, a column for each impulse.
+    let column = |at: usize| {
+        let impulse: Vec<f64> = (0..N).map(|i| f64::from(u8::from(i == at))).collect();
+        let projected = SplineFilter::default().project_line(&impulse, 1, Border::Periodic);
+        projected.unwrap()
+    };
+    let columns: Vec<Vec<f64>> = (0..N).map(column).collect();
+    // Along an axis a value is the sum of coefficients times weights `w`: w·w, w·Pw and the square of Pᵀw.
+    let sums = |x: f64| {
+        let weight = |i: usize| super::b_spline(x - (i as f64 + 0.5));
+        let transposed = columns.iter().map(|column| {
+            let terms = column
+                .iter()
+                .enumerate()
+                .map(|(i, value)| weight(i) * value);
+            terms.sum::<f64>()
+        });
+        let terms = transposed.enumerate().map(|(i, low)| {
+            let weight = weight(i);
+            [weight * weight, weight * low, low * low]
+        });
+        terms.fold([0.0; 3], |sum, term| [0, 1, 2].map(|i| sum[i] + term[i]))
+    };
+    let factor = LineSums::factor([LineSums::of_values(N).unwrap(); 2]);
+    let variance =
+        |[x, y]: [[f64; 3]; 2]| factor * factor * (x[0] * y[0] - 2.0 * x[1] * y[1] + x[2] * y[2]);
+    // Over two cells along each axis, far from the wrap, in steps of a 32nd.
+    let lines: Vec<[f64; 3]> = (0..64).map(|i| sums(16.0 + f64::from(i) / 32.0)).collect();
+    let variances = lines.iter().map(|&y| lines.iter().map(move |&x| [x, y]));
+    let variances: Vec<f64> = variances.flatten().map(variance).collect();
+    let most = variances.iter().copied().fold(0.0, f64::max);
+    let corners = [0, 32, 32 * 64, 32 * 65].map(|at| variances[at]);
+    let least = corners.into_iter().fold(f64::MAX, f64::min);
+    let lower = variances
+        .iter()
+        .filter(|&&value| value < least - 1e-9)
+        .count();
+    assert_eq!(lower, 0, "no place has less than {least}, of {corners:?}");
+    // The documentation has two places.
+    assert!((least - 0.31).abs() < 0.005, "{corners:?}");
+    assert!((most - 1.38).abs() < 0.005, "{most}");
+    let mean = variances.iter().sum::<f64>() / variances.len() as f64;
+    assert!((mean - 1.0).abs() < 1e-3, "{mean}");
 }
 
 #[test]
