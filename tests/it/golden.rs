@@ -17,6 +17,11 @@ use dapple_pups::{
     CowOptions, OctavesOptions, Pups, SpaceGiraffeOptions, cow, space_giraffe, turbulence,
 };
 use dapple_raster::{Field, Ramp, Raster, Varying, Window, glam::DVec2};
+use dapple_tile::{
+    Blend, CornerTiles, Layer, Map, Method, Mixing, Seamless, SoftCut, Weighting, blend_by_tile,
+    rank_equalize, repeat,
+};
+use dapple_wavelet::{WaveletNoise2, wavelet_tile};
 use dapple_worley::{Combination, Metric, Octaves, Plane, Worley2, Worley3};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -42,6 +47,10 @@ const GOLDEN: &[Golden] = &[
     ("pups-labels", pups_labels),
     ("pups-noise", pups_noise),
     ("pups-turbulence", pups_turbulence),
+    ("tile-corner-tiles", tile_corner_tiles),
+    ("tile-mask", tile_mask),
+    ("tile-soft-cut", tile_soft_cut),
+    ("wavelet-noise", wavelet_noise),
     ("worley-cells", worley_cells),
     ("worley-combinations", worley_combinations),
 ];
@@ -186,6 +195,59 @@ fn jittered_points() -> anyhow::Result<PointSet> {
     };
     let positions = (0..36).map(|cell| position([cell % 6, cell / 6]));
     Ok(PointSet::new(unit_torus(), positions.collect())?)
+}
+
+/// Pieces of two tiles of cracks, one finer than the other, with random colors at their corners.
+fn tile_corner_tiles() -> anyhow::Result<Vec<u8>> {
+    let cracks = |cells: u16| {
+        let period = Some(u32::from(cells));
+        let worley = Worley2::new(Seed(4)).with_period([period; 2])?;
+        let cracks = worley.combine(Combination::F2_MINUS_F1).normalized()?;
+        let window = Window::new(DVec2::ZERO, DVec2::splat(cells.into()), [32; 2])?;
+        Ok::<_, anyhow::Error>(cracks.to_raster(&window)?)
+    };
+    let tiles = CornerTiles::new(&[cracks(2)?, cracks(4)?])?;
+    gray(&tiles.render(Seed(1), [0, 0], [SIZE; 2])?)
+}
+
+/// Black and white by a tile of noise: from left to right more of it is white.
+fn tile_mask() -> anyhow::Result<Vec<u8>> {
+    let tile = rank_equalize(&wavelet_tile([32; 2], &[0.0, 0.5, 1.0], Seed(5))?)?;
+    let tile = repeat(&tile, [SIZE; 2])?;
+    let [black, white] = [0.0, 1.0].map(|shade| Raster::filled([SIZE; 2], shade).map(Map::Value));
+    let maps = [[white?], [black?]];
+    let rising = Raster::from_window(&Window::unit([SIZE; 2])?, |at| at.x as f32)?;
+    let weights = [rising.clone(), rising.map(|share| 1.0 - share)];
+    let layer = |maps, weight| Layer {
+        maps,
+        weight,
+        height: None,
+    };
+    let layers = [layer(&maps[0], &weights[0]), layer(&maps[1], &weights[1])];
+    let how = Blend::new(Weighting::Mask { gain: 6.0 }, Mixing::Linear);
+    match blend_by_tile(&layers, &tile, &how)?.as_slice() {
+        [Map::Value(blended)] => gray(blended),
+        other => bail!("{other:?} is not one map of values"),
+    }
+}
+
+/// Two by two copies of cells that were cropped where they do not repeat, and then cut.
+fn tile_soft_cut() -> anyhow::Result<Vec<u8>> {
+    let cells = Worley2::new(Seed(6)).combine(Combination::F1);
+    let crop = Window::new(DVec2::ZERO, DVec2::splat(4.0), [64; 2])?;
+    let cut = SoftCut {
+        margin: 16,
+        ..SoftCut::default()
+    };
+    let tile = Seamless::new(Method::SoftCut(cut)).apply(&cells.to_raster(&crop)?)?;
+    gray(&repeat(&tile, [SIZE; 2])?)
+}
+
+/// Three bands of a tile of eight cells, one and a half times.
+fn wavelet_noise() -> anyhow::Result<Vec<u8>> {
+    let noise = WaveletNoise2::new(8, Seed(7))?.with_weights(&[0.2, 0.05, 0.01])?;
+    let window = Window::new(DVec2::ZERO, DVec2::splat(12.0), [SIZE; 2])?;
+    gray(&noise.to_raster(&window)?.map(|value| 0.5 + value))
 }
 
 /// The ids of Manhattan cells that tile after four, as colors.

@@ -43,6 +43,9 @@ pub(super) const GENERATORS: &[Generator] = &[
     Generator::new("F2 - F1", CELLS, f2_minus_f1),
     Generator::new("Manhattan F1", CELLS, manhattan_f1),
     Generator::new("Manhattan F2 - F1", CELLS, manhattan_f2_minus_f1),
+    Generator::new("Chebyshev F1", CELLS, chebyshev_f1),
+    Generator::new("Minkowski F1", CELLS, minkowski_f1),
+    Generator::new("distance to the edge", CELLS, edge_distance),
     Generator::new("F1 in space", CELLS, f1_in_space),
     Generator::new("F1 in four dimensions", CELLS, f1_in_four_dimensions),
     Generator::new("fractal F1", CELLS, fractal),
@@ -106,6 +109,21 @@ fn f1(seed: Seed, window: &Window) -> Result<Raster<f32>> {
 fn f2_minus_f1(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     let texture = worley(seed)?.combine(Combination::F2_MINUS_F1);
     Ok(texture.to_raster(window)?)
+}
+
+fn chebyshev_f1(seed: Seed, window: &Window) -> Result<Raster<f32>> {
+    let worley = worley(seed)?.with_metric(Metric::Chebyshev)?;
+    Ok(worley.combine(Combination::F1).to_raster(window)?)
+}
+
+fn minkowski_f1(seed: Seed, window: &Window) -> Result<Raster<f32>> {
+    let worley = worley(seed)?.with_metric(Metric::Minkowski(4.0))?;
+    Ok(worley.combine(Combination::F1).to_raster(window)?)
+}
+
+fn edge_distance(seed: Seed, window: &Window) -> Result<Raster<f32>> {
+    let worley = worley(seed)?;
+    Ok(Raster::from_window(window, |at| worley.edge_distance(at))?)
 }
 
 fn manhattan_f1(seed: Seed, window: &Window) -> Result<Raster<f32>> {
