@@ -1,4 +1,5 @@
 use super::*;
+use crate::Degree;
 use crate::ends::shortest;
 use crate::oracle::{all_filters, noise};
 
@@ -67,6 +68,33 @@ fn volumes_equal_lines_bit_for_bit() {
                 .expect("a good volume");
             assert_eq!(again, needed, "up, {filter:?}, {size:?}");
         }
+    }
+}
+
+#[test]
+fn huge_volumes_stay_finite_up_to_their_bound_only() {
+    const SIDE: usize = 16;
+    for filter in all_filters() {
+        let tap = |k: usize| {
+            let mut line = [0.0; SIDE];
+            line[k] = 1.0;
+            let coarse = filter.down_line(&line, Border::Periodic);
+            coarse.expect("a good line")[0]
+        };
+        let taps: Vec<f64> = (0..SIDE).map(tap).collect();
+        // The values that give most: each with the sign of its tap.
+        let down = |size: f32| {
+            let places = (0..SIDE.pow(3)).map(|at| [at % SIDE, at / SIDE % SIDE, at / SIDE / SIDE]);
+            let taps = places.map(|place| place.map(|k| taps[k]).iter().product::<f64>());
+            let volume: Vec<f32> = taps.map(|tap| size.copysign(tap as f32)).collect();
+            let coarse = filter.down_volume(&volume, [SIDE as u32; 3], [Border::Periodic; 3]);
+            coarse.expect("finite values")
+        };
+        let below = down(f32::MAX / 56.0);
+        assert!(below.iter().all(|value| value.is_finite()), "{filter:?}");
+        // The mean of steps is in `f64` and does not overflow.
+        let is_finite = filter.degree == Degree::Constant;
+        assert_eq!(down(f32::MAX)[0].is_finite(), is_finite, "{filter:?}");
     }
 }
 
