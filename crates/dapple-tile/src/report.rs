@@ -81,8 +81,8 @@ pub struct SeamReport {
     /// rows wide (all of them, if there are fewer) and reaches from side to side; along axes that repeat it may lie
     /// across the wrap. The number is the root mean square of the detail in the band that has the least, divided by that
     /// of the whole tile. It is about 0.7 for photographs, less where they vary, and 0 if a band is flat
-    /// and another is not. It is 1 only if all bands have equally much: for a tile that is flat everywhere, and for one of
-    /// at most 8 columns and 8 rows, which is a single band.
+    /// and another is not. It is 1 for a tile that is flat everywhere and, within rounding, for one of at most 8 columns
+    /// and 8 rows, which is a single band.
     pub lowest_local_detail: f64,
     /// The tile beside its source, if there was one.
     pub kept: Option<DetailKept>,

@@ -209,7 +209,8 @@ fn layers_fade_in_from_nothing_however_high_they_are() {
                 at_a_pixel(&[weight, rest, rest], &heights, depth)[0]
             };
             // From no weight to all in steps of a fiftieth of the weight itself.
-            let mut weights: Vec<f32> = (0..1500).map(|n| 0.98_f32.powi(n)).collect();
+            let smaller = core::iter::successors(Some(1.0_f32), |weight| Some(0.98 * weight));
+            let mut weights: Vec<f32> = smaller.take(1500).collect();
             weights.reverse();
             let all: Vec<f32> = weights.iter().map(|&weight| share(weight)).collect();
             assert_eq!(share(0.0), 0.0, "{heights:?} {depth}");
@@ -218,6 +219,19 @@ fn layers_fade_in_from_nothing_however_high_they_are() {
             for pair in all.windows(2) {
                 assert!(pair[1] >= pair[0] - 1e-6, "{heights:?} {depth}: {pair:?}");
             }
+        }
+    }
+}
+
+#[test]
+fn a_sixteenth_of_the_weights_is_out_for_heights_from_zero_to_one() {
+    for n_others in 1..4_u8 {
+        for depth in [0.01, 0.3, 1.0] {
+            let rest = 15.0 / 16.0 / f32::from(n_others);
+            let weights = [&[1.0 / 16.0][..], &vec![rest; n_others.into()]].concat();
+            let heights = [&[1.0][..], &vec![0.0; n_others.into()]].concat();
+            let share = at_a_pixel(&weights, &heights, depth)[0];
+            assert_eq!(share, 0.0, "{n_others} others, depth {depth}");
         }
     }
 }
