@@ -37,7 +37,7 @@ pub struct Layer<'a> {
     pub maps: &'a [Map],
     /// How much of it there is, at least 0, in any unit: weights count beside those of the other layers.
     pub weight: &'a Raster<f32>,
-    /// Its height, from 0 to 1, for [`Weighting::Height`].
+    /// Its height for [`Weighting::Height`], by custom from 0 to 1. Only differences between layers count.
     pub height: Option<&'a Raster<f32>>,
 }
 
@@ -50,7 +50,7 @@ pub struct Layer<'a> {
 ///
 /// // Plain splatting, and the same with hard edges along the features of a blend tile.
 /// let splatting = Blend::new(Weighting::Given, Mixing::Linear);
-/// let cut = Blend { weighting: Weighting::Mask { gain: f64::INFINITY }, ..splatting };
+/// let cut = Blend { weighting: Weighting::Mask { gain: 1e9 }, ..splatting };
 /// assert_eq!(splatting, Blend::default());
 /// assert_ne!(splatting, cut);
 /// ```
@@ -235,21 +235,27 @@ fn mix_map(
     }
 }
 
-/// `Σ w x`.
+/// `Σ w x`, in the range of the values that have a share.
 pub(crate) fn linear(
     planes: &[Raster<f32>],
     shares: &[Raster<f32>],
 ) -> Result<Raster<f32>, TileError> {
     let size = planes[0].size();
     Ok(Raster::from_rows(size, |row| {
-        let mut sums = vec![0.0_f32; size[0] as usize];
+        let mut sums = vec![(0.0_f64, f32::INFINITY, f32::NEG_INFINITY); size[0] as usize];
         for (plane, shares) in planes.iter().zip(shares) {
             let pixels = plane.row(row).iter().zip(shares.row(row));
-            for (sum, (value, share)) in sums.iter_mut().zip(pixels) {
-                *sum += share * value;
+            for ((sum, min, max), (&value, &share)) in sums.iter_mut().zip(pixels) {
+                *sum += f64::from(share) * f64::from(value);
+                if share > 0.0 {
+                    *min = min.min(value);
+                    *max = max.max(value);
+                }
             }
         }
-        sums
+        // The shares sum to 1 but for their roundings, which must not lead out of the range.
+        let mixed = |(sum, min, max): (f64, f32, f32)| (sum as f32).max(min).min(max);
+        sums.into_iter().map(mixed)
     })?)
 }
 

@@ -9,7 +9,7 @@
 //! our own and has two knobs, a size and a contrast.
 //!
 //! Let `L` be the luminance (or the height), taken to the range from -1 to 1, `G(s)` the blur by a Gaussian of standard
-//! deviation `s`, and `s = feature_size / 16`:
+//! deviation `s`, and `s = feature_size / 16`, but at least half a pixel:
 //!
 //! * `B = G(s) L - G(4s) L` is what stands out from its surroundings: positive on stones, negative in cracks;
 //! * `D = s · G(s) |∇ G(s) L|` is the change over the distance `s`, nearby;
@@ -17,12 +17,13 @@
 //!   ones count as much as those;
 //! * `I = (B - D) / E` is the importance.
 //!
-//! The gradient lowers the importance. Edges belong to the cracks: a stone has a rim because a crack ends there, and the
-//! middle of a stone has no edges. On procedural stones of several kinds, with dark cracks over 30 % of the area, 98 to 99 %
-//! of the quarter with the lowest importance lie in the cracks. By `B` alone it is 91 to 99 %, and with the gradient added
-//! instead 82 to 99 %: less where the stones are more unlike. (The luminance alone does it too as long as every crack is
-//! darker than every stone and the light is even.) From the cracks the map rises over the rims to the middles of the stones,
-//! so that what grows beyond the cracks grows inward. With bells half as wide the middles would fall back to ½.
+//! The gradient lowers the importance. Edges belong to the cracks: a stone has a rim because a crack ends there, and
+//! the middle of a stone has no edges. On procedural stones of several kinds, with dark cracks over 30 % of the area,
+//! 98 to 99 % of the quarter with the lowest importance lie in the cracks, and more than 99.7 % on the five kinds of
+//! the tests. By `B` alone it is 91 to 99 %, and with the gradient added instead 82 to 99 %: less where the stones are
+//! more unlike. (The luminance alone does it too as long as every crack is darker than every stone and the light is
+//! even.) From the cracks the map rises over the rims to the middles of the stones, so that what grows beyond the
+//! cracks grows inward. With bells half as wide the middles would fall back to ½.
 //!
 //! The map is `½ + ½ x / sqrt(1 + x²)` of `x = contrast · (I - median I)`: ½ on the median, and between 0 and 1.
 //! [`rank_equalize`](crate::rank_equalize) makes of it a mask that covers exactly its share. Masks without features come

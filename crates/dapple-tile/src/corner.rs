@@ -132,7 +132,8 @@ impl CornerTiles {
     /// A map of `size` pixels from pixel `first` of the plane, whose corners have random colors; on all cores where the
     /// feature `rayon` is on.
     ///
-    /// A window is the crop of the whole. Tile `[0, 0]` begins in pixel `[0, 0]` of the plane.
+    /// A window is the crop of the whole. Tile `[0, 0]` begins in pixel `[0, 0]` of the plane. Past the largest `i64` the
+    /// plane goes on with the smallest, in the middle of a tile.
     ///
     /// # Errors
     ///

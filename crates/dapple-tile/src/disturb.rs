@@ -5,7 +5,7 @@
 //! not change", and leave the function open. Here each copy of the tile in the plane is mixed with the same tile,
 //! shifted by a random number of whole pixels. So nothing comes in that the tile has not, and what is mixed keeps its
 //! variance (see [`Crossfade`](crate::Crossfade)), the tile and its shifted self taken for independent: a shift is at
-//! least a quarter of the tile along each axis, whichever way round.
+//! least a quarter of the tile along each axis, whichever way round (a side of a single pixel cannot be shifted).
 //!
 //! The weight of the shifted tile is the product of two profiles, one along each axis: 0 in the `frozen` pixels next to
 //! both borders, then a quintic ramp over `ramp` pixels, 1 in the middle. So the frozen border, of all copies, is the
@@ -32,8 +32,11 @@ use dapple_raster::{Raster, Wrap};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Disturbance {
     /// How many pixels along each border stay as they are. By default 4.
     pub frozen: u32,
@@ -64,7 +67,8 @@ impl Disturbance {
     /// A map of `size` pixels that is covered with disturbed copies of a tile which repeats, from pixel `first` of the
     /// plane; on all cores where the feature `rayon` is on.
     ///
-    /// Copy `[0, 0]` of the tile begins in pixel `[0, 0]` of the plane.
+    /// Copy `[0, 0]` of the tile begins in pixel `[0, 0]` of the plane. Past the largest `i64` the plane goes on with the
+    /// smallest, in the middle of a copy.
     ///
     /// # Errors
     ///
@@ -200,11 +204,14 @@ impl Row<'_> {
     }
 }
 
-/// A random number of pixels from a quarter to three quarters of a side, the latter excluded where it can be.
+/// A random number of pixels from a quarter to three quarters of a side, both included; 0 for a side of one pixel.
 fn shift(bits: u64, side: u32) -> u32 {
-    let choices = u64::from((side / 2).max(1));
+    let least = side.div_ceil(4);
+    // Three quarters are what a quarter leaves. For a side of one pixel nothing is left to choose from.
+    let choices = u64::from((side - least + 1).saturating_sub(least));
     // The upper half of the product of a number below 1 and the choices.
-    side / 4 + (((bits >> 32) * choices) >> 32) as u32
+    let chosen = (((bits >> 32) * choices) >> 32) as u32;
+    if choices > 0 { least + chosen } else { 0 }
 }
 
 #[cfg(test)]

@@ -24,9 +24,9 @@ pub enum TileErrorKind {
         /// The shortest that is allowed.
         least: u32,
     },
-    /// A margin leaves too little of the image.
+    /// A margin, or the width of what changes along the borders, leaves too little of the image.
     Margin {
-        /// The margin that was asked for, in pixels.
+        /// The margin or the width that was asked for, in pixels.
         margin: u32,
         /// The length of the side, in pixels.
         length: u32,

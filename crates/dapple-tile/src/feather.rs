@@ -18,7 +18,7 @@ use dapple_raster::Raster;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
+    serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum Feather {
     /// With the image moved by half of its size, all the way to the middle; the size stays. A side has at least 4 pixels.
@@ -28,7 +28,8 @@ pub enum Feather {
     Margin {
         /// The width of the crossfade, in pixels, from 1 to half of the side.
         margin: u32,
-        /// How the two are mixed.
+        /// How the two are mixed. By default the variance is kept.
+        #[cfg_attr(feature = "serde", serde(default))]
         crossfade: Crossfade,
     },
 }

@@ -18,7 +18,6 @@
 use crate::axis::each_axis;
 use crate::crossfade::{Pair, smooth_ramp};
 use crate::map::check_planes;
-use crate::overlap::check_margin;
 use crate::{Crossfade, TileError, TileErrorKind};
 use dapple_raster::Raster;
 
@@ -33,7 +32,8 @@ pub enum BorderSource {
     /// Its border. The first tile has to repeat by itself, and stays as it is.
     #[default]
     Border,
-    /// The row and the column through its middle, whether it repeats or not. The first tile changes as all others do.
+    /// The row and the column through its middle, whether it repeats or not. The first tile changes as all others do. The
+    /// width is less than half of a side, so that nothing is seen of where the borders of the first tile meet.
     Middle,
 }
 
@@ -51,10 +51,14 @@ pub enum BorderSource {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct MatchBorders {
-    /// How far from a border a tile changes, in pixels, from 1 to half of a side. By default 16.
+    /// How far from a border a tile changes, in pixels, from 1 to half of a side, rounded down, and to one pixel less
+    /// for [`BorderSource::Middle`]. By default 16.
     pub width: u32,
     /// What the borders become. By default the border of the first tile.
     pub source: BorderSource,
@@ -74,8 +78,8 @@ impl MatchBorders {
     ///
     /// # Errors
     ///
-    /// [`TileErrorKind::Count`] if there is no tile, [`TileErrorKind::Margin`] or [`TileErrorKind::Range`] for a width of
-    /// more than half of a side or of nothing, [`TileErrorKind::Raster`] if the tiles differ in size,
+    /// [`TileErrorKind::Count`] if there is no tile, [`TileErrorKind::Margin`] or [`TileErrorKind::Range`] for a width that
+    /// is too large or nothing, [`TileErrorKind::Raster`] if the tiles differ in size,
     /// [`TileErrorKind::NotFinite`] for a pixel that is NaN or infinite.
     pub fn apply(&self, tiles: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
         if tiles.is_empty() {
@@ -86,7 +90,7 @@ impl MatchBorders {
             }));
         }
         let size = check_planes(tiles)?;
-        check_margin(tiles, self.width, [true; 2])?;
+        self.check_width(size)?;
         let donor = match self.source {
             BorderSource::Border => tiles[0].clone(),
             BorderSource::Middle => self.with_middle_at_borders(&tiles[0])?,
@@ -102,6 +106,25 @@ impl MatchBorders {
         let mut matched = others?;
         matched.insert(0, donor);
         Ok(matched)
+    }
+
+    /// Refuses a width of nothing, and one at which the two borders, or the seam of the rolled tile, come too near.
+    fn check_width(&self, size: [u32; 2]) -> Result<(), TileError> {
+        for length in size {
+            let most = match self.source {
+                BorderSource::Border => length / 2,
+                // The rolled tile has its seam in the middle, whose nearer pixel is this far from a border.
+                BorderSource::Middle => (length / 2).saturating_sub(1),
+            };
+            if self.width > most {
+                return Err(TileError::new(TileErrorKind::Margin {
+                    margin: self.width,
+                    length,
+                    most,
+                }));
+            }
+        }
+        TileError::check(self.width >= 1, "width", self.width.into(), "at least 1")
     }
 
     /// The tile with what it has along its middle at its borders, where that is continuous.

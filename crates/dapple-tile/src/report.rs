@@ -25,8 +25,11 @@ use dapple_raster::{Raster, Wrap};
 
 /// What is measured, and against what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct SeamOptions {
     /// Along which axes the tile repeats, x first. By default both. The others are not measured.
     pub axes: [bool; 2],
@@ -77,7 +80,9 @@ pub struct SeamReport {
     /// Detail is what the mean of 3 × 3 pixels, with weights 1 2 1 along each axis, takes away. A band is 8 columns or 8
     /// rows wide (all of them, if there are fewer) and reaches from side to side; along axes that repeat it may lie
     /// across the wrap. The number is the root mean square of the detail in the band that has the least, divided by that
-    /// of the whole tile. It is never quite 1: about 0.7 for photographs, less where they vary, and 0 if a band is flat.
+    /// of the whole tile. It is about 0.7 for photographs, less where they vary, and 0 if a band is flat
+    /// and another is not. It is 1 for a tile that is flat everywhere and, within rounding, for one of at most 8 columns
+    /// and 8 rows, which is a single band.
     pub lowest_local_detail: f64,
     /// The tile beside its source, if there was one.
     pub kept: Option<DetailKept>,

@@ -21,8 +21,11 @@ use dapple_raster::Raster;
 
 /// The tile is smaller than the image by the margin, along each axis that repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct SoftCut {
     /// How wide the two sides lie over each other, in pixels, from 1 to half of the side. By default 32.
     pub margin: u32,

@@ -50,8 +50,11 @@ pub enum Pixels {
 
 /// The blend tile of Du, Wang and Meng.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct SplineProject {
     /// How often the image is halved. By default 1.
     pub levels: u32,

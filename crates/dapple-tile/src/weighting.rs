@@ -3,13 +3,15 @@
 //! Weights as they are given make slow transitions in which both textures are half transparent. A height lets the higher
 //! stones of one layer reach into the other, and a blend tile cuts the transition along its own features.
 //!
-//! * [`Weighting::Height`]: with weights `α` that sum to 1 and heights `h`, `w = α · max(h + α - (top - depth), 0)`, where
-//!   `top` is the largest `h + α` of the layers whose weight is not zero, then divided by the sum of all `w`. This is the
-//!   usual height blend of engines with one departure: the factor `α`, so that a layer fades in from nothing, however
-//!   high it is.
+//! * [`Weighting::Height`]: with weights `α` that sum to 1 and heights `h`, a layer has the level
+//!   `l = h + α - max(1 / 4α - 1, 0)`, and `w = α · max(l - (top - depth), 0)`, where `top` is the largest level, then
+//!   divided by the sum of all `w`. This is the usual height blend of engines with two departures, so that a layer fades
+//!   in from nothing: the factor `α`, and that layers of less than a quarter are lowered, the deeper the less there is of
+//!   them. Otherwise a high layer of no weight to speak of would be the top and push out all others. Only differences of
+//!   heights count, so that they may lie in any range; the more they differ, the less of a layer is enough.
 //! * [`Weighting::Mask`]: with the thresholds `T(i) = α(1) + … + α(i)` and a blend tile `m`, `w(i) = s(T(i)) - s(T(i-1))`
-//!   with `s(T) = clamp((T - m) / 2r + ½, 0, 1)` and half the width `r = min(1 / (2 gain), T, 1 - T)` of a ramp. The ramp
-//!   gets narrower near 0 and 1, where it would reach past the values of the tile. So every layer has exactly its share of
+//!   with `s(T) = clamp((T - m) / 2r + ½, 0, 1)` and half the width `r = min(1 / (2 gain), T, 1 - T)` of a ramp, or 0
+//!   for the largest gain. The ramp gets narrower near 0 and 1, where it would reach past the values of the tile. So every layer has exactly its share of
 //!   the area for every gain, if the values of the tile are spread evenly, as those of
 //!   [`rank_equalize`](crate::rank_equalize) are; and a layer without weight is nowhere.
 
@@ -22,7 +24,7 @@ use dapple_raster::Raster;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
+    serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum Weighting {
     /// Each weight over the sum of all.
@@ -31,16 +33,20 @@ pub enum Weighting {
     /// What is higher shows: where a layer has no height, that of the blend tile is taken.
     Height {
         /// The difference of heights over which layers mix, above 0, for heights from 0 to 1: 0.1 is crisp, 0.3 soft.
+        /// With such heights and up to four layers, one that has less than 1/16 of the weights is out, for depths up to 1.
         depth: f64,
     },
     /// The blend tile is cut at thresholds. The first layer lies where the tile is lowest: in the cracks of a
     /// [`BlendMap`](crate::BlendMap).
     Mask {
-        /// One over the width of the transition, in values of the tile, above 0: 1 is soft, 4 and more show the features
-        /// of the tile. An infinite gain gives hard edges.
+        /// One over the width of the transition, in values of the tile, above 0 and at most 1e9: 1 is soft, 4 and more
+        /// show the features of the tile, and 1e9 gives hard edges, without any transition.
         gain: f64,
     },
 }
+
+/// The gain of hard edges.
+const MOST_GAIN: f64 = 1e9;
 
 impl Weighting {
     /// The share of each layer.
@@ -67,7 +73,8 @@ impl Weighting {
                 by_height(&normalize(&weights)?, &heights(layers, tile)?, depth)
             }
             Self::Mask { gain } => {
-                TileError::check(gain > 0.0, "gain", gain, "above 0")?;
+                let holds = gain > 0.0 && gain <= MOST_GAIN;
+                TileError::check(holds, "gain", gain, "above 0 and at most 1e9")?;
                 by_mask(&weights, checked_mask(tile)?, gain)
             }
         }
@@ -141,13 +148,10 @@ fn by_height(
     normalize(&shares.iter().collect::<Vec<_>>())
 }
 
-/// The sum of weight and height, and nothing as high as any for a layer without weight.
+/// What is higher shows. A layer without weight is lower than any.
 fn level(&weight: &f32, &height: &f32) -> f64 {
-    if weight > 0.0 {
-        f64::from(weight) + f64::from(height)
-    } else {
-        f64::MIN
-    }
+    let weight = f64::from(weight);
+    f64::from(height) + weight - (0.25 / weight - 1.0).max(0.0)
 }
 
 /// The blend tile, whose values lie from 0 to 1.
@@ -175,7 +179,7 @@ fn by_mask(
     mask: &Raster<f32>,
     gain: f64,
 ) -> Result<Vec<Raster<f32>>, TileError> {
-    let half_width = 0.5 / gain;
+    let half_width = if gain < MOST_GAIN { 0.5 / gain } else { 0.0 };
     let sums = sums(weights)?;
     let mut part = mask.map(|_| 0.0);
     let mut below = mask.map(|_| 0.0);

@@ -5,6 +5,7 @@ use crate::TileErrorKind;
 use crate::test_fields::{fbm, gravel, same_on_threads, seam_ratio_of, turned, variance};
 use dapple_hash::Seed;
 use dapple_raster::Raster;
+use proptest::prelude::*;
 
 fn tiles(count: u64, size: [u32; 2]) -> CornerTiles {
     let sources: Vec<_> = (0..count).map(|seed| gravel(seed, size, true)).collect();
@@ -220,6 +221,35 @@ fn new_and_tile_refuse_what_does_not_fit() {
             map.pixels().iter().all(|value| (1.0..=2.0).contains(value)),
             "{size:?}"
         );
+    }
+}
+
+proptest! {
+    #[test]
+    fn corner_tiles_are_finite_or_refused_with_a_typed_error(
+        sizes in prop::collection::vec([1_u32..9, 1_u32..9], 0..6), same: bool,
+        width in prop_oneof![-0.5..1.5, Just(f64::NAN)], seed: u64,
+        first: [i64; 2], size in [0_u32..20, 0_u32..20],
+        bad in prop_oneof![Just(0.0), Just(f32::NAN), Just(f32::INFINITY)],
+    ) {
+        let size_of = |index: usize| if same { sizes[0] } else { sizes[index] };
+        let sources: Vec<_> = (0..sizes.len())
+            .map(|index| Raster::from_fn(size_of(index), |x, y| if x + y == 0 { bad } else { y as f32 }).unwrap())
+            .collect();
+        let map = CornerTiles::new(&sources)
+            .and_then(|tiles| tiles.with_width(width))
+            .and_then(|tiles| tiles.render(Seed(seed), first, size));
+        match map {
+            Ok(map) => {
+                prop_assert_eq!(map.size(), size);
+                prop_assert!(map.pixels().iter().all(|value| value.is_finite()));
+            }
+            Err(error) => prop_assert!(matches!(
+                error.kind(),
+                TileErrorKind::Count { .. } | TileErrorKind::Range { .. } | TileErrorKind::Raster(_)
+                    | TileErrorKind::NotFinite { .. }
+            ), "{}", error),
+        }
     }
 }
 

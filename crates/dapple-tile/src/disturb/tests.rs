@@ -6,6 +6,7 @@ use crate::{Map, TileErrorKind};
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
 use dapple_raster::Raster;
+use proptest::prelude::*;
 
 #[test]
 fn render_keeps_the_frozen_border_of_every_copy_bit_for_bit() {
@@ -152,16 +153,21 @@ fn render_maps_shifts_all_maps_alike() {
 
 #[test]
 fn shift_is_at_least_a_quarter_of_the_side_either_way_round() {
-    for side in [1, 2, 3, 7, 40, 1 << 20] {
-        for bits in [0, 1 << 31, 1 << 63, u64::MAX] {
-            let shift = shift(bits, side);
+    for side in (2..=40).chain([1 << 20, u32::MAX]) {
+        let shifts = [0, 1 << 31, 1 << 63, u64::MAX].map(|bits| shift(bits, side));
+        for shift in shifts.map(u64::from) {
+            let side = u64::from(side);
             assert!(
-                shift >= side / 4 && side - shift >= side / 4,
+                4 * shift >= side && 4 * (side - shift) >= side,
                 "{shift} of {side}"
             );
-            assert!(shift < side, "{shift} of {side}");
         }
+        // Both ends are reached: no other number of pixels would do.
+        let [least, most] = [shifts[0], shifts[3]].map(u64::from);
+        assert!(4 * (least - 1) < side.into(), "{least} of {side}");
+        assert!(4 * (most + 1) > 3 * u64::from(side), "{most} of {side}");
     }
+    assert_eq!([0, u64::MAX].map(|bits| shift(bits, 1)), [0, 0]);
 }
 
 #[test]
@@ -207,6 +213,28 @@ fn render_refuses_what_does_not_fit() {
     ));
 }
 
+proptest! {
+    #[test]
+    fn render_gives_a_finite_map_or_a_typed_error(
+        tile_size in [1_u32..24, 1_u32..24], frozen in 0_u32..6, ramp in 0_u32..6, seed: u64,
+        first: [i64; 2], size in [0_u32..20, 0_u32..20],
+        bad in prop_oneof![Just(0.0), Just(f32::NAN), Just(f32::NEG_INFINITY)],
+    ) {
+        let tile = Raster::from_fn(tile_size, |x, y| if x + y == 0 { bad } else { x as f32 }).unwrap();
+        let disturbance = Disturbance { frozen, ramp, seed: Seed(seed) };
+        match disturbance.render(&tile, first, size) {
+            Ok(map) => {
+                prop_assert_eq!(map.size(), size);
+                prop_assert!(map.pixels().iter().all(|value| value.is_finite()));
+            }
+            Err(error) => prop_assert!(matches!(
+                error.kind(),
+                TileErrorKind::Margin { .. } | TileErrorKind::Raster(_) | TileErrorKind::NotFinite { .. }
+            ), "{}", error),
+        }
+    }
+}
+
 #[test]
 fn render_has_the_same_bits_on_any_number_of_threads() {
     let tile = gravel(3, [41, 44], true);
@@ -224,5 +252,5 @@ fn value_stability_disturb() {
         .unwrap();
     let bits = [[0, 0], [10, 15], [50, 50], [89, 89]]
         .map(|[x, y]: [usize; 2]| map.row(y as u32)[x].to_bits());
-    assert_eq!(bits, [1051352163, 1062009822, 1063550235, 1053281590]);
+    assert_eq!(bits, [1051352163, 1062009822, 1059973746, 1057510168]);
 }

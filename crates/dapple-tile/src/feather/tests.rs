@@ -5,6 +5,7 @@ use crate::test_fields::{fbm, gravel, seam_ratio};
 use crate::{Crossfade, TileErrorKind};
 use core::slice;
 use dapple_raster::Raster;
+use proptest::prelude::*;
 
 const BOTH: [bool; 2] = [true; 2];
 
@@ -144,6 +145,29 @@ fn tile_refuses_sides_that_are_too_short() {
             tile(slice::from_ref(&image), &Feather::HalfShift, [false; 2]).is_ok(),
             "nothing to do"
         );
+    }
+}
+
+proptest! {
+    #[test]
+    fn tiles_of_any_size_have_their_size_or_are_refused(
+        size in [1_u32..14, 1_u32..14], width in 0_u32..9, axes: [bool; 2], linear: bool,
+    ) {
+        let image = gravel(1, size, false);
+        let crossfade = if linear { Crossfade::Linear } else { Crossfade::KeepVariance };
+        for (feather, less) in [(Feather::HalfShift, 0), (margin(width, crossfade), width)] {
+            match tile(slice::from_ref(&image), &feather, axes) {
+                Ok(tiles) => {
+                    let expected = [0, 1].map(|axis| size[axis] - if axes[axis] { less } else { 0 });
+                    prop_assert_eq!(tiles[0].size(), expected);
+                    prop_assert!(tiles[0].pixels().iter().all(|value| value.is_finite()));
+                }
+                Err(error) => prop_assert!(matches!(
+                    error.kind(),
+                    TileErrorKind::TooSmall { .. } | TileErrorKind::Margin { .. } | TileErrorKind::Range { .. }
+                ), "{}", error),
+            }
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use super::{BorderSource, MatchBorders};
 use crate::TileErrorKind;
 use crate::test_fields::{fbm, gravel, seam_ratio_of, top_power, turned};
 use dapple_raster::Raster;
+use proptest::prelude::*;
 
 fn matched(source: BorderSource, tiles: &[Raster<f32>]) -> Vec<Raster<f32>> {
     MatchBorders { width: 16, source }.apply(tiles).unwrap()
@@ -72,6 +73,68 @@ fn pixels_past_the_width_are_unchanged() {
         for (before, after) in tiles.iter().zip(matched(source, &tiles)) {
             let inside = |tile: &Raster<f32>| tile.crop([16, 16], [18, 28]).unwrap();
             assert_eq!(inside(before), inside(&after), "{source:?}");
+        }
+    }
+}
+
+#[test]
+fn the_seam_of_the_first_tile_is_nowhere_seen_for_any_width() {
+    for side in [4, 5, 12, 13, 40] {
+        let first = Raster::from_fn(
+            [side; 2],
+            |x, y| if x == 0 || y == 0 { 1000.0 } else { 0.0 },
+        );
+        let tiles = [first.unwrap(), Raster::filled([side; 2], 0.0).unwrap()];
+        let most = side / 2 - 1;
+        for width in 1..=most {
+            let options = MatchBorders {
+                width,
+                source: BorderSource::Middle,
+            };
+            let matched = options.apply(&tiles).unwrap();
+            let flat = matched.iter().all(|tile| {
+                // Only what is mixed is not copied: the mean is taken off and put back.
+                tile.pixels().iter().all(|value| value.abs() < 1e-3)
+            });
+            assert!(flat, "side {side}, width {width}");
+        }
+        let kind = MatchBorders {
+            width: most + 1,
+            source: BorderSource::Middle,
+        };
+        assert_eq!(
+            kind.apply(&tiles).unwrap_err().kind(),
+            &TileErrorKind::Margin {
+                margin: most + 1,
+                length: side,
+                most
+            }
+        );
+    }
+}
+
+proptest! {
+    #[test]
+    fn apply_gives_finite_tiles_or_a_typed_error(
+        sizes in prop::collection::vec([1_u32..12, 1_u32..12], 0..3),
+        same: bool, width in 0_u32..9, middle: bool,
+        bad in prop_oneof![Just(0.0), Just(f32::NAN), Just(f32::INFINITY), Just(f32::MAX)],
+    ) {
+        let size = |index: usize| if same { sizes[0] } else { sizes[index] };
+        let tiles: Vec<_> = (0..sizes.len())
+            .map(|index| Raster::from_fn(size(index), |x, y| if x + y == 0 { bad } else { x as f32 }).unwrap())
+            .collect();
+        let source = if middle { BorderSource::Middle } else { BorderSource::Border };
+        match (MatchBorders { width, source }).apply(&tiles) {
+            Ok(matched) => {
+                prop_assert!(bad.is_finite(), "{} was taken", bad);
+                prop_assert!(matched.iter().zip(&tiles).all(|(a, b)| a.size() == b.size()));
+            }
+            Err(error) => prop_assert!(matches!(
+                error.kind(),
+                TileErrorKind::Count { .. } | TileErrorKind::Margin { .. } | TileErrorKind::Range { .. }
+                    | TileErrorKind::Raster(_) | TileErrorKind::NotFinite { .. }
+            ), "{}", error),
         }
     }
 }
@@ -149,10 +212,13 @@ fn apply_refuses_what_does_not_fit() {
             "{size:?}"
         );
     }
-    for source in [BorderSource::Border, BorderSource::Middle] {
-        let tiles = [1.0, 2.0].map(|value| Raster::filled([2, 3], value).unwrap());
+    for (source, size) in [
+        (BorderSource::Border, [2, 3]),
+        (BorderSource::Middle, [4, 5]),
+    ] {
+        let tiles = [1.0, 2.0].map(|value| Raster::filled(size, value).unwrap());
         let tiles = MatchBorders { width: 1, source }.apply(&tiles).unwrap();
-        assert_eq!(tiles[1].row(0), [1.0, 1.0], "{source:?}");
+        assert!(tiles[1].row(0).iter().all(|&v| v == 1.0), "{source:?}");
     }
 }
 

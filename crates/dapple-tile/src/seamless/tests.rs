@@ -20,6 +20,28 @@ fn methods() -> [Method; 3] {
     ]
 }
 
+/// All methods, with margins of a pixel.
+fn every_method() -> Vec<Method> {
+    let cut = SoftCut {
+        margin: 1,
+        half_width: 0.0,
+        ..SoftCut::default()
+    };
+    let margin = Feather::Margin {
+        margin: 1,
+        crossfade: Crossfade::Linear,
+    };
+    let others = [
+        Method::SoftCut(cut),
+        Method::SplineProject(SplineProject::default()),
+        Method::PeriodicThenProject(SplineProject::default()),
+        Method::Feather(Feather::HalfShift),
+        Method::Feather(margin),
+        Method::Mirror,
+    ];
+    methods().into_iter().chain(others).collect()
+}
+
 #[test]
 fn colors_and_maps_have_the_tiles_of_their_planes() {
     let value = ramp([9, 6]);
@@ -88,24 +110,7 @@ fn maps_that_do_not_fit_together_are_refused() {
 
 #[test]
 fn a_side_of_one_pixel_cannot_be_made_to_repeat_by_any_method() {
-    let cut = SoftCut {
-        margin: 1,
-        half_width: 0.0,
-        ..SoftCut::default()
-    };
-    let margin = Feather::Margin {
-        margin: 1,
-        crossfade: Crossfade::Linear,
-    };
-    let others = [
-        Method::SoftCut(cut),
-        Method::SplineProject(SplineProject::default()),
-        Method::PeriodicThenProject(SplineProject::default()),
-        Method::Feather(Feather::HalfShift),
-        Method::Feather(margin),
-        Method::Mirror,
-    ];
-    for method in methods().into_iter().chain(others) {
+    for method in every_method() {
         for (size, axes) in [
             ([1, 1], [true, true]),
             ([1, 8], [true, false]),
@@ -125,7 +130,59 @@ fn a_side_of_one_pixel_cannot_be_made_to_repeat_by_any_method() {
     }
 }
 
+#[cfg(feature = "serde")]
+#[test]
+fn options_refuse_fields_that_they_do_not_have() {
+    use crate::{BlendMap, Disturbance, MatchBorders, Pyramid, SeamOptions};
+    fn message<T: serde::de::DeserializeOwned>(text: &str) -> String {
+        let error = serde_json::from_str::<T>(text).err();
+        error.map_or_else(|| "taken".to_owned(), |error| error.to_string())
+    }
+    let text = r#"{"tpyo": 1}"#;
+    let variant = r#"{"margin": {"margin": 3, "tpyo": 1}}"#;
+    for message in [
+        message::<Seamless>(text),
+        message::<SplineProject>(text),
+        message::<SoftCut>(text),
+        message::<SeamOptions>(text),
+        message::<Disturbance>(text),
+        message::<MatchBorders>(text),
+        message::<BlendMap>(text),
+        message::<Pyramid>(text),
+        message::<crate::Blend>(text),
+        message::<Feather>(variant),
+        message::<crate::Weighting>(r#"{"mask": {"gain": 3.0, "tpyo": 1}}"#),
+    ] {
+        assert!(message.starts_with("unknown field `tpyo`"), "{message}");
+    }
+    let feather: Feather = serde_json::from_str(r#"{"margin": {"margin": 3}}"#).unwrap();
+    let crossfade = Crossfade::KeepVariance;
+    let margin = 3;
+    assert_eq!(feather, Feather::Margin { margin, crossfade });
+}
+
 proptest! {
+    #[test]
+    fn any_size_gives_a_finite_tile_or_a_typed_error(
+        width in 1_u32..14, height in 1_u32..14, axes: [bool; 2],
+    ) {
+        for method in every_method() {
+            match Seamless::new(method).with_axes(axes).apply(&ramp([width, height])) {
+                Ok(tile) => {
+                    prop_assert!(tile.pixels().iter().all(|value| value.is_finite()), "{:?}", method);
+                    let twice = |axis: usize| 1 + u32::from(axes[axis]);
+                    let expected = [width * twice(0), height * twice(1)];
+                    prop_assert!(method != Method::Mirror || tile.size() == expected);
+                }
+                Err(error) => prop_assert!(matches!(
+                    error.kind(),
+                    TileErrorKind::TooSmall { .. } | TileErrorKind::Margin { .. } | TileErrorKind::Wavelet(_)
+                        | TileErrorKind::Range { .. }
+                ), "{:?}: {}", method, error),
+            }
+        }
+    }
+
     #[test]
     fn pixels_that_are_not_finite_are_refused_with_their_place(
         width in 1_u32..9, height in 1_u32..9, at in 0_usize..81,
@@ -134,7 +191,7 @@ proptest! {
         let mut plane = ramp([width, height]);
         let at = at % plane.pixels().len();
         plane.pixels_mut()[at] = bad;
-        for method in methods() {
+        for method in every_method() {
             let error = Seamless::new(method).apply(&plane).expect_err("a pixel is not finite");
             let TileErrorKind::NotFinite { column, row, .. } = *error.kind() else {
                 panic!("{error} is of another kind");

@@ -39,9 +39,7 @@ fn all() -> [Weighting; 6] {
         Weighting::Height { depth: 1e-300 },
         Weighting::Mask { gain: 0.3 },
         Weighting::Mask { gain: 5.0 },
-        Weighting::Mask {
-            gain: f64::INFINITY,
-        },
+        Weighting::Mask { gain: 1e9 },
     ]
 }
 
@@ -105,7 +103,7 @@ fn masks_give_every_layer_its_share_of_the_area_for_every_gain() {
     let tile = rank_equalize(&noise(size, 1)).unwrap();
     let parts = [0.05_f32, 0.25, 0.6, 0.1];
     let weights = parts.map(|part| Raster::filled(size, 3.0 * part).unwrap());
-    for gain in [0.1, 1.0, 4.0, 12.0, f64::INFINITY] {
+    for gain in [0.1, 1.0, 4.0, 12.0, 1e9] {
         let shares = shares(Weighting::Mask { gain }, &weights, &[], Some(&tile));
         for (shares, part) in shares.iter().zip(parts) {
             let covered = shares.statistics().mean;
@@ -123,7 +121,7 @@ fn masks_give_every_layer_its_share_of_the_area_for_every_gain() {
 fn masks_lay_the_first_layer_where_the_tile_is_lowest() {
     let tile = rank_equalize(&noise(SIZE, 2)).unwrap();
     let weights = [0.25, 0.5, 0.25].map(|weight| Raster::filled(SIZE, weight).unwrap());
-    let gain = f64::INFINITY;
+    let gain = 1e9;
     let shares = shares(Weighting::Mask { gain }, &weights, &[], Some(&tile));
     for (index, &rank) in tile.pixels().iter().enumerate() {
         let expected = [rank < 0.25, (0.25..0.75).contains(&rank), rank >= 0.75];
@@ -172,7 +170,10 @@ fn heights_equal_the_formula_pixel_by_pixel() {
             .map(|rasters| [0, 1, 2].map(|layer| f64::from(rasters[layer].pixels()[index])));
         let sum = w[0] + w[1] + w[2];
         let alpha = w.map(|w| w / sum);
-        let level = [0, 1, 2].map(|layer| h[layer] + alpha[layer]);
+        let level = [0, 1, 2].map(|layer| {
+            let lowered = (0.25 / alpha[layer] - 1.0).max(0.0);
+            h[layer] + alpha[layer] - lowered
+        });
         let top = level[0].max(level[1]).max(level[2]);
         let raw = [0, 1, 2].map(|layer| alpha[layer] * (level[layer] - (top - depth)).max(0.0));
         for layer in 0..3 {
@@ -180,6 +181,97 @@ fn heights_equal_the_formula_pixel_by_pixel() {
             let share = f64::from(shares[layer].pixels()[index]);
             // The weights were rounded to `f32`, and a depth of 0.15 makes 7 times as much of it.
             assert!((share - expected).abs() < 2e-6, "{share} for {expected}");
+        }
+    }
+}
+
+/// The shares by height of layers at a single pixel.
+fn at_a_pixel(weights: &[f32], heights: &[f32], depth: f64) -> Vec<f32> {
+    let rasters = |values: &[f32]| -> Vec<_> {
+        let values = values.iter();
+        values
+            .map(|&v| Raster::filled([1, 1], v).unwrap())
+            .collect()
+    };
+    let how = Weighting::Height { depth };
+    let shares = shares(how, &rasters(weights), &rasters(heights), None);
+    shares.iter().map(|share| share.pixels()[0]).collect()
+}
+
+#[test]
+fn layers_fade_in_from_nothing_however_high_they_are() {
+    let low = at_a_pixel(&[1e-6, 0.5, 0.5], &[1.0, 0.0, 0.0], 0.1);
+    assert_eq!(low, [0.0, 0.5, 0.5], "next to no weight");
+    for heights in [[1.0, 0.0, 0.0], [30.0, -5.0, -4.9], [1e6, 0.0, 0.0]] {
+        for depth in [0.02, 0.1, 0.3, 5.0] {
+            let share = |weight: f32| {
+                let rest = 0.5 - 0.5 * weight;
+                at_a_pixel(&[weight, rest, rest], &heights, depth)[0]
+            };
+            // From no weight to all in steps of a fiftieth of the weight itself.
+            let smaller = core::iter::successors(Some(1.0_f32), |weight| Some(0.98 * weight));
+            let mut weights: Vec<f32> = smaller.take(1500).collect();
+            weights.reverse();
+            let all: Vec<f32> = weights.iter().map(|&weight| share(weight)).collect();
+            assert_eq!(share(0.0), 0.0, "{heights:?} {depth}");
+            assert!(all[0] < 1e-9, "{heights:?} {depth}: {}", all[0]);
+            assert_eq!(all[1499], 1.0, "{heights:?} {depth}");
+            for pair in all.windows(2) {
+                assert!(pair[1] >= pair[0] - 1e-6, "{heights:?} {depth}: {pair:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sixteenth_of_the_weights_is_out_for_heights_from_zero_to_one() {
+    for n_others in 1..4_u8 {
+        for depth in [0.01, 0.3, 1.0] {
+            let rest = 15.0 / 16.0 / f32::from(n_others);
+            let weights = [&[1.0 / 16.0][..], &vec![rest; n_others.into()]].concat();
+            let heights = [&[1.0][..], &vec![0.0; n_others.into()]].concat();
+            let share = at_a_pixel(&weights, &heights, depth)[0];
+            assert_eq!(share, 0.0, "{n_others} others, depth {depth}");
+        }
+    }
+}
+
+#[test]
+fn layers_fade_in_continuously() {
+    for depth in [0.1, 0.3] {
+        let share = |weight: f32| {
+            let rest = 0.5 - 0.5 * weight;
+            at_a_pixel(&[weight, rest, rest], &[1.0, 0.0, 0.0], depth)[0]
+        };
+        let n = 10_000_u16;
+        let all: Vec<f32> = (0..=n)
+            .map(|i| share(f32::from(i) / f32::from(n)))
+            .collect();
+        // The layer passes the others at a weight of about 0.15, where the difference of levels grows by 1.5 + 1 / 4α²,
+        // or 13, per weight. The share changes at most by (1 - α) / α / depth, or 57, times as much: by 0.074 per step.
+        for (index, pair) in all.windows(2).enumerate() {
+            assert!((pair[1] - pair[0]).abs() < 0.08, "{depth} at {index}");
+        }
+    }
+}
+
+#[test]
+fn of_two_layers_the_higher_one_wins_around_the_middle() {
+    for (weight, expected) in [(0.0, 0.0), (0.01, 0.0), (0.4, 1.0), (0.5, 1.0), (1.0, 1.0)] {
+        let of_pixel = at_a_pixel(&[weight, 1.0 - weight], &[0.9, 0.5], 0.1);
+        assert_eq!(of_pixel[0], expected, "weight {weight}");
+    }
+}
+
+#[test]
+fn heights_count_by_their_differences_in_any_range() {
+    let weights = [0.2, 0.3, 0.5];
+    let here = at_a_pixel(&weights, &[0.25, 0.5, 0.125], 0.25);
+    for offset in [-3.0, 2.0, 64.0] {
+        let there = at_a_pixel(&weights, &[0.25, 0.5, 0.125].map(|h| h + offset), 0.25);
+        for (a, b) in here.iter().zip(there) {
+            // Levels of up to 64, in `f64`.
+            assert!((a - b).abs() < 1e-6, "{offset}: {here:?}");
         }
     }
 }
@@ -220,7 +312,7 @@ fn weighting_refuses_bad_numbers() {
     for depth in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(what(Weighting::Height { depth }, &weight, &tile), "depth");
     }
-    for gain in [0.0, -1.0, f64::NAN] {
+    for gain in [0.0, -1.0, f64::NAN, f64::INFINITY, 2e9] {
         assert_eq!(what(Weighting::Mask { gain }, &weight, &tile), "gain");
     }
     let mask = Weighting::Mask { gain: 1.0 };
