@@ -8,7 +8,7 @@
 //! * linear: `Σ w x`, the splatting of Charles Bloom (2000);
 //! * keeping the variance: `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`, with `μ` the mean of a layer's map over the raster, after
 //!   Eric Heitz and Fabrice Neyret, "High-Performance By-Example Noise using a Histogram-Preserving Blending Operator",
-//!   Proceedings of the ACM on Computer Graphics and Interactive Techniques 1(2), 2018, DOI 10.1145/3233304. Theirs works
+//!   Proceedings of the ACM on Computer Graphics and Interactive Techniques 1(2), 2018, <https://doi.org/10.1145/3233304>. Theirs works
 //!   on textures whose histograms were made Gaussian first; here the values are taken as they are;
 //! * in bands: see [`Pyramid`].
 //!

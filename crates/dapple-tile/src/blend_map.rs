@@ -28,6 +28,8 @@
 //! The map is `½ + ½ x / sqrt(1 + x²)` of `x = contrast · (I - median I)`: ½ on the median, and between 0 and 1.
 //! [`rank_equalize`](crate::rank_equalize) makes of it a mask that covers exactly its share. Masks without features come
 //! from any noise in the same way.
+//!
+//! Reference: Hardy and Mc Roberts, as above, for the idea; the formula is our own.
 
 use crate::TileError;
 use crate::gauss::blur;

@@ -1,7 +1,7 @@
 //! Corner tiles: sets that fit in any order.
 //!
 //! Ares Lagae and Philip Dutré, "An Alternative for Wang Tiles: Colored Edges versus Colored Corners", ACM Transactions on
-//! Graphics 25(4), 2006, DOI 10.1145/1183287.1183296: a square tile has a color at each of its corners, and tiles fit
+//! Graphics 25(4), 2006, <https://doi.org/10.1145/1183287.1183296>: a square tile has a color at each of its corners, and tiles fit
 //! where the colors of the corners that meet agree, along edges as well as across corners. With C colors there are C⁴
 //! tiles, and a plane of randomly colored corners has exactly one tile for every place.
 //!

@@ -11,6 +11,9 @@
 //! both borders, then a quintic ramp over `ramp` pixels, 1 in the middle. So the frozen border, of all copies, is the
 //! tile's, bit for bit; the weight is twice continuously differentiable in the plane, and so is the disturbed map where
 //! the tile is. Which copy is shifted by how much is a hash of its column and row: a window is the crop of the whole.
+//!
+//! Reference: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 4 C; the
+//! mixture is our own.
 
 use crate::crossfade::{mix_two, shares, smooth_ramp};
 use crate::map::check_finite;

@@ -7,6 +7,8 @@
 //!
 //! Weights rise linearly, as in those tools, and the half shift mixes plainly, which costs contrast: these are baselines.
 //! Widths are in pixels.
+//!
+//! Reference: our own, after what those tools do.
 
 use crate::axis::each_axis;
 use crate::overlap::{check_margin, overlap};

@@ -1,6 +1,6 @@
 //! The discrete Fourier transform of any length, with the same bits everywhere.
 //!
-//! Sources: T. G. Stockham, "High-speed convolution and correlation", Spring Joint Computer Conference 1966, for the
+//! Reference: T. G. Stockham, "High-speed convolution and correlation", Spring Joint Computer Conference 1966, for the
 //! passes that sort themselves (given in this form by P. N. Swarztrauber, "FFT algorithms for vector computers",
 //! Parallel Computing 1, 1984); L. I. Bluestein, "A linear filtering approach to the computation of discrete Fourier
 //! transform", IEEE Transactions on Audio and Electroacoustics 18, 1970, for all other lengths.

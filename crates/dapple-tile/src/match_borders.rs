@@ -14,6 +14,9 @@
 //! to the rows. Within the quarter of the width next to the border, the tile's own detail is lost for that of the first
 //! tile; then both are seen, over each other; past the width nothing changes. A material's maps are done one channel at
 //! a time, with the same options: where a tile changes depends on the place alone.
+//!
+//! Reference: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 5; the
+//! method is our own.
 
 use crate::axis::each_axis;
 use crate::crossfade::{Pair, smooth_ramp};

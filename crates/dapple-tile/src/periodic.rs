@@ -1,7 +1,7 @@
 //! The periodic part of an image: Moisan's periodic plus smooth decomposition.
 //!
 //! Source: Lionel Moisan, "Periodic plus smooth image decomposition", Journal of Mathematical Imaging and Vision 39,
-//! 2011, doi 10.1007/s10851-010-0227-1.
+//! 2011, <https://doi.org/10.1007/s10851-010-0227-1>.
 //!
 //! An image is `u = p + s`. The smooth part solves `Δs = v` on the torus, where `Δ` is the sum of the four neighbors
 //! less four times the pixel, and `v` is zero but at the borders: there it is the jump to the pixel across the wrap. The

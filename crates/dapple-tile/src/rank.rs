@@ -7,6 +7,8 @@
 //!
 //! Equal values are told apart by a hash of their place. They scatter over the places where they occur, and the share
 //! stays exact even for a raster of a few gray levels.
+//!
+//! Reference: our own.
 
 use crate::TileError;
 use crate::map::check_finite;

@@ -3,7 +3,7 @@
 //! Source: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 3: an image
 //! `R` becomes a smaller `R_d` by equation 12, and `R_d` the tile `R_n` by equation 13. `R_d` is what to store: with one
 //! level it has a quarter of the pixels, and `R_n` comes from it whole. The filters are those of Cook and DeRose,
-//! "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005), doi 10.1145/1073204.1073264.
+//! "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005), <https://doi.org/10.1145/1073204.1073264>.
 //!
 //! Decided here, where the paper is silent: the filters repeat along the axes on which the tile does, which alone makes
 //! it one, and are mirrored along the others; the phase and the number of levels are options; pixels are coefficients of

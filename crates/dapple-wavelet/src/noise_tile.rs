@@ -7,6 +7,9 @@
 //! noise would be made to repeat afterwards.
 //!
 //! Every band has white noise of its own, and repeats only where the raster does.
+//!
+//! Reference: Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
+//! <https://doi.org/10.1145/1073204.1073264>, for the bands; their sum as a raster is our own.
 
 use crate::noise::{LineSums, check_weights, white};
 use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};

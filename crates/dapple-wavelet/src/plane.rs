@@ -2,6 +2,9 @@
 //!
 //! Halving goes along rows and then along columns, doubling along columns and then along rows; in between values are rounded
 //! to `f32`. All arithmetic is `f64`.
+//!
+//! Reference: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis",
+//! equations 8, 9, 12 and 13.
 
 use crate::doubling::Doubling;
 use crate::ends::lengths;

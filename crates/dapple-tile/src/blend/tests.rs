@@ -1,3 +1,5 @@
+//! Blends beside their formulas, and what they keep.
+
 use super::{Blend, Layer, Mixing, blend, blend_by_tile};
 use crate::gauss::blur;
 use crate::{BlendMap, Map, Pyramid, TileErrorKind, Weighting, rank_equalize};

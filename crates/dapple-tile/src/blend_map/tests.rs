@@ -1,3 +1,5 @@
+//! Blend maps of stones whose cracks are known.
+
 use super::BlendMap;
 use crate::{TileErrorKind, rank_equalize};
 use core::ops::Range;

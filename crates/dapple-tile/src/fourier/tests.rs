@@ -1,3 +1,5 @@
+//! Transforms beside the naive sum.
+
 use super::*;
 use proptest::prelude::*;
 

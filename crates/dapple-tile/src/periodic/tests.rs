@@ -1,3 +1,5 @@
+//! The periodic part beside Moisan's own formula.
+
 use super::*;
 use crate::fourier::power_spectrum;
 use crate::{Method, Seamless};

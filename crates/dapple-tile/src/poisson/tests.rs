@@ -1,3 +1,5 @@
+//! Poisson images beside dense least squares.
+
 use super::*;
 use crate::fourier::BAND;
 use crate::periodic::Smooth;

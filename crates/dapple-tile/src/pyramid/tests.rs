@@ -1,3 +1,5 @@
+//! Blending in bands: what is exact, and what is sharper.
+
 use super::{Pyramid, sharpen};
 use crate::blend::linear;
 use crate::{TileErrorKind, weighting};

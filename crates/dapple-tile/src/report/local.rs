@@ -1,4 +1,6 @@
 //! The band of an image with the least detail.
+//!
+//! Reference: our own.
 
 use super::quotient;
 use dapple_raster::{Raster, Wrap};

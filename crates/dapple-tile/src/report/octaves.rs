@@ -1,4 +1,6 @@
 //! The power of an image in octaves of frequency.
+//!
+//! Reference: our own.
 
 use super::quotient;
 use crate::fourier::power_spectrum;

@@ -1,4 +1,6 @@
 //! The step across the wrap, beside the steps inside of the tile.
+//!
+//! Reference: our own.
 
 use super::{SeamOptions, quotient};
 use dapple_raster::Raster;

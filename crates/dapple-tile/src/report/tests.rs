@@ -1,3 +1,5 @@
+//! Whole reports: their numbers, text and limits.
+
 use super::{SeamOptions, SeamReport};
 use crate::{TileError, TileErrorKind};
 use dapple_hash::{Seed, hash2, unit_f32};

@@ -1,3 +1,5 @@
+//! What holds for every method.
+
 use super::*;
 use crate::{Crossfade, TileErrorKind};
 use dapple_color::Normal;

@@ -1,3 +1,5 @@
+//! The projector onto sines beside a dense one.
+
 use super::*;
 use crate::fourier::LANES;
 use core::f64::consts::PI;

@@ -1,3 +1,5 @@
+//! Blend tiles: steps left, small tiles, limits.
+
 use super::*;
 use crate::{Method, Seamless, TileErrorKind};
 use dapple_wavelet::WaveletErrorKind;

@@ -1,3 +1,5 @@
+//! Shares: partitions of unity, and who is on top.
+
 use super::{Weighting, normalize, step};
 use crate::{Layer, TileErrorKind, rank_equalize};
 use dapple_hash::{Seed, hash2, unit_f64};

@@ -1,3 +1,5 @@
+//! Bands put together again.
+
 use super::*;
 use crate::WaveletErrorKind;
 use crate::oracle::{all_filters, noise};

@@ -1,3 +1,5 @@
+//! Ends of lines beside lines written out.
+
 use super::*;
 use crate::oracle::all_filters;
 use crate::{Degree, Phase};

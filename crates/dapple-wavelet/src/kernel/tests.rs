@@ -1,3 +1,5 @@
+//! Taps and poles beside their definitions.
+
 use super::*;
 use crate::oracle::{DEGREES, all_filters, binomials};
 

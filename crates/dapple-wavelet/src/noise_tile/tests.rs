@@ -1,3 +1,5 @@
+//! Tiles of noise: no seam, stated powers, the same bits.
+
 use super::wavelet_tile;
 use crate::{Border, SplineFilter, WaveletErrorKind};
 use dapple_hash::Seed;

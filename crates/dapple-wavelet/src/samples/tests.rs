@@ -1,3 +1,5 @@
+//! Prefilters beside the values of splines.
+
 use super::*;
 use crate::Degree;
 use crate::oracle::{DEGREES, distance, noise};

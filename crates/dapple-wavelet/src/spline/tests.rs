@@ -1,3 +1,5 @@
+//! B-splines beside their definition.
+
 use super::*;
 use crate::oracle::{DEGREES, all_filters, spread};
 

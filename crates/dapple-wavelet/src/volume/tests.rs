@@ -1,3 +1,5 @@
+//! Volumes beside lines.
+
 use super::*;
 use crate::Degree;
 use crate::ends::shortest;

@@ -1,3 +1,5 @@
+//! The softest band, by hand and by a naive search.
+
 use super::lowest_detail;
 use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::{Raster, Wrap};

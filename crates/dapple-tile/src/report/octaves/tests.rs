@@ -1,3 +1,5 @@
+//! Octaves of sines and of noise.
+
 use super::{hann, kept, octave, octave_powers, windowed};
 use core::f64::consts::TAU;
 use dapple_hash::{Seed, hash2, unit_f32};

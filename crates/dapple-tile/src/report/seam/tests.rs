@@ -1,3 +1,5 @@
+//! Seam ratios by hand and by naive sums.
+
 use super::{SeamOptions, SeamRatio, seams};
 use crate::SeamReport;
 use dapple_hash::{Seed, hash2, unit_f32};
