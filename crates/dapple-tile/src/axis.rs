@@ -39,7 +39,7 @@ fn transpose_all(planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> 
 const BLOCK: usize = 32;
 
 /// The raster with columns for rows.
-fn transpose(raster: &Raster<f32>) -> Result<Raster<f32>, TileError> {
+pub(crate) fn transpose(raster: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     let [width, height] = raster.size().map(|side| side as usize);
     let from = raster.pixels();
     let mut to = vec![0.0; from.len()];

@@ -126,7 +126,7 @@ impl SeamReport {
         Ok(Self {
             size: tile.size(),
             options: *options,
-            seams: seam::seams(tile, options),
+            seams: seam::seams(tile, options)?,
             lowest_local_detail: local::lowest_detail(tile, options.wrap()),
             kept: None,
         })

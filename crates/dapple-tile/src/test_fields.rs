@@ -1,5 +1,6 @@
 //! Textures for tests, and what is measured on them.
 
+use crate::axis::transpose;
 use dapple_hash::{CellHash, Seed, unit_f64};
 use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
@@ -105,8 +106,7 @@ impl Lattice {
 
 /// The raster with columns for rows.
 pub(crate) fn turned(raster: &Raster<f32>) -> Raster<f32> {
-    let [width, height] = raster.size();
-    Raster::from_fn([height, width], |x, y| raster.row(x)[y as usize]).unwrap()
+    transpose(raster).unwrap()
 }
 
 /// Two rasters, one on the right of the other.

@@ -3,6 +3,8 @@
 //! Reference: our own.
 
 use super::{SeamOptions, quotient};
+use crate::TileError;
+use crate::axis::transpose;
 use dapple_raster::Raster;
 
 /// The widths of the means on either side of a boundary, in pixels.
@@ -42,13 +44,16 @@ pub struct SeamRatio {
 }
 
 /// The seams of a tile at all widths.
-pub(super) fn seams(tile: &Raster<f32>, options: &SeamOptions) -> [Seam; 4] {
-    let of_axis = |axis: usize, lines: &dyn Fn() -> Raster<f32>| {
-        options.axes[axis].then(|| axis_steps(&lines(), options.lattice[axis] as usize))
+pub(super) fn seams(tile: &Raster<f32>, options: &SeamOptions) -> Result<[Seam; 4], TileError> {
+    let [along_x, along_y] = options.axes;
+    let steps =
+        |lines: &Raster<f32>, axis: usize| axis_steps(lines, options.lattice[axis] as usize);
+    let x = along_x.then(|| steps(tile, 0));
+    let y = match along_y {
+        true => Some(steps(&transpose(tile)?, 1)),
+        false => None,
     };
-    let x = of_axis(0, &|| tile.clone());
-    let y = of_axis(1, &|| transposed(tile));
-    core::array::from_fn(|index| {
+    Ok(core::array::from_fn(|index| {
         let at = |steps: &Option<[Option<Steps>; 4]>| steps.as_ref().and_then(|all| all[index]);
         let (x_steps, y_steps) = (at(&x), at(&y));
         let both = match options.axes {
@@ -62,7 +67,7 @@ pub(super) fn seams(tile: &Raster<f32>, options: &SeamOptions) -> [Seam; 4] {
             y: y_steps.map(Steps::ratio),
             both: both.map(Steps::ratio),
         }
-    })
+    }))
 }
 
 /// The steps of one axis at one width, each a mean over all lines.
@@ -167,16 +172,6 @@ fn double(sums: &mut Vec<f64>, half: usize) {
         sums[at] += sums[at + half];
     }
     sums.truncate(n);
-}
-
-/// The raster with its columns as rows.
-fn transposed(tile: &Raster<f32>) -> Raster<f32> {
-    let [columns, rows] = tile.size();
-    let (width, pixels) = (columns as usize, tile.pixels());
-    Raster::from_fn([rows, columns], |row, column| {
-        pixels[row as usize * width + column as usize]
-    })
-    .expect("it has as many pixels as the tile")
 }
 
 #[cfg(test)]
