@@ -1,8 +1,7 @@
 //! The tile group: a large blend map from a stored tile, beside computing it pixel by pixel.
 //!
-//! The map has 4096×4096 pixels, in memory that is there already (the feature map makes its own, which costs a tenth of its
-//! time); the tile has 128×128. Confirmed: every copy of the
-//! tile is the tile.
+//! The map has 4096×4096 pixels, in memory that is there already (the feature map makes its own, which costs a tenth of
+//! its time); the tile has 128×128. Confirmed: every copy of the tile is the tile.
 
 #[cfg(feature = "peers")]
 mod beside_peers;

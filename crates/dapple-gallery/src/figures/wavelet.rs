@@ -5,6 +5,7 @@ mod fig_02;
 mod fig_03;
 mod fig_04;
 mod fig_05;
+mod fig_extra_copies;
 mod fig_extra_materials;
 mod fig_extra_methods;
 mod fig_extra_terrain;
@@ -41,6 +42,7 @@ pub(super) const PAPER: Paper = Paper {
         fig_04::FIGURE,
         fig_05::FIGURE,
         fig_extra_terrain::FIGURE,
+        fig_extra_copies::FIGURE,
         fig_extra_methods::FIGURE,
         fig_extra_materials::FIGURE,
     ],
@@ -59,10 +61,15 @@ fn tile_side(size: u32) -> u32 {
     (size / 32 * 8).max(8)
 }
 
+/// The size of a stone or a pebble in a picture `side` pixels wide: a tenth of it.
+fn stone_px(side: u32) -> f64 {
+    (0.1 * f64::from(side)).max(1.0)
+}
+
 /// Blend tiles as the paper begins with, by name: of the features of two textures, and of noise. None of them repeats.
 fn originals(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     let features = |ground: Material| {
-        let features = BlendMap::new(0.25 * f64::from(side)).with_wrap([Wrap::Mirror; 2]);
+        let features = BlendMap::new(stone_px(side)).with_wrap([Wrap::Mirror; 2]);
         features.apply_color(&ground.color)
     };
     Ok([
