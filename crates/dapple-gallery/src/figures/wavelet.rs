@@ -61,9 +61,9 @@ fn tile_side(size: u32) -> u32 {
     (size / 32 * 8).max(8)
 }
 
-/// The size of a stone or a pebble in a picture `side` pixels wide: a tenth of it.
+/// The size of a stone or a pebble in a picture `side` pixels wide: a sixth of it, for the larger ones.
 fn stone_px(side: u32) -> f64 {
-    (0.1 * f64::from(side)).max(1.0)
+    (0.16 * f64::from(side)).max(1.0)
 }
 
 /// Blend tiles as the paper begins with, by name: of the features of two textures, and of noise. None of them repeats.
