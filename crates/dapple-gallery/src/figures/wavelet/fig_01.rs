@@ -1,4 +1,4 @@
-//! The steps of the method: (a) a blend map R of a texture, (b) the half-size image R_d, (c) the full-size image R_n.
+//! The steps of the method: (a) a blend map R of a texture, (b) the half-size image Rd, (c) the full-size image Rn.
 //!
 //! The texture is the stone of figure 4. Pixels are drawn four times as large.
 
@@ -30,7 +30,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
             .zip(inside(row))
             .map_or(1.0, |(column, row)| half.row(row)[column as usize])
     })?;
-    [("a: R", map), ("b: R_d", sheet), ("c: R_n", full)]
+    [("a: R", map), ("b: Rd", sheet), ("c: Rn", full)]
         .into_iter()
         .map(|(label, raster)| Ok(Panel::gray(label, enlarged(&raster, size)?)))
         .collect()

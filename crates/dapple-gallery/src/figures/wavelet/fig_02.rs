@@ -1,4 +1,4 @@
-//! Large blend maps made by tiling R_n: on the left each blend tile, of a texture and of Perlin noise, on the right the map
+//! Large blend maps made by tiling Rn: on the left each blend tile, of a texture and of Perlin noise, on the right the map
 //! tiled by it. One level softens the seams and does not remove them.
 
 use super::{BLEND_TILE, beside, originals, report, tile_side};
