@@ -29,7 +29,7 @@ use place::Period;
 use tile::Tile;
 
 pub(crate) use scale::LineSums;
-pub(crate) use white::white;
+pub(crate) use white::white_raster;
 
 /// Noise without low frequencies: a tile of B-spline coefficients, evaluated at any position, in one band or several.
 ///

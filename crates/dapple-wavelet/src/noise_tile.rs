@@ -11,9 +11,9 @@
 //! Reference: Robert L. Cook and Tony DeRose, "Wavelet Noise", ACM Transactions on Graphics 24(3) (SIGGRAPH 2005),
 //! <https://doi.org/10.1145/1073204.1073264>, for the bands; their sum as a raster is our own.
 
-use crate::noise::{LineSums, check_weights, white};
+use crate::noise::{LineSums, check_weights, white_raster};
 use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
-use dapple_hash::{CellHash, Seed};
+use dapple_hash::Seed;
 use dapple_raster::Raster;
 
 const PERIODIC: [Border; 2] = [Border::Periodic; 2];
@@ -89,10 +89,7 @@ fn add_band(
 ) -> Result<Raster<f32>, WaveletError> {
     let size = raster.size();
     let words = seed.child("wavelet tile", level.into());
-    let white = Raster::from_rows(size, |row| {
-        let row = CellHash::new(words, [row.into()]);
-        (0..size[0]).map(move |column| white(row, column))
-    })?;
+    let white = white_raster(size, words)?;
     let low = SplineFilter::default().project(&white, 1, PERIODIC)?;
     let [along_rows, along_columns] =
         size.map(|side| LineSums::of_coefficients(side as usize, level));

@@ -4,7 +4,7 @@ use super::band::Band;
 use super::place::Period;
 use super::scale::LineSums;
 use super::tile::Tile;
-use super::white::white;
+use super::white::{white, white_raster};
 use super::{WaveletNoise, WaveletNoise2, WaveletNoise3};
 use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_hash::{CellHash, Seed};
@@ -26,11 +26,7 @@ impl WaveletNoise2 {
     /// [`WaveletErrorKind::Range`] below 4 and above 11584, [`WaveletErrorKind::NotDivisible`] if `size` is odd.
     pub fn new(size: u32, seed: Seed) -> Result<Self, WaveletError> {
         check_size(size, LARGEST_2, "from 4 to 11584")?;
-        let words = white_words(seed);
-        let white = Raster::from_rows([size; 2], |row| {
-            let row = CellHash::new(words, [row.into()]);
-            (0..size).map(move |column| white(row, column))
-        })?;
+        let white = white_raster([size; 2], white_words(seed))?;
         let low = SplineFilter::default().project(&white, 1, [Border::Periodic; 2])?;
         Self::from_white(size, seed, white.pixels(), low.pixels())
     }

@@ -4,7 +4,17 @@
 //! is nearly normal (its kurtosis is 2.7, where a normal one has 3), never further than 3.47 from zero, and needs no
 //! logarithm, whose bits would differ between platforms.
 
-use dapple_hash::CellHash;
+use crate::WaveletError;
+use dapple_hash::{CellHash, Seed};
+use dapple_raster::Raster;
+
+/// A raster of white noise.
+pub(crate) fn white_raster(size: [u32; 2], words: Seed) -> Result<Raster<f32>, WaveletError> {
+    Ok(Raster::from_rows(size, |row| {
+        let row = CellHash::new(words, [row.into()]);
+        (0..size[0]).map(move |column| white(row, column))
+    })?)
+}
 
 /// The value of a cell, from the hash of its row and its column.
 #[inline]
