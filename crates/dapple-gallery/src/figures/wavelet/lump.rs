@@ -46,9 +46,24 @@ struct Lump {
     rank: f64,
 }
 
+/// Lays the lumps of all layers over what is there, the first layer first; `color` gives each one its color.
+pub(super) fn lay(
+    layers: &[Layer],
+    patch: &Patch,
+    spots: &mut Raster<Spot>,
+    noise: &FractalNoise,
+    seed: Seed,
+    color: impl Fn(&mut Dice) -> LinearRgb,
+) -> anyhow::Result<()> {
+    for (number, layer) in (0..).zip(layers) {
+        layer.lay(patch, spots, noise, seed.child("layer", number), &color)?;
+    }
+    Ok(())
+}
+
 impl Layer {
     /// Lays the lumps over what is there; `color` gives each one its color.
-    pub(super) fn lay(
+    fn lay(
         &self,
         patch: &Patch,
         spots: &mut Raster<Spot>,

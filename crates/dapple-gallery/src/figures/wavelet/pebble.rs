@@ -1,6 +1,6 @@
 //! River pebbles of several sizes, which lie over each other with dark gaps between them.
 
-use super::lump::Layer;
+use super::lump::{Layer, lay};
 use super::patch::{Dice, Edges, Material, Patch, Spot};
 use dapple_color::{ColorRamp, LinearRgb};
 use dapple_points::hash::Seed;
@@ -61,17 +61,8 @@ pub(super) fn pebble(size: u32, seed: Seed, edges: Edges) -> anyhow::Result<Mate
         color: mud,
         gap: 1.0,
     })?;
-    for (number, layer) in (0..).zip(&LAYERS) {
-        let color = |dice: &mut Dice| {
-            colors.at(dice.between(0.0, 1.0) as f32) * dice.between(0.8, 1.15) as f32
-        };
-        layer.lay(
-            &patch,
-            &mut spots,
-            &noise,
-            seed.child("layer", number),
-            color,
-        )?;
-    }
+    let color =
+        |dice: &mut Dice| colors.at(dice.between(0.0, 1.0) as f32) * dice.between(0.8, 1.15) as f32;
+    lay(&LAYERS, &patch, &mut spots, &noise, seed, color)?;
     patch.finish(&spots, DEPTH)
 }

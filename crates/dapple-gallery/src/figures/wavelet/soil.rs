@@ -1,6 +1,6 @@
 //! Brown soil: rough crumbs of several sizes, the coarser ones on the finer, and a few pale stones.
 
-use super::lump::Layer;
+use super::lump::{Layer, lay};
 use super::patch::{Dice, Edges, Material, Patch, Spot};
 use dapple_color::{ColorRamp, LinearRgb};
 use dapple_points::hash::Seed;
@@ -57,21 +57,13 @@ pub(super) fn soil(size: u32, seed: Seed, edges: Edges) -> anyhow::Result<Materi
         color: deep,
         gap: 1.0,
     })?;
-    for (number, layer) in (0..).zip(&LAYERS) {
-        let color = |dice: &mut Dice| {
-            if dice.between(0.0, 1.0) < 0.02 {
-                pale
-            } else {
-                browns.at(dice.between(0.0, 1.0) as f32) * dice.between(0.75, 1.2) as f32
-            }
-        };
-        layer.lay(
-            &patch,
-            &mut spots,
-            &noise,
-            seed.child("layer", number),
-            color,
-        )?;
-    }
+    let color = |dice: &mut Dice| {
+        if dice.between(0.0, 1.0) < 0.02 {
+            pale
+        } else {
+            browns.at(dice.between(0.0, 1.0) as f32) * dice.between(0.75, 1.2) as f32
+        }
+    };
+    lay(&LAYERS, &patch, &mut spots, &noise, seed, color)?;
     patch.finish(&spots, DEPTH)
 }
