@@ -1,0 +1,292 @@
+//! A mesh that can be walked on: every face laid out flat, and how its neighbors continue it.
+
+use crate::adjacency::{Adjacency, FaceEdge};
+use crate::{FaceIdx, Mesh, MeshError, MeshErrorKind};
+use glam::{DVec2, DVec3};
+
+/// A mesh whose faces are laid out flat, so that points on it have a place and paths can be followed.
+///
+/// Borders (see [`Adjacency`]) are where paths end; the mesh need not be closed or in one piece.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    mesh: Mesh,
+    adjacency: Adjacency,
+    flats: Vec<Flat>,
+    vertex_normals: Vec<DVec3>,
+    area: f64,
+}
+
+/// A point on a surface: a face and a place in its plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurfacePoint {
+    /// The face.
+    pub face: FaceIdx,
+    /// The place in the plane of the face: the first corner is at the origin, the second on the positive x axis, and the
+    /// third has a positive y. In units of the mesh.
+    pub flat: DVec2,
+}
+
+/// A face in its own plane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flat {
+    /// The first corner.
+    pub(crate) origin: DVec3,
+    /// The unit vector toward the second corner.
+    pub(crate) x: DVec3,
+    /// The unit vector across it in the plane of the face, toward the third corner.
+    pub(crate) y: DVec3,
+    /// The second corner is at `[width, 0]`.
+    pub(crate) width: f64,
+    /// The third corner.
+    pub(crate) apex: DVec2,
+    /// What is across the three edges.
+    pub(crate) across: [Option<Fold>; 3],
+}
+
+/// How the plane of the face across an edge continues this one's.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fold {
+    pub(crate) to: FaceEdge,
+    /// Cosine and sine of the turn, and the shift after it, from this plane into the other one.
+    pub(crate) turn: DVec2,
+    pub(crate) shift: DVec2,
+}
+
+impl Surface {
+    /// Lays out a mesh.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshErrorKind::Defects`] if there are faces without an area, duplicate faces, or edges whose two faces go around
+    /// different sides: [`Mesh::repair`] mends them. [`MeshErrorKind::NoArea`] for a mesh without faces.
+    pub fn new(mesh: Mesh) -> Result<Self, MeshError> {
+        let report = mesh.report();
+        let (degenerate, duplicate, winding) = (
+            report.degenerate_faces,
+            report.duplicate_faces,
+            report.winding_edges,
+        );
+        if degenerate + duplicate + winding > 0 {
+            return Err(MeshError::new(MeshErrorKind::Defects {
+                degenerate,
+                duplicate,
+                winding,
+            }));
+        }
+        if mesh.faces().is_empty() {
+            return Err(MeshError::new(MeshErrorKind::NoArea));
+        }
+        let adjacency = Adjacency::new(&mesh);
+        let mut flats: Vec<Flat> = (0..mesh.faces().len() as u32)
+            .map(|face| Flat::new(mesh.corners(FaceIdx(face))))
+            .collect();
+        for face in 0..flats.len() {
+            for edge in 0..3 {
+                let from = FaceEdge {
+                    face: FaceIdx(face as u32),
+                    edge,
+                };
+                flats[face].across[usize::from(edge)] = adjacency
+                    .across(from)
+                    .map(|to| fold(&flats[face], edge, &flats[to.face.index()], to));
+            }
+        }
+        Ok(Self {
+            area: flats.iter().map(Flat::area).sum(),
+            vertex_normals: mesh.vertex_normals(),
+            mesh,
+            adjacency,
+            flats,
+        })
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Which faces share which edges.
+    #[must_use]
+    pub fn adjacency(&self) -> &Adjacency {
+        &self.adjacency
+    }
+
+    /// The area of all faces, in squared units of the mesh.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.area
+    }
+
+    /// The area of a face.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such face.
+    #[must_use]
+    pub fn face_area(&self, face: FaceIdx) -> f64 {
+        self.flats[face.index()].area()
+    }
+
+    /// The unit normal of a face.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such face.
+    #[inline]
+    #[must_use]
+    pub fn face_normal(&self, face: FaceIdx) -> DVec3 {
+        let flat = &self.flats[face.index()];
+        flat.x.cross(flat.y)
+    }
+
+    /// Where a point is in space.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such face.
+    #[inline]
+    #[must_use]
+    pub fn position(&self, point: SurfacePoint) -> DVec3 {
+        let flat = &self.flats[point.face.index()];
+        flat.origin + flat.x * point.flat.x + flat.y * point.flat.y
+    }
+
+    /// The unit normal of the smooth surface at a point: those of the corners, mixed.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such face.
+    #[must_use]
+    pub fn normal(&self, point: SurfacePoint) -> DVec3 {
+        let [a, b, c] = self.weights(point);
+        let [na, nb, nc] =
+            self.mesh.faces()[point.face.index()].map(|vertex| self.vertex_normals[vertex.index()]);
+        (na * a + nb * b + nc * c).normalize_or(self.face_normal(point.face))
+    }
+
+    /// The weights of the three corners of the face that give the point; they sum to 1, and are at least 0 inside.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such face.
+    #[must_use]
+    pub fn weights(&self, point: SurfacePoint) -> [f64; 3] {
+        let flat = &self.flats[point.face.index()];
+        let c = point.flat.y / flat.apex.y;
+        let b = (point.flat.x - flat.apex.x * c) / flat.width;
+        [1.0 - b - c, b, c]
+    }
+
+    /// The point of a face with these weights of its corners.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such face.
+    #[must_use]
+    pub fn point(&self, face: FaceIdx, [_, b, c]: [f64; 3]) -> SurfacePoint {
+        let flat = &self.flats[face.index()];
+        SurfacePoint {
+            face,
+            flat: DVec2::new(flat.width, 0.0) * b + flat.apex * c,
+        }
+    }
+
+    /// The point of the plane of a face that is nearest to a position.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such face.
+    #[inline]
+    #[must_use]
+    pub fn project(&self, face: FaceIdx, position: DVec3) -> SurfacePoint {
+        let flat = &self.flats[face.index()];
+        let from = position - flat.origin;
+        SurfacePoint {
+            face,
+            flat: DVec2::new(from.dot(flat.x), from.dot(flat.y)),
+        }
+    }
+
+    /// The part of a vector in the plane of a face, in the coordinates of that plane.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such face.
+    #[inline]
+    #[must_use]
+    pub fn flatten(&self, face: FaceIdx, vector: DVec3) -> DVec2 {
+        let flat = &self.flats[face.index()];
+        DVec2::new(vector.dot(flat.x), vector.dot(flat.y))
+    }
+
+    /// A vector in the plane of a face, in space.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such face.
+    #[inline]
+    #[must_use]
+    pub fn lift(&self, face: FaceIdx, vector: DVec2) -> DVec3 {
+        let flat = &self.flats[face.index()];
+        flat.x * vector.x + flat.y * vector.y
+    }
+
+    #[inline]
+    pub(crate) fn flat(&self, face: FaceIdx) -> &Flat {
+        &self.flats[face.index()]
+    }
+}
+
+impl Flat {
+    /// The face in its plane; the area must not be zero.
+    fn new([a, b, c]: [DVec3; 3]) -> Self {
+        let along = b - a;
+        let width = along.length();
+        let x = along / width;
+        let up = c - a;
+        let apex_x = up.dot(x);
+        let across = up - x * apex_x;
+        let apex_y = across.length();
+        Self {
+            origin: a,
+            x,
+            y: across / apex_y,
+            width,
+            apex: DVec2::new(apex_x, apex_y),
+            across: [None; 3],
+        }
+    }
+
+    /// The corners in the plane.
+    #[inline]
+    pub(crate) fn corners(&self) -> [DVec2; 3] {
+        [DVec2::ZERO, DVec2::new(self.width, 0.0), self.apex]
+    }
+
+    fn area(&self) -> f64 {
+        0.5 * self.width * self.apex.y
+    }
+}
+
+/// The rigid motion of the plane that takes an edge of one face to where the other face has it.
+fn fold(here: &Flat, edge: u8, there: &Flat, to: FaceEdge) -> Fold {
+    let ends = |flat: &Flat, edge: u8| {
+        let corners = flat.corners();
+        let next = (usize::from(edge) + 1) % 3;
+        [corners[usize::from(edge)], corners[next]]
+    };
+    let [from, until] = ends(here, edge);
+    // The other face goes through the edge in the other direction.
+    let [until_there, from_there] = ends(there, to.edge);
+    let (a, b) = (
+        (until - from).normalize_or(DVec2::X),
+        (until_there - from_there).normalize_or(DVec2::X),
+    );
+    let turn = DVec2::new(a.dot(b), a.perp_dot(b));
+    Fold {
+        to,
+        turn,
+        shift: from_there - turn.rotate(from),
+    }
+}
