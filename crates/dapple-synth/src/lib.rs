@@ -3,18 +3,24 @@
 #![forbid(unsafe_code)]
 
 mod candidates;
+mod engine;
 mod error;
 mod exemplar;
+mod ground;
 mod matcher;
 mod neighborhood;
+mod options;
 mod orientation;
 mod sweep;
+mod visit;
 
 pub use candidates::{Candidates, CoarserCenter};
 pub use dapple_mesh as mesh;
+pub use engine::Progress;
 pub use error::{SynthError, SynthErrorKind};
 pub use exemplar::{Edges, Exemplar, Pyramid};
 pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
+pub use options::Options;
 pub use orientation::{Direction, Orientation};
 pub use sweep::Sweep;
