@@ -1,5 +1,6 @@
 //! What a texture grows on: sites on several levels, their order, and how neighborhoods are read.
 
+use crate::groups::Groups;
 use core::ops::RangeInclusive;
 
 /// Where a square of samples is read.
@@ -32,16 +33,6 @@ pub(crate) struct Samples {
     pub(crate) values: Vec<f32>,
     /// The site of the level read that counts most at each sample.
     pub(crate) nearest: Vec<u32>,
-}
-
-/// Sites in an order in which they may be visited in groups: within a group none reads what another one writes.
-///
-/// Group after group gives the same bits as the sites in the order of the sweep.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Groups {
-    pub(crate) sites: Vec<u32>,
-    /// Where the groups end in `sites`.
-    pub(crate) ends: Vec<u32>,
 }
 
 /// Sites on several levels, 0 the finest.

@@ -1,7 +1,8 @@
 //! One visit of all sites of a level.
 
 use crate::engine::LevelTexture;
-use crate::ground::{Ground, Groups, Rows, Samples, Square};
+use crate::ground::{Ground, Rows, Samples, Square};
+use crate::groups::Groups;
 use crate::neighborhood::{Pass, Reads, Shape};
 use crate::{Candidates, Edges, Matcher, MatcherMemory, Options, Pyramid, SynthError, distance_sq};
 use std::sync::{Mutex, PoisonError};
@@ -375,36 +376,6 @@ impl<'a, G: Ground> Visit<'a, G> {
         };
         let found = self.matcher.nearest(query, below, Some(row), matcher);
         found.map_or(fallback, |found| found.row)
-    }
-}
-
-impl Groups {
-    /// All sites of a level in groups of one length, as good as any other order.
-    fn stretches(n_sites: usize, length: usize) -> Self {
-        Self {
-            sites: (0..n_sites as u32).collect(),
-            ends: (0..n_sites)
-                .step_by(length)
-                .map(|first| (first + length).min(n_sites) as u32)
-                .collect(),
-        }
-    }
-
-    /// Every site in a group of its own.
-    fn one_by_one(sites: Vec<u32>) -> Self {
-        Self {
-            ends: (1..=sites.len() as u32).collect(),
-            sites,
-        }
-    }
-
-    fn iter(&self) -> impl Iterator<Item = &[u32]> {
-        let mut first = 0;
-        self.ends.iter().map(move |&end| {
-            let group = &self.sites[first..end as usize];
-            first = end as usize;
-            group
-        })
     }
 }
 
