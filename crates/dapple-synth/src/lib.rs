@@ -13,7 +13,9 @@ mod mesh_ground;
 mod neighborhood;
 mod options;
 mod orientation;
+mod surface_texture;
 mod sweep;
+mod synthesizer;
 mod visit;
 
 pub use candidates::{Candidates, CoarserCenter};
@@ -25,4 +27,6 @@ pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
 pub use options::Options;
 pub use orientation::{Direction, Orientation};
+pub use surface_texture::SurfaceTexture;
 pub use sweep::Sweep;
+pub use synthesizer::{Synthesizer, synthesize};
