@@ -37,6 +37,8 @@ pub(crate) struct Samples {
 
 /// Sites on several levels, 0 the finest.
 pub(crate) trait Ground: Sync {
+    /// What a pass needs to read squares.
+    type Prepared: Sync;
     /// What `read` works in.
     type Memory: Default + Send;
 
@@ -46,15 +48,18 @@ pub(crate) trait Ground: Sync {
     /// The sites of a level in the order of the sweep.
     fn order(&self, level: usize) -> Vec<u32>;
 
-    /// The sites of a level in groups, where a site reads squares of `half` on its own level.
-    fn groups(&self, level: usize, half: i32) -> Groups;
+    /// What a pass over a level needs that reads squares of these halves on the level itself and on the next coarser one.
+    fn prepare(&self, level: usize, same: Option<i32>, coarser: Option<i32>) -> Self::Prepared;
 
-    /// Reads a square of samples of a column of the level `square.reads`, with `n_channels` values for each site.
+    /// The sites of a level in groups, for a pass that reads squares on the level itself.
+    fn groups(&self, level: usize, prepared: &Self::Prepared) -> Groups;
+
+    /// Reads a square of samples of a column of the level `square.reads`: as many values for each sample as for a site.
     fn read(
         &self,
         square: Square,
+        prepared: &Self::Prepared,
         column: &[f32],
-        n_channels: usize,
         samples: &mut Samples,
         memory: &mut Self::Memory,
     );

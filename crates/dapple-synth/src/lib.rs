@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod candidates;
+mod cells;
 mod engine;
 mod error;
 mod exemplar;

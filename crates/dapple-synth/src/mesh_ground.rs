@@ -6,15 +6,16 @@
 
 mod interpolate;
 mod lattice;
+mod nearby;
 
+use crate::cells::Cells;
 use crate::ground::{Ground, Samples, Square};
 use crate::groups::Groups;
 use crate::{Orientation, Sweep};
 use dapple_mesh::{Hierarchy, INTERPOLATION_RADIUS, SiteIdx, Surface};
 use dapple_raster::simd;
-use glam::DVec3;
-use interpolate::Nearby;
 use lattice::Lattice;
+use nearby::{Nearby, Neighborhoods};
 
 /// How much farther than on a plane sites may lie from a sample's site and still count, in spacings.
 const REACH_SPARE: f64 = 0.5;
@@ -28,6 +29,14 @@ pub(crate) struct MeshGround<'a> {
     pub(crate) sweep: &'a Sweep,
 }
 
+/// The sites around those of a level, on the level itself and on the next coarser one.
+#[derive(Debug)]
+pub(crate) struct Prepared {
+    level: usize,
+    same: Option<Neighborhoods>,
+    coarser: Option<Neighborhoods>,
+}
+
 /// What reading a square works in.
 #[derive(Debug, Default)]
 pub(crate) struct MeshMemory {
@@ -37,10 +46,16 @@ pub(crate) struct MeshMemory {
 }
 
 impl MeshGround<'_> {
-    /// How far sites lie that count for a square, in units of the mesh.
-    fn reach(&self, reads: usize, half: i32) -> f64 {
+    /// The sites around those of a level that squares on the level `reads` are made of.
+    fn neighborhoods(&self, level: usize, reads: usize, half: i32) -> Neighborhoods {
         let spacings = core::f64::consts::SQRT_2 * f64::from(half) + INTERPOLATION_RADIUS;
-        (spacings + REACH_SPARE) * self.hierarchy.levels()[reads].spacing()
+        let spacing = self.hierarchy.levels()[reads].spacing();
+        Neighborhoods::new(
+            self.hierarchy.sites(),
+            [level, reads].map(|level| self.n_sites(level)),
+            spacing,
+            (spacings + REACH_SPARE) * spacing,
+        )
     }
 
     /// Reads a square whose rows fit `N` lanes.
@@ -50,30 +65,20 @@ impl MeshGround<'_> {
         column: &[f32],
         samples: &mut Samples,
         lattice: &mut Lattice<N>,
-        nearby: &mut Nearby,
+        nearby: &Nearby,
     ) {
-        let sites = self.hierarchy.sites();
         let at = square.site as usize;
-        let level = &self.hierarchy.levels()[square.reads];
-        lattice.lay(
-            self.surface,
-            sites.points()[at],
-            self.orientation.vectors()[at],
-            square,
-            level.spacing(),
-        );
-        nearby.collect(
-            sites,
-            level,
-            sites.positions()[at],
-            self.reach(square.reads, square.half),
-        );
-        let radius = (level.spacing() * INTERPOLATION_RADIUS) as f32;
+        let spacing = self.hierarchy.levels()[square.reads].spacing();
+        let point = self.hierarchy.sites().points()[at];
+        let orientation = self.orientation.vectors()[at];
+        lattice.lay(self.surface, point, orientation, square, spacing);
+        let radius = (spacing * INTERPOLATION_RADIUS) as f32;
         interpolate::interpolate(simd::level(), lattice, nearby, radius, column, samples);
     }
 }
 
 impl Ground for MeshGround<'_> {
+    type Prepared = Prepared;
     type Memory = MeshMemory;
 
     fn n_sites(&self, level: usize) -> usize {
@@ -81,30 +86,31 @@ impl Ground for MeshGround<'_> {
     }
 
     fn order(&self, level: usize) -> Vec<u32> {
-        self.sweep
-            .order(level)
-            .into_iter()
-            .map(|SiteIdx(site)| site)
-            .collect()
+        let order = self.sweep.order(level);
+        order.into_iter().map(|SiteIdx(site)| site).collect()
     }
 
-    fn groups(&self, level: usize, half: i32) -> Groups {
-        let n_sites = self.n_sites(level);
-        let positions: &[DVec3] = &self.hierarchy.sites().positions()[..n_sites];
-        let spacing = self.hierarchy.levels()[level].spacing();
-        Groups::in_space(
-            &self.order(level),
-            positions,
-            self.reach(level, half),
-            spacing,
-        )
+    fn prepare(&self, level: usize, same: Option<i32>, coarser: Option<i32>) -> Prepared {
+        Prepared {
+            level,
+            same: same.map(|half| self.neighborhoods(level, level, half)),
+            coarser: coarser.map(|half| self.neighborhoods(level, level + 1, half)),
+        }
+    }
+
+    fn groups(&self, level: usize, prepared: &Prepared) -> Groups {
+        let order = self.order(level);
+        match &prepared.same {
+            Some(around) => Groups::by_cells(&order, around.cells()),
+            None => Groups::one_by_one(order),
+        }
     }
 
     fn read(
         &self,
         square: Square,
+        prepared: &Prepared,
         column: &[f32],
-        _: usize,
         samples: &mut Samples,
         memory: &mut MeshMemory,
     ) {
@@ -113,6 +119,13 @@ impl Ground for MeshGround<'_> {
             small,
             large,
         } = memory;
+        let around = if square.reads == prepared.level {
+            &prepared.same
+        } else {
+            &prepared.coarser
+        };
+        let Some(around) = around else { return };
+        around.collect(square.site, nearby);
         if square.side() <= 8 {
             self.read_lanes(&square, column, samples, small, nearby);
         } else {
@@ -120,3 +133,6 @@ impl Ground for MeshGround<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -15,9 +15,9 @@ const PIECE: [usize; 2] = [4, 256];
 const NOWHERE: u32 = u32::MAX;
 
 /// A pass with everything that it needs.
-#[derive(Debug)]
-pub(crate) struct Visit<'a, G> {
+pub(crate) struct Visit<'a, G: Ground> {
     ground: &'a G,
+    prepared: G::Prepared,
     level: usize,
     n_channels: usize,
     size: [u32; 2],
@@ -113,6 +113,11 @@ impl<'a, G: Ground> Visit<'a, G> {
         );
         Ok(Self {
             ground,
+            prepared: ground.prepare(
+                pass.level,
+                same.map(|half| half.half),
+                coarser.map(|half| half.half),
+            ),
             level: pass.level,
             n_channels: exemplar.n_channels,
             size: exemplar.size,
@@ -153,7 +158,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         let groups = match self.same {
             None => Groups::stretches(n_sites, STRETCH),
             Some(_) if n_threads == 1 => Groups::one_by_one(self.ground.order(self.level)),
-            Some(half) => self.ground.groups(self.level, half.half),
+            Some(_) => self.ground.groups(self.level, &self.prepared),
         };
         let side = if self.same.is_none() {
             keep as usize
@@ -267,7 +272,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             let square = square(self.level, half);
             same.make_room(square.side(), self.n_channels);
             self.ground
-                .read(square, &state.here.colors, self.n_channels, same, ground);
+                .read(square, &self.prepared, &state.here.colors, same, ground);
             self.continue_same(&square, same, &state.here.sources, coherent);
         }
         if let (Some(half), Some(texture)) = (self.coarser, state.coarser) {
@@ -275,7 +280,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             coarser.make_room(square.side(), self.n_channels);
             if !state.kept.paste(site, &square, coarser, self.n_channels) {
                 self.ground
-                    .read(square, &texture.colors, self.n_channels, coarser, ground);
+                    .read(square, &self.prepared, &texture.colors, coarser, ground);
             }
             self.continue_coarser(&square, coarser, &texture.sources, coherent);
         }

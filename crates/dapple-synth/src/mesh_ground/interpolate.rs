@@ -4,11 +4,10 @@
 //! they can reach; the lanes of a register are the samples of a row.
 
 use super::lattice::Lattice;
+use super::nearby::Nearby;
 use crate::ground::Samples;
 use core::array;
-use dapple_mesh::{Level, SiteIdx, Sites};
 use fearless_simd::dispatch;
-use glam::DVec3;
 
 /// Below this sum of weights the nearest site counts alone.
 const WEIGHT_MIN: f32 = 1e-4;
@@ -18,43 +17,6 @@ const SAME_SHEET: f32 = 0.7072;
 /// What is added to the reach of a site before rows are left out, as a part of the radius: far more than rounding, and
 /// a weight is zero there.
 const MARGIN: f32 = 1e-3;
-
-/// The sites near a square, relative to the site in its middle.
-#[derive(Debug, Default)]
-pub(crate) struct Nearby {
-    sites: Vec<u32>,
-    positions: Vec<[f32; 3]>,
-    normals: Vec<[f32; 3]>,
-}
-
-impl Nearby {
-    /// Takes the sites of a level in a ball; if there are none, in the next larger one of twice the radius that has some.
-    pub(crate) fn collect(&mut self, sites: &Sites, level: &Level, center: DVec3, radius: f64) {
-        self.sites.clear();
-        self.positions.clear();
-        self.normals.clear();
-        let mut radius = radius;
-        // A small piece of the surface may have no site of a coarse level, and then takes those of its neighbors.
-        while self.sites.is_empty() && radius.is_finite() {
-            self.collect_ball(sites, level, center, radius);
-            radius *= 2.0;
-        }
-    }
-
-    #[inline(always)]
-    fn collect_ball(&mut self, sites: &Sites, level: &Level, center: DVec3, radius: f64) {
-        let radius_sq = radius * radius;
-        level.grid().visit(center, radius, |SiteIdx(site)| {
-            let from = sites.positions()[site as usize] - center;
-            if from.length_squared() < radius_sq {
-                self.sites.push(site);
-                self.positions.push(from.as_vec3().to_array());
-                self.normals
-                    .push(sites.normals()[site as usize].as_vec3().to_array());
-            }
-        });
-    }
-}
 
 /// What is added up for the samples of a row: weights, the largest one and whose it was.
 #[derive(Clone, Copy, Debug)]
@@ -106,12 +68,14 @@ fn add_up<const N: usize>(
         nearest: [u32::MAX; N],
     }; N];
     let mut values = [[[0.0_f32; N]; CHANNELS]; N];
-    for (at, &site) in nearby.sites.iter().enumerate() {
-        let position = nearby.positions[at];
+    for record in &nearby.records {
+        let (position, site) = (record.position, record.site);
         let depth = dot(position, down);
         let mut color = [0.0_f32; CHANNELS];
         let from = site as usize * n_channels + first;
-        color[..here].copy_from_slice(&column[from..from + here]);
+        for (color, value) in color.iter_mut().zip(&column[from..from + here]) {
+            *color = *value;
+        }
         for row in 0..lattice.n_rows {
             if depth < bands[row][0] || depth > bands[row][1] {
                 continue;
@@ -119,7 +83,7 @@ fn add_up<const N: usize>(
             let lanes = &lattice.rows[row];
             let mut weights = weights(lanes, position, inverse_sq);
             if check {
-                let normal = nearby.normals[at];
+                let normal = record.normal;
                 for lane in 0..N {
                     let normals = [lanes[3][lane], lanes[4][lane], lanes[5][lane]];
                     let opposed = dot(normal, normals) < 0.0;
@@ -202,11 +166,11 @@ fn bands<const N: usize>(lattice: &Lattice<N>, down: [f32; 3], radius: f32) -> [
 /// Whether no site can have a normal that is more than a right angle from a sample's.
 #[inline(always)]
 fn is_one_sheet<const N: usize>(lattice: &Lattice<N>, nearby: &Nearby) -> bool {
-    let Some(&middle) = nearby.normals.first() else {
+    let Some(middle) = nearby.records.first().map(|record| record.normal) else {
         return true;
     };
     let near = |normal: &[f32; 3]| dot(*normal, middle) >= SAME_SHEET;
-    nearby.normals.iter().all(near)
+    nearby.records.iter().all(|record| near(&record.normal))
         && lattice.rows[..lattice.n_rows].iter().all(|lanes| {
             (0..lattice.side).all(|lane| near(&[lanes[3][lane], lanes[4][lane], lanes[5][lane]]))
         })
@@ -219,9 +183,13 @@ fn nearest<const N: usize>(lattice: &Lattice<N>, nearby: &Nearby, row: usize, la
     let sample: [f32; 3] = array::from_fn(|part| lanes[part][lane]);
     let normal: [f32; 3] = array::from_fn(|part| lanes[3 + part][lane]);
     let mut best = (true, f32::INFINITY, u32::MAX);
-    for (at, &site) in nearby.sites.iter().enumerate() {
-        let from: [f32; 3] = array::from_fn(|part| nearby.positions[at][part] - sample[part]);
-        let found = (dot(nearby.normals[at], normal) < 0.0, dot(from, from), site);
+    for record in &nearby.records {
+        let from: [f32; 3] = array::from_fn(|part| record.position[part] - sample[part]);
+        let found = (
+            dot(record.normal, normal) < 0.0,
+            dot(from, from),
+            record.site,
+        );
         if found < best {
             best = found;
         }
