@@ -27,7 +27,7 @@ pub(crate) enum Rows {
 }
 
 /// Samples of a square, row by row from the top; rows that are not needed hold anything.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Samples {
     /// `n_channels` values for each sample.
     pub(crate) values: Vec<f32>,

@@ -41,8 +41,8 @@ pub(crate) struct Prepared {
 #[derive(Debug, Default)]
 pub(crate) struct MeshMemory {
     nearby: Nearby,
-    small: Lattice<8>,
-    large: Lattice<16>,
+    lattice: Lattice,
+    interpolation: interpolate::Memory,
 }
 
 impl MeshGround<'_> {
@@ -56,24 +56,6 @@ impl MeshGround<'_> {
             spacing,
             (spacings + REACH_SPARE) * spacing,
         )
-    }
-
-    /// Reads a square whose rows fit `N` lanes.
-    fn read_lanes<const N: usize>(
-        &self,
-        square: &Square,
-        column: &[f32],
-        samples: &mut Samples,
-        lattice: &mut Lattice<N>,
-        nearby: &Nearby,
-    ) {
-        let at = square.site as usize;
-        let spacing = self.hierarchy.levels()[square.reads].spacing();
-        let point = self.hierarchy.sites().points()[at];
-        let orientation = self.orientation.vectors()[at];
-        lattice.lay(self.surface, point, orientation, square, spacing);
-        let radius = (spacing * INTERPOLATION_RADIUS) as f32;
-        interpolate::interpolate(simd::level(), lattice, nearby, radius, column, samples);
     }
 }
 
@@ -114,23 +96,27 @@ impl Ground for MeshGround<'_> {
         samples: &mut Samples,
         memory: &mut MeshMemory,
     ) {
-        let MeshMemory {
-            nearby,
-            small,
-            large,
-        } = memory;
         let around = if square.reads == prepared.level {
             &prepared.same
         } else {
             &prepared.coarser
         };
         let Some(around) = around else { return };
-        around.collect(square.site, nearby);
-        if square.side() <= 8 {
-            self.read_lanes(&square, column, samples, small, nearby);
-        } else {
-            self.read_lanes(&square, column, samples, large, nearby);
-        }
+        let at = square.site as usize;
+        let spacing = self.hierarchy.levels()[square.reads].spacing();
+        let point = self.hierarchy.sites().points()[at];
+        let orientation = self.orientation.vectors()[at];
+        around.collect(square.site, &mut memory.nearby);
+        let lattice = &mut memory.lattice;
+        lattice.lay(self.surface, point, orientation, &square, spacing);
+        interpolate::interpolate(
+            simd::level(),
+            lattice,
+            &memory.nearby,
+            (spacing * INTERPOLATION_RADIUS) as f32,
+            (column, samples),
+            &mut memory.interpolation,
+        );
     }
 }
 

@@ -1,189 +1,219 @@
 //! Equation 1 for all samples of a square at once.
 //!
-//! Sites are taken one after the other, in the order in which the grid gives them, and add to the samples of the rows that
-//! they can reach; the lanes of a register are the samples of a row.
+//! The lanes of a register are samples of a row. A row takes the sites that can reach it, one after the other in the order of
+//! [`Nearby`], so that sums have one order at every SIMD level.
 
-use super::lattice::Lattice;
-use super::nearby::Nearby;
+use super::lattice::{Lattice, Row};
+use super::nearby::{Nearby, Record};
 use crate::ground::Samples;
 use core::array;
-use fearless_simd::dispatch;
+use fearless_simd::{Level, dispatch, f32x8, prelude::*, u32x8};
 
 /// Below this sum of weights the nearest site counts alone.
 const WEIGHT_MIN: f32 = 1e-4;
-/// Two unit vectors that have at least this product with a third one have a product of at least zero; with a margin for
+/// Two unit vectors that have at least this product with a third one are at most a right angle apart; with a margin for
 /// rounding.
 const SAME_SHEET: f32 = 0.7072;
-/// What is added to the reach of a site before rows are left out, as a part of the radius: far more than rounding, and
-/// a weight is zero there.
+/// What is added to the reach of a site before rows are left out, as a part of the radius: far more than rounding.
 const MARGIN: f32 = 1e-3;
+/// The channels that are added up at once.
+const CHANNELS: usize = 4;
+/// The samples in a register.
+const LANES: usize = 8;
 
-/// What is added up for the samples of a row: weights, the largest one and whose it was.
-#[derive(Clone, Copy, Debug)]
-struct Sums<const N: usize> {
-    weights: [f32; N],
-    largest: [f32; N],
-    nearest: [u32; N],
+/// What interpolation works in.
+#[derive(Debug, Default)]
+pub(crate) struct Memory {
+    /// The values of the nearby sites.
+    colors: Vec<[f32; CHANNELS]>,
+    /// For each row the sites that can reach it, and their number.
+    lists: Vec<u32>,
+    lengths: Vec<usize>,
 }
 
-/// The most channels that are added up at once.
-const CHANNELS: usize = 4;
+/// Everything that the sums of a square are made of.
+struct Terms<'a> {
+    lattice: &'a Lattice,
+    nearby: &'a [Record],
+    radius: f32,
+    /// Whether normals have to be compared.
+    check: bool,
+}
 
 /// Fills samples; `column` has as many values for a site as `samples.values` has room for at a sample.
-pub(crate) fn interpolate<const N: usize>(
-    level: fearless_simd::Level,
-    lattice: &Lattice<N>,
+pub(crate) fn interpolate(
+    level: Level,
+    lattice: &Lattice,
     nearby: &Nearby,
     radius: f32,
-    column: &[f32],
-    samples: &mut Samples,
+    (column, samples): (&[f32], &mut Samples),
+    memory: &mut Memory,
 ) {
+    let terms = Terms {
+        lattice,
+        nearby: &nearby.records,
+        radius,
+        check: !is_one_sheet(lattice, &nearby.records),
+    };
     let n_channels = samples.values.len() / (lattice.side * lattice.side);
+    dispatch!(level, simd => list(simd, &terms, memory));
     for first in (0..n_channels).step_by(CHANNELS) {
-        let channels = [first, n_channels];
-        dispatch!(level, simd => {
-            let _ = simd;
-            add_up(lattice, nearby, radius, column, channels, samples);
-        });
+        let here = CHANNELS.min(n_channels - first);
+        memory.colors.clear();
+        memory.colors.extend(terms.nearby.iter().map(|record| {
+            let from = record.site as usize * n_channels + first;
+            let values = &column[from..from + here];
+            array::from_fn(|channel| if channel < here { values[channel] } else { 0.0 })
+        }));
+        let channels = first..first + here;
+        dispatch!(level, simd => add_up(simd, &terms, memory, (n_channels, channels), column, samples));
     }
 }
 
+/// Lists the sites that can reach each row.
 #[inline(always)]
-fn add_up<const N: usize>(
-    lattice: &Lattice<N>,
-    nearby: &Nearby,
-    radius: f32,
+fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Memory) {
+    let _ = simd;
+    let down = terms.lattice.down.as_vec3().to_array();
+    let n = terms.nearby.len();
+    memory.lists.resize(terms.lattice.rows.len() * n, 0);
+    memory.lengths.clear();
+    let reach = terms.radius * (1.0 + MARGIN);
+    for (row, list) in terms
+        .lattice
+        .rows
+        .iter()
+        .zip(memory.lists.chunks_exact_mut(n))
+    {
+        let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
+        for lane in 0..row.n_lanes {
+            let depth = dot(array::from_fn(|part| row.lanes[part][lane]), down);
+            least = if depth < least { depth } else { least };
+            most = if depth > most { depth } else { most };
+        }
+        let (least, most) = (least - reach, most + reach);
+        let mut length = 0;
+        for (record, at) in terms.nearby.iter().zip(0..) {
+            let depth = dot(record.position, down);
+            list[length] = at;
+            length += usize::from(depth >= least && depth <= most);
+        }
+        memory.lengths.push(length);
+    }
+}
+
+/// Adds up weights and weighted values of some channels.
+#[inline(always)]
+fn add_up<S: Simd>(
+    simd: S,
+    terms: &Terms<'_>,
+    memory: &Memory,
+    (n_channels, channels): (usize, core::ops::Range<usize>),
     column: &[f32],
-    [first, n_channels]: [usize; 2],
     samples: &mut Samples,
 ) {
-    let down = lattice.down.as_vec3().to_array();
-    let bands = bands(lattice, down, radius);
-    let check = !is_one_sheet(lattice, nearby);
-    let here = CHANNELS.min(n_channels - first);
-    let inverse_sq = 1.0 / (radius * radius);
-    let mut sums = [Sums {
-        weights: [0.0; N],
-        largest: [0.0; N],
-        nearest: [u32::MAX; N],
-    }; N];
-    let mut values = [[[0.0_f32; N]; CHANNELS]; N];
-    for record in &nearby.records {
-        let (position, site) = (record.position, record.site);
-        let depth = dot(position, down);
-        let mut color = [0.0_f32; CHANNELS];
-        let from = site as usize * n_channels + first;
-        for (color, value) in color.iter_mut().zip(&column[from..from + here]) {
-            *color = *value;
-        }
-        for row in 0..lattice.n_rows {
-            if depth < bands[row][0] || depth > bands[row][1] {
-                continue;
-            }
-            let lanes = &lattice.rows[row];
-            let mut weights = weights(lanes, position, inverse_sq);
-            if check {
-                let normal = record.normal;
-                for lane in 0..N {
-                    let normals = [lanes[3][lane], lanes[4][lane], lanes[5][lane]];
-                    let opposed = dot(normal, normals) < 0.0;
-                    weights[lane] = if opposed { 0.0 } else { weights[lane] };
-                }
-            }
-            let sum = &mut sums[row];
-            for lane in 0..N {
-                let weight = weights[lane];
-                sum.weights[lane] += weight;
-                let larger = weight > sum.largest[lane];
-                sum.nearest[lane] = if larger { site } else { sum.nearest[lane] };
-                sum.largest[lane] = if larger { weight } else { sum.largest[lane] };
-            }
-            for (channel, color) in values[row].iter_mut().zip(color) {
-                for lane in 0..N {
-                    channel[lane] += weights[lane] * color;
-                }
-            }
-        }
-    }
-    for row in 0..lattice.n_rows {
-        for lane in 0..lattice.side {
-            let sample = row * lattice.side + lane;
-            let to = sample * n_channels + first;
-            let sum = sums[row].weights[lane];
-            if sum > WEIGHT_MIN {
-                samples.nearest[sample] = sums[row].nearest[lane];
-                for channel in 0..here {
-                    samples.values[to + channel] = values[row][channel][lane] / sum;
+    let n = terms.nearby.len();
+    let side = terms.lattice.side;
+    for (at, row) in terms.lattice.rows.iter().enumerate() {
+        let list = &memory.lists[at * n..][..memory.lengths[at]];
+        let sums = add_up_row(simd, terms, row, list, &memory.colors);
+        for lane in 0..row.n_lanes {
+            let sample = row.at * side + row.first_column + lane;
+            let to = &mut samples.values[sample * n_channels..][channels.clone()];
+            if sums.weights[lane] > WEIGHT_MIN {
+                samples.nearest[sample] = terms.nearby[sums.nearest[lane] as usize].site;
+                for (channel, value) in to.iter_mut().enumerate() {
+                    *value = sums.values[channel][lane] / sums.weights[lane];
                 }
             } else {
-                let site = nearest(lattice, nearby, row, lane);
+                let site = nearest(row, terms.nearby, lane);
                 samples.nearest[sample] = site;
-                let from = site as usize * n_channels + first;
-                samples.values[to..to + here].copy_from_slice(&column[from..from + here]);
+                let from = &column[site as usize * n_channels..][channels.clone()];
+                to.copy_from_slice(from);
             }
         }
     }
 }
 
-/// `w(x) = 2x³ − 3x² + 1` of the distances of a position to the samples of a row in radii; 0 beyond.
-#[inline(always)]
-fn weights<const N: usize>(lanes: &[[f32; N]; 6], position: [f32; 3], inverse_sq: f32) -> [f32; N] {
-    let mut weights = [0.0; N];
-    for lane in 0..N {
-        let x = lanes[0][lane] - position[0];
-        let y = lanes[1][lane] - position[1];
-        let z = lanes[2][lane] - position[2];
-        let part_sq = (x * x + y * y + z * z) * inverse_sq;
-        let weight = (2.0 * part_sq.sqrt() - 3.0) * part_sq + 1.0;
-        weights[lane] = if part_sq < 1.0 { weight } else { 0.0 };
-    }
-    weights
+/// The sums of a row.
+struct Sums {
+    weights: [f32; LANES],
+    /// Which site has the largest weight, the first of several.
+    nearest: [u32; LANES],
+    values: [[f32; LANES]; CHANNELS],
 }
 
-/// Between which depths sites reach a row, along the direction that rows follow each other in.
 #[inline(always)]
-fn bands<const N: usize>(lattice: &Lattice<N>, down: [f32; 3], radius: f32) -> [[f32; 2]; N] {
-    let reach = radius * (1.0 + MARGIN);
-    let mut bands = [[f32::INFINITY, f32::NEG_INFINITY]; N];
-    for (band, lanes) in bands.iter_mut().zip(&lattice.rows).take(lattice.n_rows) {
-        for lane in 0..lattice.side {
-            let depth = dot([lanes[0][lane], lanes[1][lane], lanes[2][lane]], down);
-            band[0] = if depth - reach < band[0] {
-                depth - reach
-            } else {
-                band[0]
-            };
-            band[1] = if depth + reach > band[1] {
-                depth + reach
-            } else {
-                band[1]
-            };
+fn add_up_row<S: Simd>(
+    simd: S,
+    terms: &Terms<'_>,
+    row: &Row,
+    list: &[u32],
+    colors: &[[f32; CHANNELS]],
+) -> Sums {
+    let zero = f32x8::splat(simd, 0.0);
+    let load = |part: usize| f32x8::from_slice(simd, &row.lanes[part]);
+    let (x, y, z) = (load(0), load(1), load(2));
+    let (nx, ny, nz) = (load(3), load(4), load(5));
+    let inverse_sq = 1.0 / (terms.radius * terms.radius);
+    let (mut sum, mut largest) = (zero, zero);
+    let mut nearest = u32x8::splat(simd, 0);
+    let [mut a, mut b, mut c, mut d] = [zero; CHANNELS];
+    for &at in list {
+        let record = &terms.nearby[at as usize];
+        let [px, py, pz] = record.position;
+        let (dx, dy, dz) = (x - px, y - py, z - pz);
+        // w(x) = 2x³ − 3x² + 1, of distances in radii.
+        let part_sq = (dx * dx + dy * dy + dz * dz) * inverse_sq;
+        let weight = (part_sq.sqrt() * 2.0 - 3.0) * part_sq + 1.0;
+        let mut weight = part_sq.simd_lt(1.0).select(weight, zero);
+        if terms.check {
+            let [mx, my, mz] = record.normal;
+            let opposed = (nx * mx + ny * my + nz * mz).simd_lt(0.0);
+            weight = opposed.select(zero, weight);
         }
+        sum += weight;
+        let is_larger = weight.simd_gt(largest);
+        nearest = is_larger.select(u32x8::splat(simd, at), nearest);
+        largest = is_larger.select(weight, largest);
+        let [ca, cb, cc, cd] = colors[at as usize];
+        a += weight * ca;
+        b += weight * cb;
+        c += weight * cc;
+        d += weight * cd;
     }
-    bands
+    let mut sums = Sums {
+        weights: [0.0; LANES],
+        nearest: [0; LANES],
+        values: [[0.0; LANES]; CHANNELS],
+    };
+    sum.store_slice(&mut sums.weights);
+    nearest.store_slice(&mut sums.nearest);
+    for (value, values) in [a, b, c, d].into_iter().zip(&mut sums.values) {
+        value.store_slice(values);
+    }
+    sums
 }
 
 /// Whether no site can have a normal that is more than a right angle from a sample's.
-#[inline(always)]
-fn is_one_sheet<const N: usize>(lattice: &Lattice<N>, nearby: &Nearby) -> bool {
-    let Some(middle) = nearby.records.first().map(|record| record.normal) else {
+fn is_one_sheet(lattice: &Lattice, nearby: &[Record]) -> bool {
+    let Some(middle) = nearby.first().map(|record| record.normal) else {
         return true;
     };
-    let near = |normal: &[f32; 3]| dot(*normal, middle) >= SAME_SHEET;
-    nearby.records.iter().all(|record| near(&record.normal))
-        && lattice.rows[..lattice.n_rows].iter().all(|lanes| {
-            (0..lattice.side).all(|lane| near(&[lanes[3][lane], lanes[4][lane], lanes[5][lane]]))
+    let near = |normal: [f32; 3]| dot(normal, middle) >= SAME_SHEET;
+    nearby.iter().all(|record| near(record.normal))
+        && lattice.rows.iter().all(|row| {
+            (0..row.n_lanes).all(|lane| near(array::from_fn(|part| row.lanes[3 + part][lane])))
         })
 }
 
 /// The site nearest to a sample among those whose normals are not opposed; without any, the nearest of all.
 #[cold]
-fn nearest<const N: usize>(lattice: &Lattice<N>, nearby: &Nearby, row: usize, lane: usize) -> u32 {
-    let lanes = &lattice.rows[row];
-    let sample: [f32; 3] = array::from_fn(|part| lanes[part][lane]);
-    let normal: [f32; 3] = array::from_fn(|part| lanes[3 + part][lane]);
+fn nearest(row: &Row, nearby: &[Record], lane: usize) -> u32 {
+    let sample: [f32; 3] = array::from_fn(|part| row.lanes[part][lane]);
+    let normal: [f32; 3] = array::from_fn(|part| row.lanes[3 + part][lane]);
     let mut best = (true, f32::INFINITY, u32::MAX);
-    for record in &nearby.records {
+    for record in nearby {
         let from: [f32; 3] = array::from_fn(|part| record.position[part] - sample[part]);
         let found = (
             dot(record.normal, normal) < 0.0,

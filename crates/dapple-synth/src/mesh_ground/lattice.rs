@@ -1,41 +1,38 @@
 //! Where the samples of a square are on a surface.
 
 use crate::ground::Square;
-use core::array;
 use dapple_mesh::{Surface, SurfacePoint, Walk};
 use glam::{DVec2, DVec3};
 
-/// Samples in rows of `N` lanes, of which the first `side` are used.
-///
-/// Positions are relative to the site in the middle, normals those of the faces.
-#[derive(Clone, Debug)]
-pub(crate) struct Lattice<const N: usize> {
+/// The samples in a register.
+const LANES: usize = 8;
+
+/// Samples on a surface, in rows of at most eight.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Lattice {
+    /// The number of samples along a side.
     pub(crate) side: usize,
-    /// The rows that are laid out.
-    pub(crate) n_rows: usize,
-    /// The direction that rows follow each other in, at the site.
+    /// The direction at the middle in which rows follow each other.
     pub(crate) down: DVec3,
-    /// x, y and z of the positions, then of the normals, of all samples of a row.
-    pub(crate) rows: [[[f32; N]; 6]; N],
+    pub(crate) rows: Vec<Row>,
+}
+
+/// Samples side by side.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    /// The number of the row in the square, from the top.
+    pub(crate) at: usize,
+    pub(crate) first_column: usize,
+    /// How many lanes are used.
+    pub(crate) n_lanes: usize,
+    /// x, y and z relative to the middle of the square, and of the normals of the faces.
+    pub(crate) lanes: [[f32; LANES]; 6],
 }
 
 /// So far away that no site counts, and that squares stay finite.
 const NOWHERE: f32 = 1e18;
 
-impl<const N: usize> Default for Lattice<N> {
-    fn default() -> Self {
-        let lanes = [NOWHERE; N];
-        let row = [lanes, lanes, lanes, [0.0; N], [0.0; N], [0.0; N]];
-        Self {
-            side: 0,
-            n_rows: 0,
-            down: DVec3::ZERO,
-            rows: [row; N],
-        }
-    }
-}
-
-impl<const N: usize> Lattice<N> {
+impl Lattice {
     /// Walks to all samples of a square around a point.
     pub(crate) fn lay(
         &mut self,
@@ -45,59 +42,76 @@ impl<const N: usize> Lattice<N> {
         square: &Square,
         spacing: f64,
     ) {
-        if self.side != square.side() {
-            *self = Self::default();
-            self.side = square.side();
-        }
-        let (first, last) = (*square.range().start(), *square.range().end());
-        self.n_rows = (last - first + 1) as usize;
-        let center = surface.position(middle);
+        self.make_room(square);
         let down = surface
             .flatten(middle.face, orientation)
             .normalize_or(DVec2::X);
         self.down = surface.lift(middle.face, down);
+        let center = surface.position(middle);
         let half = square.half;
-        // The direction of a walk is O turned to P here, and turned back for the columns.
-        for (way, last_step) in [(1.0, half), (-1.0, half)] {
+        let start = Walk {
+            point: middle,
+            direction: down,
+            left: 0.0,
+        };
+        self.lay_column(surface, &start, half as usize, square, (center, spacing));
+        for way in [1.0, -1.0] {
             let mut walk = Walk {
-                point: middle,
                 direction: down.perp() * way,
-                left: 0.0,
+                ..start
             };
-            for step in 0..=last_step {
-                if step > 0 {
-                    walk = surface.walk(walk.point, walk.direction, spacing);
-                } else if way < 0.0 {
-                    continue;
-                }
-                let column = (half + (way as i32) * step) as usize;
-                let right = walk.direction * way;
-                self.lay_column(
-                    surface,
-                    (walk.point, -right.perp()),
-                    column,
-                    square,
-                    (center, spacing),
-                );
+            for step in 1..=half {
+                walk = surface.walk(walk.point, walk.direction, spacing);
+                let column = Walk {
+                    direction: -walk.direction.perp() * way,
+                    ..walk
+                };
+                let at = half + step * way as i32;
+                self.lay_column(surface, &column, at as usize, square, (center, spacing));
             }
         }
     }
 
-    /// Walks up and down from the middle of a column.
+    /// Has as many rows as the square needs, with their unused lanes nowhere.
+    fn make_room(&mut self, square: &Square) {
+        let side = square.side();
+        let n_rows = square.range().count();
+        let blocks = side.div_ceil(LANES);
+        if self.side == side && self.rows.len() == n_rows * blocks {
+            return;
+        }
+        self.side = side;
+        let far = [NOWHERE; LANES];
+        let zero = [0.0; LANES];
+        self.rows = (0..n_rows * blocks)
+            .map(|number| {
+                let first_column = number % blocks * LANES;
+                Row {
+                    at: number / blocks,
+                    first_column,
+                    n_lanes: LANES.min(side - first_column),
+                    lanes: [far, far, far, zero, zero, zero],
+                }
+            })
+            .collect();
+    }
+
+    /// Walks up and down from the middle of a column, where O is the direction of `start`.
     fn lay_column(
         &mut self,
         surface: &Surface,
-        (middle, down): (SurfacePoint, DVec2),
+        start: &Walk,
         column: usize,
         square: &Square,
         (center, spacing): (DVec3, f64),
     ) {
         let half = square.half;
-        if self.n_rows > half as usize {
-            self.put(surface, middle, half as usize, column, center);
+        let last = *square.range().end();
+        if last >= 0 {
+            self.put(surface, start.point, half as usize, column, center);
         }
-        for (way, n_steps) in [(-1, half), (1, *square.range().end())] {
-            let (mut point, mut direction) = (middle, down * f64::from(way));
+        for (way, n_steps) in [(-1, half), (1, last)] {
+            let (mut point, mut direction) = (start.point, start.direction * f64::from(way));
             for step in 1..=n_steps {
                 let walk = surface.walk(point, direction, spacing);
                 (point, direction) = (walk.point, walk.direction);
@@ -115,17 +129,14 @@ impl<const N: usize> Lattice<N> {
         column: usize,
         center: DVec3,
     ) {
-        let position = surface.position(point) - center;
-        let normal = surface.face_normal(point.face);
-        let values: [f64; 6] = array::from_fn(|part| {
-            if part < 3 {
-                position[part]
-            } else {
-                normal[part - 3]
-            }
-        });
-        for (lanes, value) in self.rows[row].iter_mut().zip(values) {
-            lanes[column] = value as f32;
+        let position = (surface.position(point) - center).as_vec3();
+        let normal = surface.face_normal(point.face).as_vec3();
+        let blocks = self.side.div_ceil(LANES);
+        let row = &mut self.rows[row * blocks + column / LANES];
+        let lane = column % LANES;
+        for part in 0..3 {
+            row.lanes[part][lane] = position[part];
+            row.lanes[3 + part][lane] = normal[part];
         }
     }
 }
