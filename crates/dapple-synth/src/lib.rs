@@ -2,6 +2,8 @@
 
 #![forbid(unsafe_code)]
 
+mod atlas;
+mod bake;
 mod candidates;
 mod cells;
 mod engine;
@@ -19,6 +21,8 @@ mod sweep;
 mod synthesizer;
 mod visit;
 
+pub use atlas::{Atlas, PADDING};
+pub use bake::bake;
 pub use candidates::{Candidates, CoarserCenter};
 pub use dapple_mesh as mesh;
 pub use engine::Progress;

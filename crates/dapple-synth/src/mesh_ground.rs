@@ -14,8 +14,11 @@ use crate::groups::Groups;
 use crate::{Orientation, Sweep};
 use dapple_mesh::{Hierarchy, INTERPOLATION_RADIUS, SiteIdx, Surface};
 use dapple_raster::simd;
-use lattice::Lattice;
-use nearby::{Nearby, Neighborhoods};
+use nearby::Neighborhoods;
+
+pub(crate) use interpolate::{Interpolation, interpolate};
+pub(crate) use lattice::Lattice;
+pub(crate) use nearby::Nearby;
 
 /// How much farther than on a plane sites may lie from a sample's site and still count, in spacings.
 const REACH_SPARE: f64 = 0.5;
@@ -42,7 +45,7 @@ pub(crate) struct Prepared {
 pub(crate) struct MeshMemory {
     nearby: Nearby,
     lattice: Lattice,
-    interpolation: interpolate::Memory,
+    interpolation: Interpolation,
 }
 
 impl MeshGround<'_> {
@@ -109,7 +112,7 @@ impl Ground for MeshGround<'_> {
         around.collect(square.site, &mut memory.nearby);
         let lattice = &mut memory.lattice;
         lattice.lay(self.surface, point, orientation, &square, spacing);
-        interpolate::interpolate(
+        interpolate(
             simd::level(),
             lattice,
             &memory.nearby,

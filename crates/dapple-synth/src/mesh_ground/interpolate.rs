@@ -23,7 +23,7 @@ const LANES: usize = 8;
 
 /// What interpolation works in.
 #[derive(Debug, Default)]
-pub(crate) struct Memory {
+pub(crate) struct Interpolation {
     /// The values of the nearby sites.
     colors: Vec<[f32; CHANNELS]>,
     /// For each row the sites that can reach it, and their number.
@@ -47,7 +47,7 @@ pub(crate) fn interpolate(
     nearby: &Nearby,
     radius: f32,
     (column, samples): (&[f32], &mut Samples),
-    memory: &mut Memory,
+    memory: &mut Interpolation,
 ) {
     let terms = Terms {
         lattice,
@@ -55,7 +55,7 @@ pub(crate) fn interpolate(
         radius,
         check: !is_one_sheet(lattice, &nearby.records),
     };
-    let n_channels = samples.values.len() / (lattice.side * lattice.side);
+    let n_channels = samples.values.len() / samples.nearest.len().max(1);
     dispatch!(level, simd => list(simd, &terms, memory));
     for first in (0..n_channels).step_by(CHANNELS) {
         let here = CHANNELS.min(n_channels - first);
@@ -72,7 +72,7 @@ pub(crate) fn interpolate(
 
 /// Lists the sites that can reach each row.
 #[inline(always)]
-fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Memory) {
+fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Interpolation) {
     let _ = simd;
     let down = terms.lattice.down.as_vec3().to_array();
     let n = terms.nearby.len();
@@ -107,7 +107,7 @@ fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Memory) {
 fn add_up<S: Simd>(
     simd: S,
     terms: &Terms<'_>,
-    memory: &Memory,
+    memory: &Interpolation,
     (n_channels, channels): (usize, core::ops::Range<usize>),
     column: &[f32],
     samples: &mut Samples,

@@ -72,6 +72,24 @@ impl Lattice {
         }
     }
 
+    /// Lines up points that somebody else chose, eight in a row, relative to `center`. Rows follow each other from the first
+    /// point to the last one.
+    pub(crate) fn line_up(&mut self, surface: &Surface, points: &[SurfacePoint], center: DVec3) {
+        self.side = points.len();
+        self.down = match points {
+            [first, .., last] => surface.position(*last) - surface.position(*first),
+            _ => DVec3::ZERO,
+        }
+        .normalize_or(DVec3::Z);
+        self.rows.clear();
+        for (number, points) in points.chunks(LANES).enumerate() {
+            self.rows.push(Row::new(0, number * LANES, points.len()));
+            for (lane, &point) in points.iter().enumerate() {
+                self.put(surface, point, 0, number * LANES + lane, center);
+            }
+        }
+    }
+
     /// Has as many rows as the square needs, with their unused lanes nowhere.
     fn make_room(&mut self, square: &Square) {
         let side = square.side();
@@ -81,17 +99,14 @@ impl Lattice {
             return;
         }
         self.side = side;
-        let far = [NOWHERE; LANES];
-        let zero = [0.0; LANES];
         self.rows = (0..n_rows * blocks)
             .map(|number| {
                 let first_column = number % blocks * LANES;
-                Row {
-                    at: number / blocks,
+                Row::new(
+                    number / blocks,
                     first_column,
-                    n_lanes: LANES.min(side - first_column),
-                    lanes: [far, far, far, zero, zero, zero],
-                }
+                    LANES.min(side - first_column),
+                )
             })
             .collect();
     }
@@ -137,6 +152,19 @@ impl Lattice {
         for part in 0..3 {
             row.lanes[part][lane] = position[part];
             row.lanes[3 + part][lane] = normal[part];
+        }
+    }
+}
+
+impl Row {
+    /// A row whose samples are nowhere yet.
+    fn new(at: usize, first_column: usize, n_lanes: usize) -> Self {
+        let (far, zero) = ([NOWHERE; LANES], [0.0; LANES]);
+        Self {
+            at,
+            first_column,
+            n_lanes,
+            lanes: [far, far, far, zero, zero, zero],
         }
     }
 }

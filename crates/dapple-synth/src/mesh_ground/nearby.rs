@@ -4,7 +4,7 @@
 //! million sites.
 
 use crate::cells::Cells;
-use dapple_mesh::Sites;
+use dapple_mesh::{Hierarchy, Sites};
 use glam::{DVec3, Vec3};
 
 /// The side of a cell in spacings.
@@ -133,4 +133,35 @@ impl Neighborhoods {
 #[inline(always)]
 fn length_sq([x, y, z]: [f32; 3]) -> f32 {
     x * x + y * y + z * z
+}
+
+impl Nearby {
+    /// Takes the sites of a level in a ball; if there are none, in the next larger one of twice the radius that has some.
+    pub(crate) fn collect_ball(
+        &mut self,
+        hierarchy: &Hierarchy,
+        level: usize,
+        center: DVec3,
+        reach: f64,
+    ) {
+        let sites = hierarchy.sites();
+        let mut reach = reach;
+        self.records.clear();
+        while self.records.is_empty() && reach.is_finite() {
+            let reach_sq = reach * reach;
+            hierarchy.levels()[level]
+                .grid()
+                .visit(center, reach, |site| {
+                    let from = sites.positions()[site.index()] - center;
+                    if from.length_squared() < reach_sq {
+                        self.records.push(Record {
+                            position: from.as_vec3().to_array(),
+                            normal: sites.normals()[site.index()].as_vec3().to_array(),
+                            site: site.0,
+                        });
+                    }
+                });
+            reach *= 2.0;
+        }
+    }
 }

@@ -1,7 +1,6 @@
 //! Squares on surfaces, beside samples that are walked to one by one and mixed from all sites.
 
-use super::interpolate::interpolate;
-use super::{MeshGround, MeshMemory};
+use super::{MeshGround, MeshMemory, interpolate};
 use crate::ground::{Ground, Rows, Samples, Square};
 use crate::{Orientation, Sweep};
 use dapple_hash::Seed;
