@@ -5,6 +5,7 @@
 mod candidates;
 mod error;
 mod exemplar;
+mod grid;
 mod matcher;
 mod neighborhood;
 mod orientation;
