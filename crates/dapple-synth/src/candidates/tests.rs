@@ -250,7 +250,13 @@ fn value_stability_candidates() {
         .iter()
         .map(|value| value.to_bits())
         .collect();
-    assert_eq!(bits, [1057788506, 1058533577, 1063000693, 1061410962, 1052900838, 1058878594], "values of the coarser level");
+    assert_eq!(
+        bits,
+        [
+            1057788506, 1058533577, 1063000693, 1061410962, 1052900838, 1058878594
+        ],
+        "values of the coarser level"
+    );
 }
 
 proptest! {
