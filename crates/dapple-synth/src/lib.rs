@@ -3,11 +3,16 @@
 #![forbid(unsafe_code)]
 
 mod candidates;
+mod columns;
+mod directions;
 mod error;
 mod exemplar;
+mod links;
 mod matcher;
 mod neighborhood;
 mod orientation;
+mod parents;
+mod solve;
 mod sweep;
 
 pub use candidates::{Candidates, CoarserCenter};
