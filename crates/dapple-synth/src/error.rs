@@ -65,6 +65,15 @@ pub enum SynthErrorKind {
         /// Which of the directions.
         direction: usize,
     },
+    /// A line of a text does not follow its format.
+    Text {
+        /// The format.
+        format: &'static str,
+        /// The number of the line, from 1.
+        line: usize,
+        /// What is wrong.
+        why: String,
+    },
     /// The caller's callback asked to stop.
     Cancelled,
     /// The mesh was refused.
@@ -147,6 +156,9 @@ impl fmt::Display for SynthError {
                 f,
                 "direction {direction} is zero, not finite or normal to the surface"
             ),
+            SynthErrorKind::Text { format, line, why } => {
+                write!(f, "line {line} of the {format}: {why}")
+            }
             SynthErrorKind::Cancelled => write!(f, "the callback asked to stop"),
             SynthErrorKind::Mesh(error) => error.fmt(f),
             SynthErrorKind::Raster(error) => error.fmt(f),

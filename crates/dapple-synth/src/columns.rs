@@ -1,0 +1,59 @@
+//! Columns computed row by row, on all cores where the feature `rayon` is on; the bits do not depend on the cores.
+
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
+
+/// Rows that one task takes at least: less would not pay for handing it over. Also the length of the blocks in which
+/// [`sum`] adds.
+const BLOCK: usize = 1024;
+
+/// The column whose rows are those of `row`.
+pub(crate) fn column<T: Send>(n_rows: usize, row: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    #[cfg(feature = "rayon")]
+    return (0..n_rows)
+        .into_par_iter()
+        .with_min_len(BLOCK)
+        .map(row)
+        .collect();
+    #[cfg(not(feature = "rayon"))]
+    return (0..n_rows).map(row).collect();
+}
+
+/// Changes every row of a column, given its number.
+pub(crate) fn update<T: Send>(column: &mut [T], change: impl Fn(usize, &mut T) + Sync + Send) {
+    #[cfg(feature = "rayon")]
+    column
+        .par_iter_mut()
+        .with_min_len(BLOCK)
+        .enumerate()
+        .for_each(|(row, value)| change(row, value));
+    #[cfg(not(feature = "rayon"))]
+    for (row, value) in column.iter_mut().enumerate() {
+        change(row, value);
+    }
+}
+
+/// The sum of a number for every row, added within blocks and then block by block, whatever the number of cores.
+pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
+    let block = |block: usize| {
+        let mut sum = 0.0;
+        for at in block * BLOCK..((block + 1) * BLOCK).min(n_rows) {
+            sum += row(at);
+        }
+        sum
+    };
+    let n_blocks = n_rows.div_ceil(BLOCK);
+    #[cfg(feature = "rayon")]
+    let sums: Vec<f64> = (0..n_blocks).into_par_iter().map(block).collect();
+    #[cfg(not(feature = "rayon"))]
+    let sums: Vec<f64> = (0..n_blocks).map(block).collect();
+    sums.into_iter().sum()
+}
+
+/// Whether something holds for every row.
+pub(crate) fn all(n_rows: usize, row: impl Fn(usize) -> bool + Sync + Send) -> bool {
+    #[cfg(feature = "rayon")]
+    return (0..n_rows).into_par_iter().with_min_len(BLOCK).all(row);
+    #[cfg(not(feature = "rayon"))]
+    return (0..n_rows).all(row);
+}

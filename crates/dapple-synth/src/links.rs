@@ -1,0 +1,149 @@
+//! The edges of a level with their weights: what equations 4 and 5 of the paper average over.
+//!
+//! A weight is the inverse length of the edge (section 3.2). It is kept as it is, not divided by the sum of its site,
+//! so that the weights are symmetric and the averages are the fixed points of a symmetric system, which
+//! [`conjugate_gradients`](crate::solve::conjugate_gradients) solves.
+
+use crate::columns;
+use dapple_mesh::glam::DVec3;
+use dapple_mesh::{Hierarchy, SiteGraph, SiteIdx};
+
+/// Edges shorter than this part of the spacing weigh as if they were so long, so that no site outvotes all others.
+pub(crate) const LEAST_LENGTH: f64 = 1e-3;
+
+/// The graph of a level with a weight for every edge, seen from either end.
+#[derive(Debug)]
+pub(crate) struct Links<'a> {
+    graph: &'a SiteGraph,
+    /// Where the weights of a site begin.
+    offsets: Vec<u32>,
+    weights: Vec<f64>,
+    /// For each site the sum of its weights.
+    sums: Vec<f64>,
+}
+
+impl<'a> Links<'a> {
+    /// The links of a level.
+    pub(crate) fn new(hierarchy: &'a Hierarchy, level: usize) -> Self {
+        let level = &hierarchy.levels()[level];
+        let graph = level.graph();
+        let positions = hierarchy.sites().positions();
+        let least = level.spacing() * LEAST_LENGTH;
+        let mut offsets = vec![0_u32; level.n_sites() + 1];
+        for site in 0..level.n_sites() {
+            offsets[site + 1] = offsets[site] + graph.neighbors(SiteIdx(site as u32)).len() as u32;
+        }
+        let mut weights = vec![0.0; offsets[level.n_sites()] as usize];
+        let mut rows: Vec<&mut [f64]> = Vec::with_capacity(level.n_sites());
+        let mut rest = weights.as_mut_slice();
+        for site in 0..level.n_sites() {
+            let (row, after) = rest.split_at_mut((offsets[site + 1] - offsets[site]) as usize);
+            rows.push(row);
+            rest = after;
+        }
+        columns::update(&mut rows, |site, row| {
+            weigh(positions, graph, site, least, row);
+        });
+        let mut links = Self {
+            graph,
+            offsets,
+            weights,
+            sums: Vec::new(),
+        };
+        links.sums = columns::column(links.len(), |site| links.weights(site).iter().sum());
+        links
+    }
+
+    /// The number of sites.
+    #[inline]
+    pub(crate) fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// The neighbors of a site.
+    #[inline]
+    pub(crate) fn neighbors(&self, site: usize) -> &[SiteIdx] {
+        self.graph.neighbors(SiteIdx(site as u32))
+    }
+
+    /// The weights of the edges to the neighbors of a site, in the same order.
+    #[inline]
+    pub(crate) fn weights(&self, site: usize) -> &[f64] {
+        &self.weights[self.offsets[site] as usize..self.offsets[site + 1] as usize]
+    }
+
+    /// The sums of the weights of the sites; 0 for a site without neighbors.
+    #[inline]
+    pub(crate) fn sums(&self) -> &[f64] {
+        &self.sums
+    }
+
+    /// Assigns values ring by ring, from the sites that have one on: those of a ring get what `opinion` makes of the
+    /// sites that were assigned before. What is not connected to an assigned site stays as it is.
+    pub(crate) fn fill<T: Copy>(
+        &self,
+        assigned: &mut [bool],
+        values: &mut [T],
+        opinion: impl Fn(usize, &[bool], &[T]) -> T,
+    ) {
+        let touches = |site: usize, assigned: &[bool]| {
+            let neighbors = self.neighbors(site).iter();
+            !assigned[site] && neighbors.into_iter().any(|other| assigned[other.index()])
+        };
+        let mut ring: Vec<usize> = (0..self.len())
+            .filter(|&site| touches(site, assigned))
+            .collect();
+        while !ring.is_empty() {
+            let found: Vec<T> = ring
+                .iter()
+                .map(|&site| opinion(site, assigned, values))
+                .collect();
+            for (&site, value) in ring.iter().zip(found) {
+                values[site] = value;
+                assigned[site] = true;
+            }
+            let mut next: Vec<usize> = ring
+                .iter()
+                .flat_map(|&site| self.neighbors(site))
+                .map(|other| other.index())
+                .filter(|&other| !assigned[other])
+                .collect();
+            next.sort_unstable();
+            next.dedup();
+            ring = next;
+        }
+    }
+}
+
+/// For each site of a graph the number of its component; components are numbered in the order of their lowest sites.
+pub(crate) fn components(graph: &SiteGraph) -> Vec<u32> {
+    const NONE: u32 = u32::MAX;
+    let mut components = vec![NONE; graph.len()];
+    let mut found = Vec::new();
+    let mut count = 0;
+    for start in 0..graph.len() {
+        if components[start] != NONE {
+            continue;
+        }
+        components[start] = count;
+        found.push(SiteIdx(start as u32));
+        while let Some(site) = found.pop() {
+            for &other in graph.neighbors(site) {
+                if components[other.index()] == NONE {
+                    components[other.index()] = count;
+                    found.push(other);
+                }
+            }
+        }
+        count += 1;
+    }
+    components
+}
+
+/// The weights of the edges of a site.
+fn weigh(positions: &[DVec3], graph: &SiteGraph, site: usize, least: f64, row: &mut [f64]) {
+    let at = positions[site];
+    for (weight, other) in row.iter_mut().zip(graph.neighbors(SiteIdx(site as u32))) {
+        *weight = 1.0 / at.distance(positions[other.index()]).max(least);
+    }
+}

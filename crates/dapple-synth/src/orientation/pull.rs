@@ -1,0 +1,208 @@
+//! From the user's directions up to the coarsest level.
+
+use super::{flat_part, tangent};
+use crate::links::LEAST_LENGTH;
+use crate::{Direction, SynthError, SynthErrorKind, columns};
+use dapple_mesh::{Hierarchy, Level, SiteIdx};
+use glam::DVec3;
+
+/// Low-pass steps before a level is thinned, and their strength t of equation 3: together the spread of the filter
+/// 1-4-6-4-1 that image pyramids use.
+const BLUR_STEPS: usize = 20;
+const BLUR_STRENGTH: f64 = 0.1;
+/// How many edges away from a known site the blur is followed: less than 1e-7 of it would go farther.
+const BLUR_RINGS: usize = 8;
+/// The least weight of a known site. The blur leaves a coarse site within its spacing of a direction at least 0.05.
+const LEAST_WEIGHT: f64 = 0.01;
+/// A coarser level has a quarter of the sites, so weights are four times as large there to sum to the same.
+const THINNING: f64 = 4.0;
+/// Directions that leave less than this part of their length cancel.
+const LEAST_PART: f64 = 1e-3;
+
+/// How far the grid is searched for the site nearest to a direction, in spacings.
+const SEARCH_RADIUS: f64 = 4.0;
+
+/// What the directions say about a site.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Known {
+    pub(super) site: usize,
+    /// A unit tangent vector.
+    pub(super) vector: DVec3,
+    /// How much it counts: from 0 to 1, which is where a direction was given.
+    pub(super) weight: f64,
+}
+
+/// The sites of the finest level that are nearest to the directions, lowest first.
+pub(super) fn known(
+    hierarchy: &Hierarchy,
+    directions: &[Direction],
+) -> Result<Vec<Known>, SynthError> {
+    let sites = hierarchy.sites();
+    let mut given: Vec<(usize, DVec3)> = Vec::with_capacity(directions.len());
+    for (number, direction) in directions.iter().enumerate() {
+        let refused = SynthError::new(SynthErrorKind::Direction { direction: number });
+        if !direction.at.is_finite() {
+            return Err(refused);
+        }
+        let Some(site) = nearest_site(hierarchy, direction.at) else {
+            continue;
+        };
+        let Some(vector) = tangent(direction.vector, sites.normals()[site]) else {
+            return Err(refused);
+        };
+        given.push((site, vector));
+    }
+    // Stable, so that those of one site are added in the order of the caller.
+    given.sort_by_key(|&(site, _)| site);
+    let mean = |group: &[(usize, DVec3)]| {
+        let sum: DVec3 = group.iter().map(|&(_, vector)| vector).sum();
+        summed(group[0].0, sum, group.len() as f64)
+    };
+    Ok(given.chunk_by(|a, b| a.0 == b.0).filter_map(mean).collect())
+}
+
+/// What is known on every level, the finest first.
+pub(super) fn pull(hierarchy: &Hierarchy, finest: Vec<Known>) -> Vec<Vec<Known>> {
+    let mut levels = vec![finest];
+    for pair in hierarchy.levels().windows(2) {
+        let coarser = down(hierarchy, [&pair[0], &pair[1]], &levels[levels.len() - 1]);
+        levels.push(coarser);
+    }
+    levels
+}
+
+/// The known site of a sum of vectors and of their weights, unless they cancel.
+fn summed(site: usize, sum: DVec3, weight: f64) -> Option<Known> {
+    let length = sum.length();
+    (length > LEAST_PART * weight).then(|| Known {
+        site,
+        vector: sum / length,
+        weight: weight.min(1.0),
+    })
+}
+
+/// Downsampling: blurs what is known and keeps what the sites of the coarser level have of it.
+fn down(hierarchy: &Hierarchy, [finer, coarser]: [&Level; 2], known: &[Known]) -> Vec<Known> {
+    let near = Near::new(hierarchy, finer, known);
+    let mut kept: Vec<Known> = Vec::new();
+    for (&site, (vector, weight)) in near.sites.iter().zip(near.blur(known)) {
+        let weight = weight * THINNING;
+        if site < coarser.n_sites() && weight >= LEAST_WEIGHT {
+            let vector = flat_part(vector, hierarchy.sites().normals()[site]);
+            kept.extend(summed(site, vector * THINNING, weight));
+        }
+    }
+    kept.sort_by_key(|known| known.site);
+    kept
+}
+
+/// The sites around the known ones and their edges: the part of a level that a blur changes.
+struct Near {
+    /// The sites, the known ones first.
+    sites: Vec<usize>,
+    /// For each of them its neighbors, as places in `sites`, and the part that each contributes to an average.
+    edges: Vec<Vec<(usize, f64)>>,
+}
+
+impl Near {
+    fn new(hierarchy: &Hierarchy, level: &Level, known: &[Known]) -> Self {
+        const NONE: usize = usize::MAX;
+        let graph = level.graph();
+        let mut places = vec![NONE; level.n_sites()];
+        let mut sites: Vec<usize> = known.iter().map(|known| known.site).collect();
+        for (place, &site) in sites.iter().enumerate() {
+            places[site] = place;
+        }
+        let mut ring = 0;
+        for _ in 0..BLUR_RINGS {
+            let end = sites.len();
+            for at in ring..end {
+                for other in graph.neighbors(SiteIdx(sites[at] as u32)) {
+                    if places[other.index()] == NONE {
+                        places[other.index()] = sites.len();
+                        sites.push(other.index());
+                    }
+                }
+            }
+            ring = end;
+        }
+        let positions = hierarchy.sites().positions();
+        let least = LEAST_LENGTH * level.spacing();
+        let edges = sites.iter().map(|&site| {
+            let neighbors = graph.neighbors(SiteIdx(site as u32));
+            let weigh = |other: &SiteIdx| {
+                1.0 / positions[site]
+                    .distance(positions[other.index()])
+                    .max(least)
+            };
+            let sum: f64 = neighbors.iter().map(weigh).sum();
+            // What is farther away has no part in the blur, but its weights count.
+            let place = |other: &SiteIdx| (places[other.index()], weigh(other) / sum);
+            neighbors
+                .iter()
+                .map(place)
+                .filter(|&(place, _)| place != NONE)
+                .collect()
+        });
+        Self {
+            edges: edges.collect(),
+            sites,
+        }
+    }
+
+    /// The sums of vectors and of weights after all steps of equation 3.
+    fn blur(&self, known: &[Known]) -> Vec<(DVec3, f64)> {
+        let mut values: Vec<(DVec3, f64)> = known
+            .iter()
+            .map(|known| (known.vector * known.weight, known.weight))
+            .collect();
+        values.resize(self.sites.len(), (DVec3::ZERO, 0.0));
+        for _ in 0..BLUR_STEPS {
+            values = columns::column(values.len(), |at| step(&values, at, &self.edges[at]));
+        }
+        values
+    }
+}
+
+/// Equation 3 for one site.
+fn step(values: &[(DVec3, f64)], at: usize, edges: &[(usize, f64)]) -> (DVec3, f64) {
+    if edges.is_empty() {
+        return values[at];
+    }
+    let (mut vector, mut weight) = (DVec3::ZERO, 0.0);
+    for &(place, part) in edges {
+        vector += values[place].0 * part;
+        weight += values[place].1 * part;
+    }
+    let kept = 1.0 - BLUR_STRENGTH;
+    (
+        values[at].0 * kept + vector * BLUR_STRENGTH,
+        values[at].1 * kept + weight * BLUR_STRENGTH,
+    )
+}
+
+/// The site nearest to a position, and of several the lowest; none only if there are no sites.
+fn nearest_site(hierarchy: &Hierarchy, at: DVec3) -> Option<usize> {
+    let positions = hierarchy.sites().positions();
+    let finest = hierarchy.levels().first()?;
+    let mut nearest = (f64::INFINITY, u32::MAX);
+    let mut visit = |site: SiteIdx| {
+        let found = (positions[site.index()].distance(at), site.0);
+        if found < nearest {
+            nearest = found;
+        }
+    };
+    let radius = SEARCH_RADIUS * finest.spacing();
+    finest.grid().visit(at, radius, &mut visit);
+    if nearest.0 > radius {
+        // A position far off the surface.
+        nearest = (f64::INFINITY, u32::MAX);
+        for (site, position) in (0..).zip(positions) {
+            let found = (position.distance(at), site);
+            if found < nearest {
+                nearest = found;
+            }
+        }
+    }
+    (nearest.1 != u32::MAX).then_some(nearest.1 as usize)
+}

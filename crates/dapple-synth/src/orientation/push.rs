@@ -1,0 +1,225 @@
+//! From what is known on every level to a field on the finest: diffusion on the coarsest level and the way down.
+
+use super::pull::Known;
+use super::{axis_tangent, flat_part};
+use crate::columns;
+use crate::links::Links;
+use crate::parents::Parents;
+use crate::solve::{System, conjugate_gradients};
+use dapple_mesh::{Hierarchy, SiteIdx};
+use glam::DVec3;
+
+/// The diffusion ends where averaging once more would turn no vector by more than this, in radians, ...
+const TOLERANCE: f64 = 1e-5;
+/// ... or after so many steps, which only a coarsest level of more than some 50 000 sites takes.
+const STEPS_MAX: usize = 500;
+/// Sweeps of equation 4 on every finer level, and the part of the average in each.
+const SWEEPS: usize = 4;
+const SWEEP_STRENGTH: f64 = 0.8;
+
+/// A unit tangent vector for every site, from what is known on every level.
+pub(super) fn push(hierarchy: &Hierarchy, pulled: &[Vec<Known>], axis: DVec3) -> Vec<DVec3> {
+    let mut vectors = Vec::new();
+    for (level, known) in pulled.iter().enumerate().rev() {
+        let links = Links::new(hierarchy, level);
+        let field = Field {
+            links: &links,
+            normals: hierarchy.sites().normals(),
+            axis,
+        };
+        if level + 1 == pulled.len() {
+            vectors = field.diffuse(known);
+        } else {
+            vectors = field.refine(hierarchy, level, &vectors, known);
+        }
+    }
+    // Parts without a direction are still zero.
+    let normals = hierarchy.sites().normals();
+    columns::update(&mut vectors, |site, vector| {
+        if *vector == DVec3::ZERO {
+            *vector = axis_tangent(axis, normals[site]);
+        }
+    });
+    vectors
+}
+
+/// The links of a level and the planes that vectors are projected to.
+struct Field<'a> {
+    links: &'a Links<'a>,
+    normals: &'a [DVec3],
+    axis: DVec3,
+}
+
+impl Field<'_> {
+    /// Unit vectors for all sites of the coarsest level that are connected to a known one; zero for the others.
+    fn diffuse(&self, known: &[Known]) -> Vec<DVec3> {
+        let n_sites = self.links.len();
+        let mut vectors = vec![DVec3::ZERO; n_sites];
+        let mut is_fixed = vec![false; n_sites];
+        for known in known {
+            vectors[known.site] = known.vector;
+            is_fixed[known.site] = true;
+        }
+        let mut assigned = is_fixed.clone();
+        self.fill(&mut assigned, &mut vectors);
+        // Parts without a direction stay out of it.
+        for (fixed, assigned) in is_fixed.iter_mut().zip(&assigned) {
+            *fixed |= !assigned;
+        }
+        let system = Diffusion {
+            field: self,
+            is_fixed,
+        };
+        conjugate_gradients(&system, &mut vectors, STEPS_MAX);
+        columns::update(&mut vectors, |site, vector| {
+            if assigned[site] {
+                *vector = self.unit(site, *vector);
+            }
+        });
+        vectors
+    }
+
+    /// Upsampling: unit vectors for all sites of a finer level that are connected to a known one.
+    fn refine(
+        &self,
+        hierarchy: &Hierarchy,
+        level: usize,
+        coarser: &[DVec3],
+        known: &[Known],
+    ) -> Vec<DVec3> {
+        let mut vectors = columns::column(self.links.len(), |site| {
+            coarser
+                .get(site)
+                .copied()
+                .unwrap_or_else(|| self.inherit(hierarchy, level, site, coarser))
+        });
+        mix(&mut vectors, known);
+        let mut assigned: Vec<bool> = vectors
+            .iter()
+            .map(|&vector| vector != DVec3::ZERO)
+            .collect();
+        self.fill(&mut assigned, &mut vectors);
+        for _ in 0..SWEEPS {
+            vectors = columns::column(vectors.len(), |site| {
+                if assigned[site] {
+                    self.sweep(site, &vectors)
+                } else {
+                    DVec3::ZERO
+                }
+            });
+            mix(&mut vectors, known);
+        }
+        vectors
+    }
+
+    /// The unit vector that the coarser sites around a site have on the average; zero where they have none.
+    fn inherit(
+        &self,
+        hierarchy: &Hierarchy,
+        level: usize,
+        site: usize,
+        coarser: &[DVec3],
+    ) -> DVec3 {
+        let parents = Parents::new(hierarchy, level, SiteIdx(site as u32));
+        let mut sum = DVec3::ZERO;
+        for (parent, weight) in parents.iter() {
+            sum += coarser[parent] * weight;
+        }
+        flat_part(sum, self.normals[site]).normalize_or_zero()
+    }
+
+    /// Assigns the sites that are connected to assigned ones.
+    fn fill(&self, assigned: &mut [bool], vectors: &mut [DVec3]) {
+        self.links
+            .fill(assigned, vectors, |site, assigned, vectors| {
+                let mut sum = DVec3::ZERO;
+                for (other, weight) in self
+                    .links
+                    .neighbors(site)
+                    .iter()
+                    .zip(self.links.weights(site))
+                {
+                    if assigned[other.index()] {
+                        sum += vectors[other.index()] * *weight;
+                    }
+                }
+                self.unit(site, sum)
+            });
+    }
+
+    /// Equation 4 for vectors, projected and normalized.
+    #[inline]
+    fn sweep(&self, site: usize, vectors: &[DVec3]) -> DVec3 {
+        let sum = self.links.sums()[site];
+        if sum == 0.0 {
+            return vectors[site];
+        }
+        let average = self.average(site, vectors) * (SWEEP_STRENGTH / sum);
+        self.unit(site, vectors[site] * (1.0 - SWEEP_STRENGTH) + average)
+    }
+
+    /// The sum of the neighbors' vectors with their weights.
+    #[inline]
+    fn average(&self, site: usize, vectors: &[DVec3]) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        for (other, weight) in self
+            .links
+            .neighbors(site)
+            .iter()
+            .zip(self.links.weights(site))
+        {
+            sum += vectors[other.index()] * *weight;
+        }
+        sum
+    }
+
+    /// The unit tangent vector of a sum, or if that cancels the tangent along the axis.
+    #[inline]
+    fn unit(&self, site: usize, vector: DVec3) -> DVec3 {
+        let normal = self.normals[site];
+        flat_part(vector, normal)
+            .try_normalize()
+            .unwrap_or_else(|| axis_tangent(self.axis, normal))
+    }
+}
+
+/// Mixes what is known in by its weights; where the weight is 1, the known vector replaces the other.
+fn mix(vectors: &mut [DVec3], known: &[Known]) {
+    for known in known {
+        let mixed = vectors[known.site] * (1.0 - known.weight) + known.vector * known.weight;
+        vectors[known.site] = mixed.normalize_or(known.vector);
+    }
+}
+
+/// Every vector is the average of its neighbors, projected, but for the fixed ones.
+struct Diffusion<'a> {
+    field: &'a Field<'a>,
+    is_fixed: Vec<bool>,
+}
+
+impl System<DVec3> for Diffusion<'_> {
+    #[inline]
+    fn row(&self, column: &[DVec3], row: usize) -> DVec3 {
+        if self.is_fixed[row] {
+            return DVec3::ZERO;
+        }
+        let average = self.field.average(row, column);
+        column[row] * self.field.links.sums()[row] - flat_part(average, self.field.normals[row])
+    }
+
+    fn right(&self, _row: usize) -> DVec3 {
+        DVec3::ZERO
+    }
+
+    fn diagonal(&self, row: usize) -> f64 {
+        if self.is_fixed[row] {
+            0.0
+        } else {
+            self.field.links.sums()[row]
+        }
+    }
+
+    fn is_near(&self, value: DVec3, change: DVec3) -> bool {
+        change.length_squared() <= TOLERANCE * TOLERANCE * value.length_squared()
+    }
+}

@@ -1,0 +1,80 @@
+//! Upsampling along the graph: the coarser sites that a finer site takes its value from.
+//!
+//! The paper interpolates with the coarser sites within a radius in space (section 3.2). Here they are also at most two
+//! edges of the finer level away, which is as far as the radius reaches on even sites: that keeps values from jumping
+//! over gaps, to other components and to other sheets, where sweep distances have nothing in common; and it needs no
+//! search.
+
+use dapple_mesh::{Hierarchy, INTERPOLATION_RADIUS, SiteIdx};
+
+/// The most coarser sites that count; even sites have about five in reach.
+const MOST: usize = 16;
+
+/// Coarser sites around a site, and their weights.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Parents {
+    sites: [SiteIdx; MOST],
+    weights: [f64; MOST],
+    count: usize,
+}
+
+impl Parents {
+    /// The sites of level `level + 1` around a site of level `level`; where none is within the radius, the nearest of
+    /// those two edges away counts alone, and there may be none at all.
+    pub(crate) fn new(hierarchy: &Hierarchy, level: usize, site: SiteIdx) -> Self {
+        let graph = hierarchy.levels()[level].graph();
+        let coarser = &hierarchy.levels()[level + 1];
+        let n_coarser = coarser.n_sites() as u32;
+        let mut parents = Self {
+            sites: [SiteIdx(0); MOST],
+            weights: [0.0; MOST],
+            count: 0,
+        };
+        for &near in graph.neighbors(site) {
+            if near.0 < n_coarser {
+                parents.add(near);
+            }
+            for &far in graph.neighbors(near) {
+                if far.0 < n_coarser && far != site {
+                    parents.add(far);
+                }
+            }
+        }
+        parents.weigh(hierarchy, site, coarser.spacing() * INTERPOLATION_RADIUS);
+        parents
+    }
+
+    /// The sites and their weights, which are not negative and not all zero.
+    #[inline]
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
+        let sites = self.sites[..self.count].iter().map(|site| site.index());
+        sites.zip(self.weights[..self.count].iter().copied())
+    }
+
+    #[inline]
+    fn add(&mut self, site: SiteIdx) {
+        if self.count < MOST && !self.sites[..self.count].contains(&site) {
+            self.sites[self.count] = site;
+            self.count += 1;
+        }
+    }
+
+    /// Equation 1, with `w(x) = 2x³ − 3x² + 1`.
+    fn weigh(&mut self, hierarchy: &Hierarchy, site: SiteIdx, radius: f64) {
+        let positions = hierarchy.sites().positions();
+        let at = positions[site.index()];
+        let (mut sum, mut nearest) = (0.0, (f64::INFINITY, 0));
+        for parent in 0..self.count {
+            let distance = at.distance(positions[self.sites[parent].index()]);
+            if distance < nearest.0 {
+                nearest = (distance, parent);
+            }
+            let x = (distance / radius).min(1.0);
+            self.weights[parent] = (2.0 * x - 3.0) * x * x + 1.0;
+            sum += self.weights[parent];
+        }
+        if sum < 1e-9 && self.count > 0 {
+            self.weights[nearest.1] = 1.0;
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! The sweep distances of one level.
+
+use super::Distances;
+use crate::columns;
+use crate::links::Links;
+use crate::parents::Parents;
+use crate::solve::{System, conjugate_gradients};
+use dapple_mesh::{Hierarchy, SiteIdx};
+use glam::DVec3;
+
+/// The coarsest level is solved until equation 5 would change no distance by more than this part of the spacing, ...
+const TOLERANCE: f64 = 1e-6;
+/// ... or after so many steps, which only a coarsest level of more than some 50 000 sites takes.
+const STEPS_MAX: usize = 500;
+/// Sweeps of equation 5 on every finer level, and the sum of the β in it.
+const SWEEPS: usize = 30;
+const SWEEP_STRENGTH: f64 = 0.8;
+
+/// Equation 5 on a level.
+pub(super) struct LevelSweep<'a> {
+    hierarchy: &'a Hierarchy,
+    level: usize,
+    vectors: &'a [DVec3],
+    links: Links<'a>,
+    /// For each site the sum of how far it is ahead of its neighbors, with their weights.
+    ahead: Vec<f64>,
+    tolerance: f64,
+}
+
+impl<'a> LevelSweep<'a> {
+    pub(super) fn new(hierarchy: &'a Hierarchy, vectors: &'a [DVec3], level: usize) -> Self {
+        let mut sweep = Self {
+            hierarchy,
+            level,
+            vectors,
+            links: Links::new(hierarchy, level),
+            ahead: Vec::new(),
+            tolerance: TOLERANCE * hierarchy.levels()[level].spacing(),
+        };
+        sweep.ahead = columns::column(sweep.links.len(), |site| sweep.sum_ahead(site));
+        sweep
+    }
+
+    /// The distances of the coarsest level.
+    pub(super) fn solve(&self, components: &[u32], anchor: Option<SiteIdx>) -> Vec<f64> {
+        let mut distances = vec![0.0; self.links.len()];
+        let mut assigned = vec![false; self.links.len()];
+        let anchored = anchor.map(|site| (site.index(), components[site.index()]));
+        for (site, component) in lowest_sites(components) {
+            let site = anchored
+                .filter(|&(_, of_anchor)| of_anchor == component)
+                .map_or(site, |(anchor, _)| anchor);
+            assigned[site] = true;
+        }
+        self.fill(&mut assigned, &mut distances);
+        conjugate_gradients(self, &mut distances, STEPS_MAX);
+        distances
+    }
+
+    /// The distances of a finer level.
+    ///
+    /// Where the coarser level is in more pieces than this one, only the piece of the lowest site is inherited, as the
+    /// distances of the others have nothing in common with it.
+    pub(super) fn refine(&self, components: &[u32], coarser: &Distances) -> Vec<f64> {
+        let n_coarser = coarser.distances.len();
+        let pieces: Vec<Option<u32>> = lowest_sites(components)
+            .map(|(site, _)| coarser.components.get(site).copied())
+            .collect();
+        let inherits =
+            |site: usize| pieces[components[site] as usize] == Some(coarser.components[site]);
+        let inherited: Vec<Option<f64>> = columns::column(self.links.len(), |site| {
+            if site < n_coarser {
+                inherits(site).then(|| coarser.distances[site])
+            } else {
+                self.inherit(site, &coarser.distances, inherits)
+            }
+        });
+        let mut assigned: Vec<bool> = inherited.iter().map(Option::is_some).collect();
+        let mut distances: Vec<f64> = inherited
+            .into_iter()
+            .map(Option::unwrap_or_default)
+            .collect();
+        for (site, component) in lowest_sites(components) {
+            if pieces[component as usize].is_none() {
+                assigned[site] = true;
+            }
+        }
+        self.fill(&mut assigned, &mut distances);
+        for _ in 0..SWEEPS {
+            distances = columns::column(distances.len(), |site| self.sweep(site, &distances));
+        }
+        distances
+    }
+
+    /// The distance that the coarser sites around a site believe that it has.
+    fn inherit(
+        &self,
+        site: usize,
+        coarser: &[f64],
+        inherits: impl Fn(usize) -> bool,
+    ) -> Option<f64> {
+        let parents = Parents::new(self.hierarchy, self.level, SiteIdx(site as u32));
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (parent, weight) in parents.iter() {
+            if inherits(parent) {
+                sum += (coarser[parent] + self.step(site, parent)) * weight;
+                weights += weight;
+            }
+        }
+        (weights > 0.0).then(|| sum / weights)
+    }
+
+    /// Assigns the sites that are connected to assigned ones: equation 5, in which only assigned sites contribute.
+    fn fill(&self, assigned: &mut [bool], distances: &mut [f64]) {
+        self.links
+            .fill(assigned, distances, |site, assigned, distances| {
+                let (mut sum, mut weights) = (0.0, 0.0);
+                for (other, weight) in self
+                    .links
+                    .neighbors(site)
+                    .iter()
+                    .zip(self.links.weights(site))
+                {
+                    let other = other.index();
+                    if assigned[other] {
+                        sum += (distances[other] + self.step(site, other)) * weight;
+                        weights += weight;
+                    }
+                }
+                sum / weights
+            });
+    }
+
+    /// Equation 5.
+    #[inline]
+    fn sweep(&self, site: usize, distances: &[f64]) -> f64 {
+        let sum = self.links.sums()[site];
+        if sum == 0.0 {
+            return distances[site];
+        }
+        let average = (self.neighbors_sum(site, distances) + self.ahead[site]) / sum;
+        distances[site] * (1.0 - SWEEP_STRENGTH) + average * SWEEP_STRENGTH
+    }
+
+    /// The sum of the neighbors' distances with their weights.
+    #[inline]
+    fn neighbors_sum(&self, site: usize, distances: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for (other, weight) in self
+            .links
+            .neighbors(site)
+            .iter()
+            .zip(self.links.weights(site))
+        {
+            sum += distances[other.index()] * *weight;
+        }
+        sum
+    }
+
+    fn sum_ahead(&self, site: usize) -> f64 {
+        let mut sum = 0.0;
+        for (other, weight) in self
+            .links
+            .neighbors(site)
+            .iter()
+            .zip(self.links.weights(site))
+        {
+            sum += self.step(site, other.index()) * *weight;
+        }
+        sum
+    }
+
+    /// The paper's Δ: how much further along the field a site is than another one. 0 where their orientations cancel.
+    #[inline]
+    fn step(&self, site: usize, other: usize) -> f64 {
+        let (positions, normals) = (
+            self.hierarchy.sites().positions(),
+            self.hierarchy.sites().normals(),
+        );
+        step(
+            positions[site] - positions[other],
+            self.vectors[site] + self.vectors[other],
+            normals[site] + normals[other],
+        )
+    }
+}
+
+/// The part of `way` along the direction of `sum` in the plane across `normal`; 0 where that direction has no length.
+#[inline]
+pub(super) fn step(way: DVec3, sum: DVec3, normal: DVec3) -> f64 {
+    let up = normal.length_squared();
+    let consensus = if up > 0.0 {
+        sum - normal * (sum.dot(normal) / up)
+    } else {
+        sum
+    };
+    let length = consensus.length();
+    if length > 1e-9 {
+        way.dot(consensus) / length
+    } else {
+        0.0
+    }
+}
+
+/// The lowest site of every component, in the order of the components.
+fn lowest_sites(components: &[u32]) -> impl Iterator<Item = (usize, u32)> {
+    let mut next = 0;
+    components
+        .iter()
+        .copied()
+        .enumerate()
+        .filter(move |&(_, component)| {
+            let is_first = component == next;
+            next += u32::from(is_first);
+            is_first
+        })
+}
+
+impl System<f64> for LevelSweep<'_> {
+    #[inline]
+    fn row(&self, column: &[f64], row: usize) -> f64 {
+        column[row] * self.links.sums()[row] - self.neighbors_sum(row, column)
+    }
+
+    fn right(&self, row: usize) -> f64 {
+        self.ahead[row]
+    }
+
+    fn diagonal(&self, row: usize) -> f64 {
+        self.links.sums()[row]
+    }
+
+    fn is_near(&self, _value: f64, change: f64) -> bool {
+        change.abs() <= self.tolerance
+    }
+}
