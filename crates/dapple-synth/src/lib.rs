@@ -15,8 +15,6 @@ mod groups;
 mod likeness;
 mod columns;
 mod directions;
-mod error;
-mod exemplar;
 mod links;
 mod matcher;
 mod mesh_ground;

@@ -8,7 +8,6 @@ mod interpolate;
 mod lattice;
 mod nearby;
 
-use crate::cells::Cells;
 use crate::ground::{Ground, Samples, Square};
 use crate::groups::Groups;
 use crate::{Orientation, Sweep};

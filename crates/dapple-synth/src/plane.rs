@@ -153,6 +153,8 @@ impl PlaneGround {
 }
 
 impl Ground for PlaneGround {
+    /// How far squares on the level itself reach.
+    type Prepared = i32;
     type Memory = ();
 
     fn n_sites(&self, level: usize) -> usize {
@@ -174,7 +176,11 @@ impl Ground for PlaneGround {
         order
     }
 
-    fn groups(&self, level: usize, half: i32) -> Groups {
+    fn prepare(&self, _: usize, same: Option<i32>, _: Option<i32>) -> i32 {
+        same.unwrap_or(0)
+    }
+
+    fn groups(&self, level: usize, &half: &i32) -> Groups {
         let order = self.order(level);
         let size = self.sizes[level];
         // One more than the group of a site; 0 for those that come later.
@@ -200,11 +206,12 @@ impl Ground for PlaneGround {
     fn read(
         &self,
         square: Square,
+        _: &i32,
         column: &[f32],
-        n_channels: usize,
         samples: &mut Samples,
         (): &mut (),
     ) {
+        let n_channels = samples.values.len() / samples.nearest.len().max(1);
         let reads = if square.reads == square.level {
             Reads::Same
         } else {

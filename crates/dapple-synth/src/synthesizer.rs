@@ -46,7 +46,7 @@ impl Synthesizer {
         sites: &HierarchyOptions,
     ) -> Result<Self, SynthError> {
         let hierarchy = Hierarchy::new(&surface, sites)?;
-        let orientation = Orientation::new(&surface, &hierarchy, directions)?;
+        let orientation = Orientation::new(&hierarchy, directions)?;
         Self::from_parts(surface, hierarchy, orientation, None)
     }
 

@@ -53,7 +53,7 @@ impl Case {
             ..HierarchyOptions::default()
         };
         let hierarchy = Hierarchy::new(&surface, &options).unwrap();
-        let orientation = Orientation::new(&surface, &hierarchy, &[]).unwrap();
+        let orientation = Orientation::new(&hierarchy, &[]).unwrap();
         let sweep = Sweep::new(&hierarchy, &orientation, None).unwrap();
         Self {
             surface,
