@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod adjacency;
+mod bvh;
 mod error;
 mod graph;
 mod grid;
@@ -17,6 +18,7 @@ mod surface;
 mod walk;
 
 pub use adjacency::{Adjacency, FaceEdge};
+pub use bvh::{Bvh, NearestPoint, Ray, RayHit};
 pub use error::{MeshError, MeshErrorKind};
 pub use glam;
 pub use graph::SiteGraph;
