@@ -5,6 +5,7 @@
 mod adjacency;
 mod cell;
 mod connect;
+mod bvh;
 mod error;
 mod graph;
 mod grid;
@@ -24,6 +25,7 @@ mod walk;
 
 pub use adjacency::{Adjacency, FaceEdge};
 pub use connect::Connected;
+pub use bvh::{Bvh, NearestPoint, Ray, RayHit};
 pub use error::{MeshError, MeshErrorKind};
 pub use glam;
 pub use graph::SiteGraph;
