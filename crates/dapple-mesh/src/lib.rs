@@ -14,6 +14,9 @@ mod repair;
 mod report;
 mod sites;
 mod surface;
+#[cfg(test)]
+mod test_meshes;
+mod triangle;
 mod walk;
 
 pub use adjacency::{Adjacency, FaceEdge};
