@@ -21,6 +21,8 @@ mod star;
 mod surface;
 #[cfg(test)]
 mod testing;
+mod test_meshes;
+mod triangle;
 mod walk;
 
 pub use adjacency::{Adjacency, FaceEdge};
