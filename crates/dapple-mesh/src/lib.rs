@@ -22,6 +22,7 @@ mod scatter;
 mod share;
 mod sites;
 mod surface;
+mod unstick;
 mod walk;
 
 pub use adjacency::{Adjacency, FaceEdge};
