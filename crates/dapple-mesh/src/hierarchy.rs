@@ -1,6 +1,6 @@
 //! Nested sets of even points on a surface, connected on every level: the paper's mesh hierarchy.
 
-use crate::star::Oriented;
+use crate::oriented::Oriented;
 use crate::{
     Connected, MeshError, MeshErrorKind, SiteGraph, SiteGrid, Sites, Surface, hexagonal_spacing,
     nested_points,
@@ -158,47 +158,5 @@ impl Level {
     #[must_use]
     pub fn grid(&self) -> &SiteGrid {
         &self.grid
-    }
-}
-
-/// A value that can be mixed with weights: what the operations on a hierarchy work on.
-pub trait Blend: Copy {
-    /// Nothing.
-    const ZERO: Self;
-
-    /// This and a part of another one.
-    #[must_use]
-    fn add_scaled(self, other: Self, weight: f64) -> Self;
-}
-
-impl Blend for f64 {
-    const ZERO: Self = 0.0;
-
-    fn add_scaled(self, other: Self, weight: f64) -> Self {
-        self + other * weight
-    }
-}
-
-impl Blend for f32 {
-    const ZERO: Self = 0.0;
-
-    fn add_scaled(self, other: Self, weight: f64) -> Self {
-        self + other * weight as Self
-    }
-}
-
-impl Blend for DVec3 {
-    const ZERO: Self = Self::ZERO;
-
-    fn add_scaled(self, other: Self, weight: f64) -> Self {
-        self + other * weight
-    }
-}
-
-impl<const N: usize> Blend for [f32; N] {
-    const ZERO: Self = [0.0; N];
-
-    fn add_scaled(self, other: Self, weight: f64) -> Self {
-        core::array::from_fn(|part| self[part] + other[part] * weight as f32)
     }
 }

@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod adjacency;
+mod blend;
 mod cell;
 mod connect;
 mod bvh;
@@ -13,10 +14,13 @@ mod graph;
 mod grid;
 mod hierarchy;
 mod idx;
+mod interpolation;
+mod low_pass;
 mod mesh;
 mod near;
 mod nested;
 mod operations;
+mod oriented;
 mod parallel;
 mod repair;
 mod repel;
@@ -31,9 +35,12 @@ mod testing;
 mod test_meshes;
 mod triangle;
 mod unstick;
+#[cfg(test)]
+mod timing;
 mod walk;
 
 pub use adjacency::{Adjacency, FaceEdge};
+pub use blend::Blend;
 pub use connect::Connected;
 pub use bvh::{Bvh, NearestPoint, Ray, RayHit};
 pub use error::{MeshError, MeshErrorKind};
@@ -41,11 +48,14 @@ pub use evenness::{Evenness, evenness, hexagonal_spacing};
 pub use glam;
 pub use graph::SiteGraph;
 pub use grid::SiteGrid;
-pub use hierarchy::{Blend, Hierarchy, HierarchyOptions, Level};
+pub use hierarchy::{Hierarchy, HierarchyOptions, Level};
 pub use idx::{FaceIdx, SiteIdx, VertexIdx};
+pub use interpolation::INTERPOLATION_RADIUS;
+pub use low_pass::LowPass;
 pub use mesh::Mesh;
 pub use nested::nested_points;
 pub use operations::INTERPOLATION_RADIUS;
+pub use operations::{DOWNSAMPLE_STEPS, DOWNSAMPLE_T};
 pub use repair::Repair;
 pub use repel::repel;
 pub use report::MeshReport;
