@@ -10,28 +10,76 @@ pub struct SiteGraph {
 }
 
 impl SiteGraph {
-    /// The graph with these edges, in any order and either direction, once or twice; an edge from a site to itself is left
-    /// out.
+    /// The graph with these edges, in any order and either direction, once or more often.
+    ///
+    /// An edge from a site to itself, or with a site that there is not, is left out.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_mesh::{SiteGraph, SiteIdx};
+    ///
+    /// let path = SiteGraph::from_edges(3, [[SiteIdx(2), SiteIdx(1)], [SiteIdx(0), SiteIdx(1)]]);
+    /// assert_eq!(path.neighbors(SiteIdx(1)), [SiteIdx(0), SiteIdx(2)]);
+    /// ```
     #[must_use]
     pub fn from_edges(n_sites: usize, edges: impl IntoIterator<Item = [SiteIdx; 2]>) -> Self {
-        let mut directed: Vec<[SiteIdx; 2]> = edges
-            .into_iter()
-            .filter(|[a, b]| a != b)
-            .flat_map(|[a, b]| [[a, b], [b, a]])
-            .collect();
-        directed.sort_unstable();
-        directed.dedup();
-        let mut offsets = vec![0_u32; n_sites + 1];
-        for [from, _] in &directed {
-            offsets[from.index() + 1] += 1;
+        let is_edge = |&[a, b]: &[SiteIdx; 2]| a != b && a.index().max(b.index()) < n_sites;
+        let edges: Vec<[SiteIdx; 2]> = edges.into_iter().filter(is_edge).collect();
+        Self::from_ends(n_sites, edges.iter().copied()).0
+    }
+
+    /// The graph with these edges, and the number of those that are given once only.
+    ///
+    /// No edge is one from a site to itself, and the sites are below their number.
+    pub(crate) fn from_ends(
+        n_sites: usize,
+        edges: impl Iterator<Item = [SiteIdx; 2]> + Clone,
+    ) -> (Self, usize) {
+        // Where the row of each site begins; while they are filled, where its next neighbor goes.
+        let mut next = vec![0_u32; n_sites + 1];
+        for [a, b] in edges.clone() {
+            next[a.index() + 1] += 1;
+            next[b.index() + 1] += 1;
         }
         for site in 0..n_sites {
-            offsets[site + 1] += offsets[site];
+            next[site + 1] += next[site];
         }
-        Self {
-            offsets,
-            neighbors: directed.into_iter().map(|[_, to]| to).collect(),
+        let mut neighbors = vec![SiteIdx(0); next[n_sites] as usize];
+        for [a, b] in edges {
+            for [from, to] in [[a, b], [b, a]] {
+                neighbors[next[from.index()] as usize] = to;
+                next[from.index()] += 1;
+            }
         }
+        // Every row now ends where the next one began.
+        Self::from_rows(&next[..n_sites], neighbors)
+    }
+
+    /// Sorts rows, which have these ends, and keeps each neighbor once; counts the edges that were in a row once only.
+    fn from_rows(ends: &[u32], mut neighbors: Vec<SiteIdx>) -> (Self, usize) {
+        let mut offsets = Vec::with_capacity(ends.len() + 1);
+        offsets.push(0);
+        let (mut from, mut kept, mut singles) = (0, 0, 0);
+        for &end in ends {
+            let end = end as usize;
+            neighbors[from..end].sort_unstable();
+            while from < end {
+                let to = neighbors[from];
+                let first = from;
+                while from < end && neighbors[from] == to {
+                    from += 1;
+                }
+                singles += usize::from(from - first == 1);
+                neighbors[kept] = to;
+                kept += 1;
+            }
+            offsets.push(kept as u32);
+        }
+        neighbors.truncate(kept);
+        neighbors.shrink_to_fit();
+        // Each edge is in two rows.
+        (Self { offsets, neighbors }, singles / 2)
     }
 
     /// The number of sites.

@@ -1,6 +1,7 @@
 //! Nested sets of even points on a surface, connected on every level: the paper's mesh hierarchy.
 
-use crate::{MeshError, SiteGraph, SiteGrid, SiteIdx, Sites, Surface, SurfacePoint};
+use crate::star::Oriented;
+use crate::{Connected, MeshError, SiteGraph, SiteGrid, Sites, Surface, SurfacePoint};
 use dapple_hash::{Seed, unit_f64};
 use glam::DVec3;
 
@@ -37,7 +38,7 @@ pub struct Hierarchy {
 pub struct Level {
     n_sites: usize,
     spacing: f64,
-    graph: SiteGraph,
+    connected: Connected,
     grid: SiteGrid,
 }
 
@@ -79,18 +80,16 @@ impl Hierarchy {
                 let spacing = (2.0 * surface.area() / (3.0_f64.sqrt() * n_sites as f64)).sqrt();
                 let positions = &sites.positions()[..n_sites];
                 let grid = SiteGrid::new(positions, 2.0 * spacing);
-                let mut edges = Vec::new();
-                for (site, &position) in positions.iter().enumerate() {
-                    grid.visit(position, 1.6 * spacing, |other| {
-                        if position.distance(positions[other.index()]) < 1.6 * spacing {
-                            edges.push([SiteIdx(site as u32), other]);
-                        }
-                    });
-                }
+                let connected = Connected::among(&Oriented {
+                    positions,
+                    normals: &sites.normals()[..n_sites],
+                    grid: &grid,
+                    spacing,
+                });
                 Level {
                     n_sites,
                     spacing,
-                    graph: SiteGraph::from_edges(n_sites, edges),
+                    connected,
                     grid,
                 }
             })
@@ -127,7 +126,13 @@ impl Level {
     /// Which sites are connected.
     #[must_use]
     pub fn graph(&self) -> &SiteGraph {
-        &self.graph
+        &self.connected.graph
+    }
+
+    /// The number of edges that only one of their two sites asked for: the paper's disagreements.
+    #[must_use]
+    pub fn one_sided_edges(&self) -> usize {
+        self.connected.one_sided
     }
 
     /// Which sites are near a position.

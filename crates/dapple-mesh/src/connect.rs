@@ -1,0 +1,138 @@
+//! Connects sites: all stars, and the graph of what any of two sites takes for an edge.
+//!
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1: two sites
+//! that disagree whether they are connected are connected. So the graph is no triangulation.
+
+use crate::parallel::par_map;
+use crate::star::{Oriented, Spoke, StarFinder};
+use crate::{MeshError, MeshErrorKind, SiteGraph, SiteGrid, SiteIdx};
+use core::ops::Range;
+use glam::DVec3;
+
+/// The stars that one thread makes at a time.
+const CHUNK: usize = 1024;
+/// The side of the cells of the grid, in spacings: most stars then look into two cells along each axis.
+const GRID_SIDE: f64 = 1.6;
+
+/// Sites that are connected where either of the two has the other in its star.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Connected {
+    /// Which sites are connected.
+    pub graph: SiteGraph,
+    /// The number of edges that are in the star of only one of their sites.
+    pub one_sided: usize,
+}
+
+impl Connected {
+    /// Connects sites by the Delaunay triangulations in their tangent planes.
+    ///
+    /// `normals` are unit vectors; `spacing` is the distance of neighbors that is expected. Sites at the same place are not
+    /// connected to each other, but any of them may be to what is around.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshErrorKind::Count`] if there is not one normal for each position, [`MeshErrorKind::Range`] for a spacing that
+    /// is not above zero and finite.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_mesh::{Connected, SiteIdx, glam::DVec3};
+    ///
+    /// let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)];
+    /// let square = Connected::new(&corners, &[DVec3::Z; 4], 1.0)?;
+    /// // Either diagonal would do, so there is none.
+    /// assert_eq!(square.graph.neighbors(SiteIdx(0)), [SiteIdx(1), SiteIdx(2)]);
+    /// # Ok::<(), dapple_mesh::MeshError>(())
+    /// ```
+    pub fn new(positions: &[DVec3], normals: &[DVec3], spacing: f64) -> Result<Self, MeshError> {
+        MeshError::check(
+            spacing > 0.0 && spacing < f64::INFINITY,
+            "spacing",
+            spacing,
+            "above zero and finite",
+        )?;
+        if normals.len() != positions.len() {
+            return Err(MeshError::new(MeshErrorKind::Count {
+                what: "normals",
+                count: normals.len(),
+                needed: "one for each position",
+            }));
+        }
+        let grid = SiteGrid::new(positions, GRID_SIDE * spacing);
+        let grid = &grid;
+        Ok(Self::among(&Oriented {
+            positions,
+            normals,
+            grid,
+            spacing,
+        }))
+    }
+
+    /// As [`new`](Self::new), for columns and a grid that fit.
+    pub(crate) fn among(sites: &Oriented<'_>) -> Self {
+        Stars::new(sites).union()
+    }
+}
+
+/// The stars of all sites, in compressed rows.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stars {
+    offsets: Vec<u32>,
+    spokes: Vec<Spoke>,
+}
+
+impl Stars {
+    /// Finds the stars of all sites, on all cores where the feature `rayon` is on.
+    pub(crate) fn new(sites: &Oriented<'_>) -> Self {
+        let n_sites = sites.positions.len();
+        let mut stars = Self {
+            offsets: Vec::with_capacity(n_sites + 1),
+            spokes: Vec::with_capacity(6 * n_sites),
+        };
+        stars.offsets.push(0);
+        let part =
+            |index: usize| Self::of(sites, index * CHUNK..((index + 1) * CHUNK).min(n_sites));
+        for part in par_map(n_sites.div_ceil(CHUNK), part) {
+            let before = stars.spokes.len() as u32;
+            stars
+                .offsets
+                .extend(part.offsets.iter().map(|end| before + end));
+            stars.spokes.extend(part.spokes);
+        }
+        stars
+    }
+
+    /// The stars of some sites, with the end of each.
+    fn of(sites: &Oriented<'_>, range: Range<usize>) -> Self {
+        let mut finder = StarFinder::default();
+        let mut part = Self::default();
+        for site in range {
+            finder.find(sites, SiteIdx(site as u32), &mut part.spokes);
+            part.offsets.push(part.spokes.len() as u32);
+        }
+        part
+    }
+
+    /// The number of sites.
+    pub(crate) fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// The star of a site, counterclockwise.
+    #[inline]
+    pub(crate) fn star(&self, site: SiteIdx) -> &[Spoke] {
+        let [from, to] = [site.index(), site.index() + 1].map(|at| self.offsets[at] as usize);
+        &self.spokes[from..to]
+    }
+
+    /// The graph of the edges of all stars.
+    fn union(&self) -> Connected {
+        let edges = (0..self.len() as u32).flat_map(|site| {
+            let star = self.star(SiteIdx(site));
+            star.iter().map(move |spoke| [SiteIdx(site), spoke.to])
+        });
+        let (graph, one_sided) = SiteGraph::from_ends(self.len(), edges);
+        Connected { graph, one_sided }
+    }
+}
