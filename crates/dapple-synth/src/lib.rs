@@ -12,6 +12,8 @@ mod matcher;
 mod neighborhood;
 mod orientation;
 mod parents;
+#[cfg(test)]
+mod shapes;
 mod solve;
 mod sweep;
 

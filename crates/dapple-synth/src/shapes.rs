@@ -10,7 +10,10 @@ fn sheet([across, up]: [u32; 2], at: impl Fn(f64, f64) -> DVec3) -> (Vec<DVec3>,
     let mut faces = Vec::new();
     for j in 0..=up {
         for i in 0..=across {
-            positions.push(at(f64::from(i) / f64::from(across), f64::from(j) / f64::from(up)));
+            positions.push(at(
+                f64::from(i) / f64::from(across),
+                f64::from(j) / f64::from(up),
+            ));
             if i < across && j < up {
                 let corner = j * (across + 1) + i;
                 let above = corner + across + 1;
@@ -57,19 +60,26 @@ pub(crate) fn sphere() -> Mesh {
         (DVec3::X, DVec3::Z),
         (DVec3::Y, DVec3::X),
     ] {
-        let side = |u: f64, v: f64| right.cross(up) + right * (2.0 * u - 1.0) + up * (2.0 * v - 1.0);
+        let side =
+            |u: f64, v: f64| right.cross(up) + right * (2.0 * u - 1.0) + up * (2.0 * v - 1.0);
         let (points, side_faces) = sheet([n, n], side);
         let welded: Vec<u32> = points
             .iter()
             .map(|point| {
-                let found = positions.iter().position(|other| other.distance(*point) < 1e-9);
+                let found = positions
+                    .iter()
+                    .position(|other| other.distance(*point) < 1e-9);
                 found.unwrap_or_else(|| {
                     positions.push(*point);
                     positions.len() - 1
                 }) as u32
             })
             .collect();
-        faces.extend(side_faces.iter().map(|face| face.map(|corner| welded[corner as usize])));
+        faces.extend(
+            side_faces
+                .iter()
+                .map(|face| face.map(|corner| welded[corner as usize])),
+        );
     }
     let positions = positions.into_iter().map(DVec3::normalize).collect();
     Mesh::new(positions, &faces).unwrap()
@@ -83,20 +93,38 @@ pub(crate) fn tube() -> Mesh {
         DVec3::new(libm::cos(angle), libm::sin(angle), 4.0 * v)
     });
     // The last column is the first one again.
-    let weld = |vertex: u32| if vertex % (n + 1) == n { vertex - n } else { vertex };
+    let weld = |vertex: u32| {
+        if vertex % (n + 1) == n {
+            vertex - n
+        } else {
+            vertex
+        }
+    };
     let faces: Vec<[u32; 3]> = faces.iter().map(|face| face.map(weld)).collect();
     Mesh::new(positions, &faces).unwrap()
 }
 
 /// A mesh with its positions changed.
 pub(crate) fn moved(mesh: &Mesh, change: impl Fn(DVec3) -> DVec3) -> Mesh {
-    let positions = mesh.positions().iter().map(|&position| change(position)).collect();
-    let faces: Vec<[u32; 3]> = mesh.faces().iter().map(|face| face.map(|vertex| vertex.0)).collect();
+    let positions = mesh
+        .positions()
+        .iter()
+        .map(|&position| change(position))
+        .collect();
+    let faces: Vec<[u32; 3]> = mesh
+        .faces()
+        .iter()
+        .map(|face| face.map(|vertex| vertex.0))
+        .collect();
     Mesh::new(positions, &faces).unwrap()
 }
 
 /// A hierarchy on a mesh.
 pub(crate) fn sites_on(mesh: Mesh, n_sites: usize, n_levels: usize) -> Hierarchy {
-    let options = HierarchyOptions { n_sites, n_levels, seed: Seed(5) };
+    let options = HierarchyOptions {
+        n_sites,
+        n_levels,
+        seed: Seed(5),
+    };
     Hierarchy::new(&Surface::new(mesh).unwrap(), &options).unwrap()
 }

@@ -17,8 +17,14 @@ fn assert_tangent(hierarchy: &Hierarchy, orientation: &Orientation) {
     let normals = hierarchy.sites().normals();
     assert_eq!(orientation.vectors().len(), normals.len());
     for (site, (vector, normal)) in orientation.vectors().iter().zip(normals).enumerate() {
-        assert!((vector.length() - 1.0).abs() < ROUNDING, "{site}: {vector} is not a unit vector");
-        assert!(vector.dot(*normal).abs() < ROUNDING, "{site}: {vector} leaves the plane of {normal}");
+        assert!(
+            (vector.length() - 1.0).abs() < ROUNDING,
+            "{site}: {vector} is not a unit vector"
+        );
+        assert!(
+            vector.dot(*normal).abs() < ROUNDING,
+            "{site}: {vector} leaves the plane of {normal}"
+        );
     }
 }
 
@@ -26,7 +32,9 @@ fn assert_tangent(hierarchy: &Hierarchy, orientation: &Orientation) {
 fn nearest(hierarchy: &Hierarchy, at: DVec3) -> usize {
     let positions = hierarchy.sites().positions();
     let key = |&site: &usize| (positions[site].distance(at), site);
-    (0..positions.len()).min_by(|a, b| key(a).partial_cmp(&key(b)).unwrap()).unwrap()
+    (0..positions.len())
+        .min_by(|a, b| key(a).partial_cmp(&key(b)).unwrap())
+        .unwrap()
 }
 
 #[test]
@@ -41,18 +49,36 @@ fn orientation_is_constant_on_a_plane_with_one_direction() {
         let own = components[nearest(&hierarchy, direction.at)];
         for (site, vector) in orientation.vectors().iter().enumerate() {
             // Sites that nothing connects to the direction run along the axis.
-            let wanted = if components[site] == own { wanted } else { Orientation::AXIS };
-            assert!(vector.distance(wanted) < ROUNDING, "{n_levels} levels, site {site}: {vector}");
+            let wanted = if components[site] == own {
+                wanted
+            } else {
+                Orientation::AXIS
+            };
+            assert!(
+                vector.distance(wanted) < ROUNDING,
+                "{n_levels} levels, site {site}: {vector}"
+            );
         }
-        assert!(components.iter().filter(|&&component| component == own).count() > 1990, "a good graph");
+        assert!(
+            components
+                .iter()
+                .filter(|&&component| component == own)
+                .count()
+                > 1990,
+            "a good graph"
+        );
     }
 }
 
 #[test]
 fn orientation_turns_with_the_mesh_and_the_directions() {
     let turn = DQuat::from_axis_angle(DVec3::new(2.0, 3.0, 6.0) / 7.0, 0.7);
-    let directions = [toward(DVec3::X, DVec3::Y), toward(DVec3::NEG_Z, DVec3::new(1.0, 1.0, 0.0))];
-    let turned_directions = directions.map(|direction| toward(turn * direction.at, turn * direction.vector));
+    let directions = [
+        toward(DVec3::X, DVec3::Y),
+        toward(DVec3::NEG_Z, DVec3::new(1.0, 1.0, 0.0)),
+    ];
+    let turned_directions =
+        directions.map(|direction| toward(turn * direction.at, turn * direction.vector));
     let hierarchy = sites_on(sphere(), 1500, 3);
     let turned = sites_on(moved(&sphere(), |position| turn * position), 1500, 3);
     let plain = Orientation::new(&hierarchy, &directions).unwrap();
@@ -63,7 +89,10 @@ fn orientation_turns_with_the_mesh_and_the_directions() {
         let other = nearest(&turned, turn * hierarchy.sites().positions()[site]);
         (turn * plain.vectors()[site]).distance(field.vectors()[other]) < 0.1
     });
-    assert!(near.count() > 1470, "the turned field is not the field turned");
+    assert!(
+        near.count() > 1470,
+        "the turned field is not the field turned"
+    );
 }
 
 #[test]
@@ -81,7 +110,10 @@ fn orientation_follows_a_rotation_of_the_directions() {
     let components = components(hierarchy.levels()[0].graph());
     for (site, (a, b)) in plain.vectors().iter().zip(field.vectors()).enumerate() {
         // The same arithmetic but for the rounding of the turn, which the solver may amplify up to its tolerance.
-        assert!(components[site] != 0 || (turn * *a).distance(*b) < 1e-3, "site {site}: {a} became {b}");
+        assert!(
+            components[site] != 0 || (turn * *a).distance(*b) < 1e-3,
+            "site {site}: {a} became {b}"
+        );
     }
 }
 
@@ -99,8 +131,12 @@ fn orientation_goes_through_the_directions_at_their_sites() {
     let hierarchy = sites_on(sphere(), 4000, 4);
     let directions: Vec<Direction> = (0..12)
         .map(|i| {
-            let turn = DQuat::from_rotation_z(f64::from(i)) * DQuat::from_rotation_x(0.5 * f64::from(i));
-            toward(turn * DVec3::X, turn * DVec3::new(0.3, f64::from(i % 3) - 0.9, 1.0))
+            let turn =
+                DQuat::from_rotation_z(f64::from(i)) * DQuat::from_rotation_x(0.5 * f64::from(i));
+            toward(
+                turn * DVec3::X,
+                turn * DVec3::new(0.3, f64::from(i % 3) - 0.9, 1.0),
+            )
         })
         .collect();
     let orientation = Orientation::new(&hierarchy, &directions).unwrap();
@@ -109,8 +145,14 @@ fn orientation_goes_through_the_directions_at_their_sites() {
         let site = nearest(&hierarchy, direction.at);
         let wanted = tangent(direction.vector, hierarchy.sites().normals()[site]).unwrap();
         let found = orientation.vectors()[site];
-        assert!(found.distance(wanted) < ROUNDING, "{found} instead of {wanted}");
-        for other in hierarchy.levels()[0].graph().neighbors(SiteIdx(site as u32)) {
+        assert!(
+            found.distance(wanted) < ROUNDING,
+            "{found} instead of {wanted}"
+        );
+        for other in hierarchy.levels()[0]
+            .graph()
+            .neighbors(SiteIdx(site as u32))
+        {
             let turn = orientation.vectors()[other.index()].dot(wanted);
             assert!(turn > 0.9, "the field jumps beside a direction: {turn}");
         }
@@ -121,7 +163,11 @@ fn orientation_goes_through_the_directions_at_their_sites() {
 fn orientation_solves_the_averages_on_one_level() {
     // Oracle: repeating equation 4 with projection until it settles, as the paper does.
     let hierarchy = sites_on(sphere(), 120, 1);
-    let directions = [toward(DVec3::X, DVec3::Y), toward(DVec3::Z, DVec3::X), toward(DVec3::NEG_Y, DVec3::X)];
+    let directions = [
+        toward(DVec3::X, DVec3::Y),
+        toward(DVec3::Z, DVec3::X),
+        toward(DVec3::NEG_Y, DVec3::X),
+    ];
     let orientation = Orientation::new(&hierarchy, &directions).unwrap();
     let links = Links::new(&hierarchy, 0);
     let normals = hierarchy.sites().normals();
@@ -136,13 +182,18 @@ fn orientation_solves_the_averages_on_one_level() {
         let before = vectors.clone();
         for site in (0..links.len()).filter(|&site| !fixed[site] && links.sums()[site] > 0.0) {
             let parts = links.neighbors(site).iter().zip(links.weights(site));
-            let sum: DVec3 = parts.map(|(other, weight)| before[other.index()] * *weight).sum();
+            let sum: DVec3 = parts
+                .map(|(other, weight)| before[other.index()] * *weight)
+                .sum();
             vectors[site] = flat_part(sum / links.sums()[site], normals[site]);
         }
     }
     for (site, (found, wanted)) in orientation.vectors().iter().zip(vectors).enumerate() {
         // The solver's tolerance of 1e-5, amplified by some hundred steps across the surface.
-        assert!(wanted == DVec3::ZERO || found.distance(wanted.normalize()) < 1e-3, "site {site}: {found} {wanted}");
+        assert!(
+            wanted == DVec3::ZERO || found.distance(wanted.normalize()) < 1e-3,
+            "site {site}: {found} {wanted}"
+        );
     }
 }
 
@@ -185,15 +236,23 @@ fn contradictory_directions_give_unit_tangents() {
 fn components_without_a_direction_run_along_the_axis() {
     let hierarchy = sites_on(two_squares(), 1000, 3);
     let directions = [toward(DVec3::new(0.5, 0.5, 0.0), DVec3::X)];
-    let orientation = Orientation::with_axis(&hierarchy, &directions, DVec3::new(-3.0, 0.0, 1.0)).unwrap();
+    let orientation =
+        Orientation::with_axis(&hierarchy, &directions, DVec3::new(-3.0, 0.0, 1.0)).unwrap();
     let mut n_above = 0;
-    for (vector, at) in orientation.vectors().iter().zip(hierarchy.sites().positions()) {
+    for (vector, at) in orientation
+        .vectors()
+        .iter()
+        .zip(hierarchy.sites().positions())
+    {
         if at.z > 1.0 {
             n_above += 1;
             assert!(vector.distance(DVec3::NEG_X) < ROUNDING, "{vector}");
         }
     }
-    assert!(n_above > 100, "the upper square has a fifth of the sites: {n_above}");
+    assert!(
+        n_above > 100,
+        "the upper square has a fifth of the sites: {n_above}"
+    );
 }
 
 #[test]
@@ -202,17 +261,30 @@ fn axis_that_is_normal_to_the_surface_gives_way_to_another() {
     let orientation = Orientation::with_axis(&hierarchy, &[], DVec3::Z).unwrap();
     assert_tangent(&hierarchy, &orientation);
     let first = orientation.vectors()[0];
-    assert!(orientation.vectors().iter().all(|&vector| vector == first), "one direction for all");
+    assert!(
+        orientation.vectors().iter().all(|&vector| vector == first),
+        "one direction for all"
+    );
 }
 
 #[test]
 fn orientation_of_a_function_is_projected() {
     let hierarchy = sites_on(tube(), 600, 2);
     let orientation = Orientation::from_fn(&hierarchy, |at, normal| {
-        if at.z < 1.0 { DVec3::NAN } else if at.z < 2.0 { normal } else { DVec3::new(0.0, 0.0, 1e-200) }
+        if at.z < 1.0 {
+            DVec3::NAN
+        } else if at.z < 2.0 {
+            normal
+        } else {
+            DVec3::new(0.0, 0.0, 1e-200)
+        }
     });
     assert_tangent(&hierarchy, &orientation);
-    for (vector, at) in orientation.vectors().iter().zip(hierarchy.sites().positions()) {
+    for (vector, at) in orientation
+        .vectors()
+        .iter()
+        .zip(hierarchy.sites().positions())
+    {
         assert!(at.z < 2.0 || vector.z > 0.99, "{vector} at {at}");
     }
 }
@@ -230,11 +302,18 @@ fn orientation_refuses_directions_without_a_tangent() {
         toward(DVec3::new(0.0, f64::NAN, 0.0), DVec3::X),
     ] {
         let error = Orientation::new(&hierarchy, &[good, bad]).unwrap_err();
-        assert_eq!(error.kind(), &SynthErrorKind::Direction { direction: 1 }, "{bad:?}");
+        assert_eq!(
+            error.kind(),
+            &SynthErrorKind::Direction { direction: 1 },
+            "{bad:?}"
+        );
     }
     for axis in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY] {
         let error = Orientation::with_axis(&hierarchy, &[], axis).unwrap_err();
-        assert!(matches!(error.kind(), SynthErrorKind::Range { .. }), "{axis}: {error}");
+        assert!(
+            matches!(error.kind(), SynthErrorKind::Range { .. }),
+            "{axis}: {error}"
+        );
     }
 }
 
@@ -257,7 +336,10 @@ fn orientation_has_the_same_bits_on_any_number_of_threads() {
     let hierarchy = sites_on(sphere(), 6000, 3);
     let directions = [toward(DVec3::X, DVec3::Y), toward(DVec3::Z, DVec3::X)];
     let on = |n_threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(n_threads)
+            .build()
+            .unwrap();
         pool.install(|| Orientation::new(&hierarchy, &directions).unwrap())
     };
     assert_eq!(on(1), on(2), "two threads");
