@@ -24,6 +24,8 @@ mod orientation;
 mod plane;
 mod surface_texture;
 mod parents;
+#[cfg(test)]
+mod shapes;
 mod solve;
 mod sweep;
 mod synthesizer;

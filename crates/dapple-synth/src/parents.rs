@@ -30,12 +30,16 @@ impl Parents {
             weights: [0.0; MOST],
             count: 0,
         };
+        // Neighbors come lowest first, so the coarser ones come before all others.
         for &near in graph.neighbors(site) {
             if near.0 < n_coarser {
                 parents.add(near);
             }
             for &far in graph.neighbors(near) {
-                if far.0 < n_coarser && far != site {
+                if far.0 >= n_coarser {
+                    break;
+                }
+                if far != site {
                     parents.add(far);
                 }
             }
