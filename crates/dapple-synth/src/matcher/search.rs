@@ -79,52 +79,70 @@ impl<S: Simd> Search<'_, S> {
         }
     }
 
+    /// Looks at the leaves of a group whose boxes are near: first at the nearest one, which brings the threshold down.
     #[inline(always)]
     fn visit_group(&mut self, group: usize) {
         let first = group * LANES;
         let n = (self.tree.heads.len() - first).min(LANES);
         let sums = self.box_sums(&self.tree.leaves[group]);
-        let mut near = sums.simd_le(self.threshold).to_bitmask() & ((1 << n) - 1);
-        let sums: [f32; LANES] = sums.into();
-        if near == 0 { return; }
-        // nearest first
-        let mut nearest = 0;
-        for lane in 1..n { if sums[lane] < sums[nearest] { nearest = lane; } }
-        self.visit_leaf(first + nearest);
-        near &= !(1 << nearest);
-        while near != 0 {
-            let lane = near.trailing_zeros() as usize;
-            near &= near - 1;
-            if sums[lane] <= self.threshold {
-                self.visit_leaf(first + lane);
-            }
+        let mut all = (1_u64 << n) - 1;
+        if self.threshold == f32::INFINITY {
+            let (nearest, _) = least(sums.into());
+            all &= !(1 << nearest);
+            self.visit_leaves(first, 1 << nearest);
         }
+        let near = sums.simd_le(self.threshold).to_bitmask() & all;
+        self.visit_leaves(first, near);
     }
 
+    /// Compares the rows of leaves that may be near: those of the 16 from `first` on that have a bit in `near`.
+    ///
+    /// All of them take the next step before one takes the step after it, and who stays is found without a branch: whether
+    /// a leaf stays cannot be predicted.
     #[inline(always)]
-    fn visit_leaf(&mut self, leaf: usize) {
-        let mut near = self.near_rows(leaf);
-        while near != 0 {
-            let lane = near.trailing_zeros() as usize;
-            near &= near - 1;
-            self.compare(self.tree.rows[leaf][lane]);
-        }
-    }
-
-    #[inline(always)]
-    fn near_rows(&self, leaf: usize) -> u64 {
-        let n_tail = self.rotated.len() - BOX_DIRECTIONS;
-        let tail = &self.tree.tails[leaf * n_tail..][..n_tail];
+    fn visit_leaves(&mut self, first: usize, mut near: u64) {
+        let simd = self.simd;
         let (head_z, tail_z) = self.rotated.split_at(BOX_DIRECTIONS);
-        let zero = f32x16::splat(self.simd, 0.0);
-        let mut sum = self.add_squares(zero, head_z, &self.tree.heads[leaf]);
-        for (z, values) in tail_z.chunks_exact(STEP).zip(tail.chunks_exact(STEP)) {
-            if !sum.simd_le(self.threshold).any_true() {
-                return 0;
-            }
-            sum = self.add_squares(sum, z, values);
+        let mut leaves = [0_usize; LANES];
+        let mut sums = [[0.0_f32; LANES]; LANES];
+        let mut n = 0;
+        while near != 0 {
+            let leaf = first + near.trailing_zeros() as usize;
+            near &= near - 1;
+            let sum = self.add_squares(f32x16::splat(simd, 0.0), head_z, &self.tree.heads[leaf]);
+            leaves[n] = leaf;
+            sums[n] = sum.into();
+            n += usize::from(sum.simd_le(self.threshold).any_true());
         }
-        sum.simd_le(self.threshold).to_bitmask()
+        for (step, z) in tail_z.chunks_exact(STEP).enumerate() {
+            if n == 0 {
+                return;
+            }
+            let mut kept = 0;
+            for i in 0..n {
+                let leaf = leaves[i];
+                let tail = &self.tree.tails[leaf * tail_z.len() + step * STEP..][..STEP];
+                let sum = self.add_squares(f32x16::simd_from(simd, sums[i]), z, tail);
+                leaves[kept] = leaf;
+                sums[kept] = sum.into();
+                kept += usize::from(sum.simd_le(self.threshold).any_true());
+            }
+            n = kept;
+        }
+        for i in 0..n {
+            self.compare_rows(leaves[i], sums[i]);
+        }
+    }
+
+    /// Compares the rows of a leaf whose sums are near, the nearest first.
+    #[inline(always)]
+    fn compare_rows(&mut self, leaf: usize, mut sums: [f32; LANES]) {
+        loop {
+            let (lane, sum) = least(sums);
+            if sum > self.threshold || sum == f32::INFINITY { return; }
+            self.compare(self.tree.rows[leaf][lane]);
+            sums[lane] = f32::INFINITY;
+        }
     }
 
     #[inline(always)]
@@ -160,4 +178,12 @@ impl<S: Simd> Search<'_, S> {
             self.threshold = self.margin.threshold(distance_sq, self.rotation_error);
         }
     }
+}
+
+/// The least number and its place.
+#[inline(always)]
+fn least(values: [f32; LANES]) -> (usize, f32) {
+    let mut best = (0, values[0]);
+    for (lane, &value) in values.iter().enumerate() { if value < best.1 { best = (lane, value); } }
+    best
 }
