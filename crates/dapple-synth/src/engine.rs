@@ -41,12 +41,13 @@ pub(crate) fn run<G: Ground>(
 ) -> Result<Vec<LevelTexture>, SynthError> {
     let passes = options.passes()?.passes;
     let mut levels = vec![LevelTexture::default(); pyramid.levels().len()];
-    if let Some(first) = passes.first() {
-        fill_randomly(ground, pyramid, first.level, options.seed, &mut levels);
-    }
     let mut kept = Kept::default();
     let n_passes = passes.len();
     for (index, pass) in passes.iter().enumerate() {
+        let reads_itself = pass.parts.iter().any(|part| part.reads == Reads::Same);
+        if reads_itself && levels[pass.level].colors.is_empty() {
+            fill_randomly(ground, pyramid, pass.level, options.seed, &mut levels);
+        }
         let keep = side_to_keep(pass, passes.get(index + 1));
         let visit = Visit::new(ground, pyramid, pass, options)?;
         let mut tell = |done| {
@@ -76,7 +77,7 @@ fn fill_randomly<G: Ground>(
 ) {
     let exemplar = &pyramid.levels()[level];
     let n_pixels = u64::from(exemplar.size[0]) * u64::from(exemplar.size[1]);
-    let seed = seed.child("first colors", 0);
+    let seed = seed.child("first colors", level as u64);
     let texture = &mut levels[level];
     for site in 0..ground.n_sites(level) as i64 {
         // The upper 32 bits of a product with a number below 2^32 are spread evenly over that number.

@@ -51,7 +51,7 @@ impl Options {
     ///
     /// # Errors
     ///
-    /// Typed errors for no level, more than 16, and a coherence that is below zero or not finite.
+    /// Typed errors for no level, more than 16, a coherence that is below zero or not finite, and as [`Schedule::check`].
     pub(crate) fn passes(&self) -> Result<Schedule, SynthError> {
         if !(1..=16).contains(&self.n_levels) {
             return Err(SynthError::new(SynthErrorKind::Count {
@@ -66,9 +66,9 @@ impl Options {
             self.coherence.into(),
             "finite and at least 0",
         )?;
-        Ok(self
-            .schedule
-            .clone()
-            .unwrap_or_else(|| Schedule::paper(self.n_levels)))
+        let schedule = self.schedule.clone();
+        let schedule = schedule.unwrap_or_else(|| Schedule::paper(self.n_levels));
+        schedule.check(self.n_levels)?;
+        Ok(schedule)
     }
 }

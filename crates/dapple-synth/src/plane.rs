@@ -21,6 +21,9 @@ use crate::{CoarserCenter, Edges, Exemplar, Options, SynthError};
 use core::ops::ControlFlow;
 use dapple_raster::{Raster, Wrap};
 
+/// The most pixels of a texture: one takes about 200 bytes on the way.
+const MAX_PIXELS: u64 = 1 << 26;
+
 /// How many columns a slanted line goes to the left per row: one more than half of a neighborhood of side 7 reaches.
 const SLANT: u32 = 4;
 
@@ -31,14 +34,14 @@ pub struct PlaneTexture {
     exemplar_size: [u32; 2],
 }
 
-/// Makes a texture of `size` pixels that looks like an exemplar.
+/// Makes a texture of `size` pixels, at most 2^26 of them, that looks like an exemplar.
 ///
 /// `edges` says for columns and rows whether the texture is to wrap: [`Edges::Wrap`] makes a tile.
 ///
 /// # Errors
 ///
-/// Typed errors for an exemplar that is too small, for options out of their ranges, for a size that a raster cannot have,
-/// and for a wrapping side that cannot be halved once per level but the last.
+/// Typed errors for an exemplar that is too small, for options out of their ranges, for no pixels and too many, and for a
+/// wrapping side that cannot be halved once per level but the last.
 ///
 /// # Examples
 ///
@@ -125,8 +128,9 @@ struct PlaneGround {
 
 impl PlaneGround {
     fn new(size: [u32; 2], edges: [Edges; 2], options: &Options) -> Result<Self, SynthError> {
-        // A raster's own limits, without its memory.
-        Raster::filled(size, ())?;
+        let n_pixels = u64::from(size[0]) * u64::from(size[1]);
+        let holds = (1..=MAX_PIXELS).contains(&n_pixels);
+        SynthError::check(holds, "number of pixels", n_pixels as f64, "from 1 to 2^26")?;
         let halvings = options.n_levels.saturating_sub(1).min(31) as u32;
         for (side, edges) in size.into_iter().zip(edges) {
             let holds = edges == Edges::Cut || side % (1 << halvings) == 0;
@@ -203,14 +207,7 @@ impl Ground for PlaneGround {
         Groups::by_number(&order, &group_of)
     }
 
-    fn read(
-        &self,
-        square: Square,
-        _: &i32,
-        column: &[f32],
-        samples: &mut Samples,
-        (): &mut (),
-    ) {
+    fn read(&self, square: Square, _: &i32, column: &[f32], samples: &mut Samples, (): &mut ()) {
         let n_channels = samples.values.len() / samples.nearest.len().max(1);
         let reads = if square.reads == square.level {
             Reads::Same

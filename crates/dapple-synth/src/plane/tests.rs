@@ -1,1 +1,502 @@
+use super::{MAX_PIXELS, PlaneGround, SLANT, synthesize_plane, synthesize_plane_with};
+use crate::ground::Ground;
+use crate::{
+    Candidates, CoarserCenter, Edges, Exemplar, Likeness, Options, Part, Pass, Pyramid, Reads,
+    Schedule, Shape, SynthErrorKind, distance_sq,
+};
+use core::ops::ControlFlow;
+use dapple_hash::{Seed, hash1, hash2, unit_f32};
+use dapple_raster::{Raster, Wrap};
+use proptest::prelude::*;
 
+/// Soft noise of two channels that wraps.
+fn exemplar(size: [u32; 2], edges: Edges) -> Exemplar {
+    let noise = |x: u32, y: u32, channel: u64| {
+        let cell = [x % size[0] / 3, y % size[1] / 2].map(i64::from);
+        unit_f32((hash2(Seed(channel), cell, 0) >> 32) as u32)
+    };
+    let planes = [0, 1].map(|channel| Raster::from_fn(size, |x, y| noise(x, y, channel)).unwrap());
+    Exemplar::from_planes(&[(&planes[0], 1.0), (&planes[1], 0.5)], edges).unwrap()
+}
+
+fn paper(n_levels: usize, center: CoarserCenter) -> Options {
+    Options {
+        n_levels,
+        center,
+        ..Options::paper()
+    }
+}
+
+/// The colors and sources of a level in the oracle.
+struct NaiveLevel {
+    size: [u32; 2],
+    wrap: [Wrap; 2],
+    colors: Vec<Vec<f32>>,
+    sources: Vec<u32>,
+}
+
+impl NaiveLevel {
+    /// The color at a place in half pixels: the mean of two or four pixels between them.
+    fn color(&self, halves: [i64; 2], channel: usize) -> f32 {
+        let at = |step: [i64; 2]| {
+            let [x, y] = [0, 1].map(|axis| {
+                let place = (halves[axis] + step[axis]).div_euclid(2);
+                self.wrap[axis].index(place, self.size[axis])
+            });
+            self.colors[(y * self.size[0] + x) as usize][channel]
+        };
+        let sum = (at([0, 0]) + at([1, 0])) + (at([0, 1]) + at([1, 1]));
+        0.25 * sum
+    }
+}
+
+/// The pseudo-code of the paper for any schedule: every site compares with all candidates, in the order of the sweep.
+fn naive(exemplar: &Exemplar, size: [u32; 2], edges: [Edges; 2], options: &Options) -> Vec<u32> {
+    let pyramid = exemplar.pyramid(options.n_levels).unwrap();
+    let wrap = edges.map(|edges| {
+        if edges == Edges::Wrap {
+            Wrap::Repeat
+        } else {
+            Wrap::Mirror
+        }
+    });
+    let mut levels: Vec<NaiveLevel> = (0..options.n_levels)
+        .map(|level| {
+            let size = size.map(|side| side.div_ceil(1 << level));
+            let n_sites = i64::from(size[0] * size[1]);
+            let read = &pyramid.levels()[level];
+            let n_pixels = u64::from(read.size()[0] * read.size()[1]);
+            let seed = options.seed.child("first colors", level as u64);
+            let random = |site| (((hash1(seed, [site], 0) >> 32) * n_pixels) >> 32) as u32;
+            let sources: Vec<u32> = (0..n_sites).map(random).collect();
+            let colors = sources.iter().map(|&pixel| color_of(read, pixel)).collect();
+            NaiveLevel {
+                size,
+                wrap,
+                colors,
+                sources,
+            }
+        })
+        .collect();
+    let schedule = options
+        .schedule
+        .clone()
+        .unwrap_or_else(|| Schedule::paper(options.n_levels));
+    for pass in &schedule.passes {
+        visit(&pyramid, pass, options, &mut levels);
+    }
+    levels.swap_remove(0).sources
+}
+
+fn color_of(exemplar: &Exemplar, pixel: u32) -> Vec<f32> {
+    exemplar.pixels()[pixel as usize * 2..][..2].to_vec()
+}
+
+fn visit(pyramid: &Pyramid, pass: &Pass, options: &Options, levels: &mut [NaiveLevel]) {
+    let candidates = Candidates::new(pyramid, pass, options.center).unwrap();
+    let level = pass.level;
+    let [width, height] = levels[level].size;
+    let mut places: Vec<[u32; 2]> = (0..height)
+        .flat_map(|y| (0..width).map(move |x| [x, y]))
+        .collect();
+    if levels[level].wrap[0] == Wrap::Repeat && level + 1 < levels.len() {
+        places.sort_by_key(|[x, y]| x + SLANT * y);
+    }
+    for [x, y] in places {
+        let mut query = Vec::new();
+        for part in &pass.parts {
+            let read = &levels[level + usize::from(part.reads == Reads::Coarser)];
+            let middle = [x, y].map(|at| match (part.reads, options.center) {
+                (Reads::Same, _) => 2 * i64::from(at),
+                (Reads::Coarser, CoarserCenter::Exact) => i64::from(at),
+                (Reads::Coarser, CoarserCenter::Floor) => i64::from(at / 2) * 2,
+            });
+            for [i, j] in part.offsets() {
+                let place = [middle[0] + 2 * i64::from(i), middle[1] + 2 * i64::from(j)];
+                query.extend([0, 1].map(|channel| read.color(place, channel) * part.weight.sqrt()));
+            }
+        }
+        let mut best = (f32::INFINITY, 0);
+        for row in 0..candidates.len() {
+            let distance = distance_sq(&query, candidates.row(row));
+            if distance < best.0 {
+                best = (distance, row);
+            }
+        }
+        let [column, row] = candidates.pixel(best.1);
+        let pixel = row * pyramid.levels()[level].size()[0] + column;
+        let site = (y * width + x) as usize;
+        levels[level].sources[site] = pixel;
+        levels[level].colors[site] = color_of(&pyramid.levels()[level], pixel);
+    }
+}
+
+/// The sources of a texture as numbers of pixels.
+fn made(exemplar: &Exemplar, size: [u32; 2], edges: [Edges; 2], options: &Options) -> Vec<u32> {
+    let texture = synthesize_plane(exemplar, size, edges, options).unwrap();
+    let pixel = |&[column, row]: &[u32; 2]| row * exemplar.size()[0] + column;
+    texture.sources().pixels().iter().map(pixel).collect()
+}
+
+#[test]
+fn textures_equal_the_pseudo_code_of_the_paper() {
+    use Edges::{Cut, Wrap};
+    for (size, edges, n_levels, tile) in [
+        ([20, 14], [Cut, Cut], 1, Wrap),
+        ([19, 13], [Cut, Cut], 2, Cut),
+        ([20, 12], [Wrap, Cut], 2, Wrap),
+        ([8, 16], [Wrap, Wrap], 3, Wrap),
+        ([17, 8], [Cut, Wrap], 3, Cut),
+        ([1, 1], [Cut, Cut], 2, Wrap),
+        ([1, 9], [Wrap, Cut], 1, Wrap),
+        ([4, 4], [Wrap, Wrap], 3, Wrap),
+    ] {
+        let exemplar = exemplar([24, 20], tile);
+        for center in [CoarserCenter::Exact, CoarserCenter::Floor] {
+            let options = paper(n_levels, center);
+            let expected = naive(&exemplar, size, edges, &options);
+            assert_eq!(
+                made(&exemplar, size, edges, &options),
+                expected,
+                "{size:?} {edges:?} {n_levels} {center:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn schedules_of_the_user_equal_the_pseudo_code() {
+    let exemplar = exemplar([24, 20], Edges::Wrap);
+    let causal = Part::new(Shape::Causal, 5, Reads::Same);
+    let coarser = Part::new(Shape::Full, 3, Reads::Coarser).with_weight(0.5);
+    // Wei and Levoy: one visit of each level, in which a level is filled with random pixels and then read.
+    let passes = vec![
+        Pass {
+            level: 1,
+            parts: vec![causal],
+        },
+        Pass {
+            level: 0,
+            parts: vec![causal, coarser],
+        },
+        Pass {
+            level: 0,
+            parts: vec![Part::new(Shape::HalfWithRow, 15, Reads::Same)],
+        },
+    ];
+    let two = Options {
+        schedule: Some(Schedule { passes }),
+        ..paper(2, CoarserCenter::Exact)
+    };
+    let one = Options {
+        schedule: Some(Schedule::single_level(Shape::Full, 9)),
+        ..paper(1, CoarserCenter::Exact)
+    };
+    for options in [one, two] {
+        let size = [18, 12];
+        let edges = [Edges::Wrap, Edges::Cut];
+        assert_eq!(
+            made(&exemplar, size, edges, &options),
+            naive(&exemplar, size, edges, &options),
+            "{options:?}"
+        );
+    }
+}
+
+#[test]
+fn textures_do_not_depend_on_threads() {
+    let exemplar = exemplar([24, 20], Edges::Cut);
+    for edges in [[Edges::Wrap; 2], [Edges::Cut; 2]] {
+        for coherence in [0.0, 1.0] {
+            let options = Options {
+                coherence,
+                ..Options::default()
+            };
+            let with = |n_threads| {
+                let pool = rayon::ThreadPoolBuilder::new()
+                    .num_threads(n_threads)
+                    .build()
+                    .unwrap();
+                pool.install(|| made(&exemplar, [48, 40], edges, &options))
+            };
+            let one = with(1);
+            assert_eq!(
+                [with(2), with(7)],
+                [one.clone(), one],
+                "{edges:?} {coherence}"
+            );
+        }
+    }
+}
+
+#[test]
+fn groups_keep_the_order_of_sites_that_read_each_other() {
+    use Edges::{Cut, Wrap};
+    for (size, edges) in [
+        ([21, 9], [Cut, Cut]),
+        ([16, 12], [Wrap, Wrap]),
+        ([4, 16], [Wrap, Cut]),
+        ([56, 8], [Wrap, Wrap]),
+    ] {
+        let ground = PlaneGround::new(size, edges, &paper(2, CoarserCenter::Exact)).unwrap();
+        for (level, half) in [(0, 3), (0, 7), (1, 1), (1, 3)] {
+            let order = ground.order(level);
+            let mut rank = vec![0; order.len()];
+            for (at, &site) in order.iter().enumerate() {
+                rank[site as usize] = at;
+            }
+            let groups = ground.groups(level, &half);
+            let mut group_of = vec![usize::MAX; order.len()];
+            for (group, sites) in groups.iter().enumerate() {
+                for &site in sites {
+                    group_of[site as usize] = group;
+                }
+            }
+            for &site in &order {
+                for &other in near(&ground, level, site, half)
+                    .iter()
+                    .filter(|&&other| other != site)
+                {
+                    let [a, b] = [site, other].map(|site| site as usize);
+                    let same = (rank[a] < rank[b]) == (group_of[a] < group_of[b]);
+                    assert!(
+                        same && group_of[a] != group_of[b],
+                        "{size:?} {edges:?} {site} {other}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// The sites that a site reads, where nothing lies past an edge that is cut.
+fn near(ground: &PlaneGround, level: usize, site: u32, half: i32) -> Vec<u32> {
+    let size = ground.sizes[level];
+    let [x, y] = ground.pixel(level, site).map(i64::from);
+    let half = i64::from(half);
+    let places = (-half..=half).flat_map(|j| (-half..=half).map(move |i| [x + i, y + j]));
+    let inside = places.filter(|place| {
+        (0..2).all(|axis| {
+            ground.wrap[axis] == Wrap::Repeat || (0..i64::from(size[axis])).contains(&place[axis])
+        })
+    });
+    inside
+        .map(|[x, y]| Wrap::Repeat.index(y, size[1]) * size[0] + Wrap::Repeat.index(x, size[0]))
+        .collect()
+}
+
+#[test]
+fn slanted_lines_of_a_torus_are_groups() {
+    let ground = PlaneGround::new(
+        [512, 256],
+        [Edges::Wrap; 2],
+        &paper(2, CoarserCenter::Exact),
+    )
+    .unwrap();
+    let n_groups = ground.groups(0, &3).iter().count();
+    // As many as on a plane: lines through the corners are 511 + 4 · 255 apart.
+    assert_eq!(n_groups, 512 + 4 * 255, "groups of 512 x 256 pixels");
+}
+
+#[test]
+fn a_texture_of_a_tile_continues_over_its_edges() {
+    // Soft waves in both directions.
+    let wave = |at: u32| ((at % 8) as f32 - 3.5).abs() / 4.0;
+    let plane = Raster::from_fn([32, 32], |x, y| wave(x) + 0.5 * wave(y)).unwrap();
+    let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Wrap).unwrap();
+    let size = [48, 64];
+    let texture = synthesize_plane(&exemplar, size, [Edges::Wrap; 2], &Options::default()).unwrap();
+    let made = texture.transfer(&plane).unwrap();
+    let jump = |x: u32, y: u32| {
+        let [right, below] = [
+            made.at(i64::from(x) + 1, y.into(), [Wrap::Repeat; 2]),
+            made.at(x.into(), i64::from(y) + 1, [Wrap::Repeat; 2]),
+        ];
+        let here = made.row(y)[x as usize];
+        (here - right).abs().max((here - below).abs())
+    };
+    let worst = |inside: bool| {
+        let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y]));
+        let pixels = pixels.filter(|&[x, y]| inside == (x + 1 < size[0] && y + 1 < size[1]));
+        pixels.map(|[x, y]| jump(x, y)).fold(0.0, f32::max)
+    };
+    // Neighbors of the exemplar differ by 0.25 at the most.
+    assert!(
+        worst(true) <= 0.25 && worst(false) <= 0.25,
+        "{} {}",
+        worst(true),
+        worst(false)
+    );
+}
+
+#[test]
+fn textures_look_like_their_exemplar() {
+    let exemplar = exemplar([30, 30], Edges::Wrap);
+    let size = [40, 40];
+    let likeness = |options: &Options| {
+        let sources = made(&exemplar, size, [Edges::Wrap; 2], options);
+        let colors = sources
+            .iter()
+            .map(|&pixel| color_of(&exemplar, pixel))
+            .collect::<Vec<_>>();
+        let planes = [0, 1].map(|channel| {
+            Raster::from_vec(size, colors.iter().map(|color| color[channel]).collect()).unwrap()
+        });
+        let image =
+            Exemplar::from_planes(&[(&planes[0], 1.0), (&planes[1], 1.0)], Edges::Cut).unwrap();
+        Likeness::new(&exemplar, &image).unwrap()
+    };
+    let made = likeness(&Options::default());
+    // Random pixels have the right colors, but are 0.12 away in patches; a deviation of the values is 0.3.
+    assert!(made.colors < 0.05 && made.patches < 0.06, "{made:?}");
+}
+
+#[test]
+fn maps_follow_the_sources() {
+    let exemplar = exemplar([12, 9], Edges::Wrap);
+    let texture = synthesize_plane(
+        &exemplar,
+        [8, 6],
+        [Edges::Cut; 2],
+        &paper(1, CoarserCenter::Exact),
+    )
+    .unwrap();
+    let places = Raster::from_fn([12, 9], |x, y| [x, y]).unwrap();
+    assert_eq!(
+        texture.transfer(&places).unwrap(),
+        *texture.sources(),
+        "places"
+    );
+    let other = Raster::filled([9, 12], 0.0).unwrap();
+    let refused = texture.transfer(&other).unwrap_err();
+    assert!(
+        matches!(refused.kind(), SynthErrorKind::Raster(_)),
+        "{refused}"
+    );
+}
+
+#[test]
+fn bad_sizes_and_options_are_refused() {
+    let exemplar = exemplar([24, 20], Edges::Wrap);
+    let kind = |size, edges, options: &Options| {
+        let result = synthesize_plane(&exemplar, size, [edges; 2], options);
+        result.unwrap_err().kind().clone()
+    };
+    let three = paper(3, CoarserCenter::Exact);
+    for size in [
+        [0, 8],
+        [8, 0],
+        [u32::MAX, u32::MAX],
+        [1 << 14, (MAX_PIXELS >> 14) as u32 + 1],
+    ] {
+        assert!(
+            matches!(kind(size, Edges::Cut, &three), SynthErrorKind::Range { .. }),
+            "{size:?}"
+        );
+    }
+    for size in [[8, 6], [6, 8], [1, 8], [9, 8]] {
+        assert!(
+            matches!(
+                kind(size, Edges::Wrap, &three),
+                SynthErrorKind::Range { .. }
+            ),
+            "{size:?}"
+        );
+    }
+    for n_levels in [0, 17, usize::MAX] {
+        let options = paper(n_levels, CoarserCenter::Exact);
+        assert!(
+            matches!(
+                kind([8, 8], Edges::Cut, &options),
+                SynthErrorKind::Range { .. }
+            ),
+            "{n_levels} levels"
+        );
+    }
+    let deep = kind([8, 8], Edges::Cut, &paper(4, CoarserCenter::Exact));
+    assert!(
+        matches!(
+            deep,
+            SynthErrorKind::Exemplar {
+                level: 3,
+                side: 7,
+                ..
+            }
+        ),
+        "{deep:?}"
+    );
+    for coherence in [-1.0, f32::NAN, f32::INFINITY] {
+        let options = Options {
+            coherence,
+            ..three.clone()
+        };
+        assert!(
+            matches!(
+                kind([8, 8], Edges::Cut, &options),
+                SynthErrorKind::Range { .. }
+            ),
+            "{coherence}"
+        );
+    }
+    let unfilled = Options {
+        schedule: Some(Schedule {
+            passes: Schedule::paper(3).passes[3..].to_vec(),
+        }),
+        ..three
+    };
+    assert_eq!(
+        kind([8, 8], Edges::Cut, &unfilled),
+        SynthErrorKind::Unfilled { pass: 0, level: 1 },
+        "schedule"
+    );
+}
+
+#[test]
+fn the_callback_can_stop() {
+    let exemplar = exemplar([24, 20], Edges::Wrap);
+    let mut calls = 0;
+    let result = synthesize_plane_with(
+        &exemplar,
+        [16, 16],
+        [Edges::Cut; 2],
+        &Options::default(),
+        |progress| {
+            calls += 1;
+            if progress.pass == 2 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        },
+    );
+    assert_eq!(
+        *result.unwrap_err().kind(),
+        SynthErrorKind::Cancelled,
+        "stopped"
+    );
+    assert_eq!(calls, 3, "one call for each small pass until then");
+}
+
+#[test]
+fn value_stability_plane() {
+    let exemplar = exemplar([24, 20], Edges::Cut);
+    let row = made(&exemplar, [16, 12], [Edges::Wrap; 2], &Options::default())[..8].to_vec();
+    assert_eq!(row, [0; 8], "sources of the first pixels");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn any_sizes_give_a_texture_or_an_error(
+        tile in [1_u32..20, 1_u32..20], size in [1_u32..20, 1_u32..20], wrap: [bool; 3], n_levels in 1_usize..5,
+    ) {
+        let [a, b, c] = wrap.map(|wrap| if wrap { Edges::Wrap } else { Edges::Cut });
+        let exemplar = exemplar(tile, a);
+        let options = Options { n_levels, ..Options::default() };
+        if let Ok(texture) = synthesize_plane(&exemplar, size, [b, c], &options) {
+            prop_assert_eq!(texture.sources().size(), size);
+            prop_assert!(texture.sources().pixels().iter().all(|[x, y]| *x < tile[0] && *y < tile[1]));
+        }
+    }
+}
