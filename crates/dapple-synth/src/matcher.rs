@@ -90,11 +90,18 @@ impl Matcher {
     pub fn new(dims: usize, rows: &[f32]) -> Self {
         let n_rows = rows.len().checked_div(dims).unwrap_or(0);
         let all = &rows[..n_rows * dims];
-        let tree = if n_rows < FEW || dims > MOST_DIMS { None } else { Tree::new(dims, all) };
+        let tree = if n_rows < FEW || dims > MOST_DIMS {
+            None
+        } else {
+            Tree::new(dims, all)
+        };
         Self {
             dims,
             rows: PaddedRows::new(dims, rows),
-            tree: tree.map(|tree| { let margin = Margin::new(dims, &tree.basis, tree.longest); (tree, margin) }),
+            tree: tree.map(|tree| {
+                let margin = Margin::new(dims, &tree.basis, tree.longest);
+                (tree, margin)
+            }),
         }
     }
 
@@ -120,7 +127,9 @@ impl Matcher {
         hint: Option<u32>,
         memory: &mut MatcherMemory,
     ) -> Option<Match> {
-        if query.len() != self.dims || below.is_nan() { return None; }
+        if query.len() != self.dims || below.is_nan() {
+            return None;
+        }
         dispatch!(level, simd => self.nearest_simd(simd, query, below, hint, memory))
     }
 
@@ -141,7 +150,9 @@ impl Matcher {
             if memory.length <= margin::LONGEST {
                 let mut best = None;
                 let mut limit = below;
-                if let Some(row) = hint && (row as usize) < self.rows.values.len() / self.rows.stride {
+                if let Some(row) = hint
+                    && (row as usize) < self.rows.values.len() / self.rows.stride
+                {
                     let distance_sq = distance_sq_padded(simd, &memory.query, self.rows.row(row));
                     if distance_sq < below {
                         best = Some(Match { row, distance_sq });

@@ -203,14 +203,7 @@ impl Ground for PlaneGround {
         Groups::by_number(&order, &group_of)
     }
 
-    fn read(
-        &self,
-        square: Square,
-        _: &i32,
-        column: &[f32],
-        samples: &mut Samples,
-        (): &mut (),
-    ) {
+    fn read(&self, square: Square, _: &i32, column: &[f32], samples: &mut Samples, (): &mut ()) {
         let n_channels = samples.values.len() / samples.nearest.len().max(1);
         let reads = if square.reads == square.level {
             Reads::Same

@@ -79,7 +79,12 @@ impl Basis {
     #[inline(always)]
     pub(crate) fn center(&self, values: &[f32], centered: &mut Vec<f32>) {
         centered.clear();
-        centered.extend(values.iter().zip(&self.mean).map(|(value, mean)| value - mean));
+        centered.extend(
+            values
+                .iter()
+                .zip(&self.mean)
+                .map(|(value, mean)| value - mean),
+        );
     }
 
     /// The coordinates of something centered along the directions: a group of them for each element of `rotated`.
@@ -141,7 +146,9 @@ fn centered_sample(dims: usize, rows: &[f32], mean: &[f32]) -> Vec<f64> {
                 .map(|(&value, &mean)| f64::from(value) - f64::from(mean)),
         );
     }
-    let largest = sample.iter().fold(0.0_f64, |max, value| max.max(value.abs()));
+    let largest = sample
+        .iter()
+        .fold(0.0_f64, |max, value| max.max(value.abs()));
     if largest == 0.0 {
         return Vec::new();
     }
@@ -225,7 +232,9 @@ fn norm_sq(dims: usize, groups: &[[f32; LANES]]) -> f64 {
     }
     let mut largest = 0.0_f64;
     for direction in directions.chunks_exact(dims) {
-        let products = directions.chunks_exact(dims).map(|other| dot(direction, other).abs());
+        let products = directions
+            .chunks_exact(dims)
+            .map(|other| dot(direction, other).abs());
         largest = largest.max(products.sum());
     }
     largest + 1e-9

@@ -30,11 +30,7 @@ pub fn distance_sq(a: &[f32], b: &[f32]) -> f32 {
 
 /// As [`distance_sq`], of numbers that zeros fill up to whole registers. A zero more in a sum changes no bit of it.
 #[inline(always)]
-pub(crate) fn distance_sq_padded<S: Simd>(
-    simd: S,
-    a: &[[f32; LANES]],
-    b: &[[f32; LANES]],
-) -> f32 {
+pub(crate) fn distance_sq_padded<S: Simd>(simd: S, a: &[[f32; LANES]], b: &[[f32; LANES]]) -> f32 {
     let mut sums = f32x16::splat(simd, 0.0);
     for (&a, &b) in a.iter().zip(b) {
         let difference = f32x16::simd_from(simd, a) - f32x16::simd_from(simd, b);

@@ -38,7 +38,8 @@ pub(crate) fn search<S: Simd>(
 ) -> Option<Match> {
     let n_directions = tree.basis.n_directions();
     memory.rotated.resize(n_directions / LANES, [0.0; LANES]);
-    tree.basis.rotate(simd, &memory.centered, &mut memory.rotated);
+    tree.basis
+        .rotate(simd, &memory.centered, &mut memory.rotated);
     let rotation_error = margin.rotation_error(memory.length);
     let mut search = Search {
         simd,
@@ -139,7 +140,9 @@ impl<S: Simd> Search<'_, S> {
     fn compare_rows(&mut self, leaf: usize, mut sums: [f32; LANES]) {
         loop {
             let (lane, sum) = least(sums);
-            if sum > self.threshold || sum == f32::INFINITY { return; }
+            if sum > self.threshold || sum == f32::INFINITY {
+                return;
+            }
             self.compare(self.tree.rows[leaf][lane]);
             sums[lane] = f32::INFINITY;
         }
@@ -171,7 +174,9 @@ impl<S: Simd> Search<'_, S> {
     #[inline(always)]
     fn compare(&mut self, row: u32) {
         let distance_sq = distance_sq_padded(self.simd, self.query, self.rows.row(row));
-        let first = self.best.is_some_and(|best| distance_sq == best.distance_sq && row < best.row);
+        let first = self
+            .best
+            .is_some_and(|best| distance_sq == best.distance_sq && row < best.row);
         if distance_sq < self.limit || first {
             self.best = Some(Match { row, distance_sq });
             self.limit = distance_sq;
@@ -184,6 +189,10 @@ impl<S: Simd> Search<'_, S> {
 #[inline(always)]
 fn least(values: [f32; LANES]) -> (usize, f32) {
     let mut best = (0, values[0]);
-    for (lane, &value) in values.iter().enumerate() { if value < best.1 { best = (lane, value); } }
+    for (lane, &value) in values.iter().enumerate() {
+        if value < best.1 {
+            best = (lane, value);
+        }
+    }
     best
 }

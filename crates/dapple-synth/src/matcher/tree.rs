@@ -64,12 +64,12 @@ impl Tree {
         };
         for leaf in indices.chunks(LANES) {
             let rows = std::array::from_fn(|lane| leaf[lane.min(leaf.len() - 1)]);
-            let coordinates = |direction: usize| {
-                rows.map(|row| rotated[row as usize * n_directions + direction])
-            };
+            let coordinates =
+                |direction: usize| rows.map(|row| rotated[row as usize * n_directions + direction]);
             tree.rows.push(rows);
             tree.heads.push(std::array::from_fn(coordinates));
-            tree.tails.extend((BOX_DIRECTIONS..n_directions).map(coordinates));
+            tree.tails
+                .extend((BOX_DIRECTIONS..n_directions).map(coordinates));
         }
         let boxes: Vec<_> = tree.heads.iter().map(around_rows).collect();
         tree.leaves = boxes.chunks(LANES).map(side_by_side).collect();
@@ -100,8 +100,14 @@ fn rotate(dims: usize, all: &[f32], basis: &Basis) -> (Vec<f32>, f64) {
         }
         (rotated, longest)
     });
-    let longest = rotated.iter().fold(0.0_f64, |max, (_, length)| max.max(*length));
-    let rotated: Vec<f32> = rotated.iter().flat_map(|(rotated, _)| rotated.as_flattened()).copied().collect();
+    let longest = rotated
+        .iter()
+        .fold(0.0_f64, |max, (_, length)| max.max(*length));
+    let rotated: Vec<f32> = rotated
+        .iter()
+        .flat_map(|(rotated, _)| rotated.as_flattened())
+        .copied()
+        .collect();
     (rotated, longest)
 }
 
@@ -112,7 +118,10 @@ fn sort(indices: &mut [u32], rotated: &[f32], n_directions: usize) {
     if n_leaves < 2 {
         return;
     }
-    let (mut low, mut high) = ([f32::INFINITY; BOX_DIRECTIONS], [f32::NEG_INFINITY; BOX_DIRECTIONS]);
+    let (mut low, mut high) = (
+        [f32::INFINITY; BOX_DIRECTIONS],
+        [f32::NEG_INFINITY; BOX_DIRECTIONS],
+    );
     for &row in indices.iter() {
         let coordinates = &rotated[row as usize * n_directions..][..BOX_DIRECTIONS];
         for (i, &value) in coordinates.iter().enumerate() {
@@ -158,7 +167,10 @@ fn side_by_side(boxes: &[Box]) -> Boxes {
             std::array::from_fn(|lane| boxes.get(lane).unwrap_or(&NOTHING)[side][direction])
         })
     };
-    Boxes { low: side(0), high: side(1) }
+    Boxes {
+        low: side(0),
+        high: side(1),
+    }
 }
 
 fn least(values: [f32; LANES]) -> f32 {
