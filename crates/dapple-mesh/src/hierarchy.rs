@@ -6,7 +6,6 @@ use crate::{
     nested_points,
 };
 use dapple_hash::Seed;
-use glam::DVec3;
 
 /// The most sites: about 120 GB of them and of their lists of neighbors.
 const SITES_MAX: usize = 1 << 28;

@@ -3,11 +3,11 @@
 #![forbid(unsafe_code)]
 
 mod adjacency;
+mod between;
 mod blend;
+mod bvh;
 mod cell;
 mod connect;
-mod bvh;
-mod between;
 mod error;
 mod evenness;
 mod graph;
@@ -31,18 +31,17 @@ mod sites;
 mod star;
 mod surface;
 #[cfg(test)]
-mod testing;
 mod test_meshes;
+#[cfg(test)]
+mod testing;
 mod triangle;
 mod unstick;
-#[cfg(test)]
-mod timing;
 mod walk;
 
 pub use adjacency::{Adjacency, FaceEdge};
 pub use blend::Blend;
-pub use connect::Connected;
 pub use bvh::{Bvh, NearestPoint, Ray, RayHit};
+pub use connect::Connected;
 pub use error::{MeshError, MeshErrorKind};
 pub use evenness::{Evenness, evenness, hexagonal_spacing};
 pub use glam;
@@ -54,7 +53,6 @@ pub use interpolation::INTERPOLATION_RADIUS;
 pub use low_pass::LowPass;
 pub use mesh::Mesh;
 pub use nested::nested_points;
-pub use operations::INTERPOLATION_RADIUS;
 pub use operations::{DOWNSAMPLE_STEPS, DOWNSAMPLE_T};
 pub use repair::Repair;
 pub use repel::repel;

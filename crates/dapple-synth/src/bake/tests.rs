@@ -51,7 +51,7 @@ fn texels_are_those_of_plain_interpolation() {
             shown += 1;
             let normal = surface.face_normal(point.face);
             let plain = hierarchy.interpolate(0, &pairs, surface.position(point), normal);
-            let plain = plain.unwrap();
+            let plain = plain.unwrap().unwrap();
             // Positions are rounded to f32, 1e-6 of a radius here.
             let off = (value[0] - plain[0]).abs().max((value[1] - plain[1]).abs());
             assert!(off < 1e-3, "{column} {row}: {value:?} beside {plain:?}");
