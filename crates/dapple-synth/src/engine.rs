@@ -108,3 +108,6 @@ fn side_to_keep(pass: &Pass, next: Option<&Pass>) -> u32 {
     let side = coarser_side(next);
     if side <= coarser_side(pass) { side } else { 0 }
 }
+
+#[cfg(test)]
+mod tests;

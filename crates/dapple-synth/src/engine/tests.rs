@@ -1,0 +1,311 @@
+//! The engine beside the paper's pseudo-code, which compares every neighborhood with every pixel's.
+
+use super::{LevelTexture, Progress, run};
+use crate::ground::{Ground, Rows, Samples, Square};
+use crate::mesh_ground::MeshGround;
+use crate::neighborhood::{Part, Pass, Reads};
+use crate::{
+    Candidates, Edges, Exemplar, Options, Orientation, Pyramid, Schedule, Shape, Sweep,
+    SynthErrorKind, distance_sq,
+};
+use core::ops::ControlFlow;
+use dapple_color::LinearRgb;
+use dapple_hash::{Seed, hash2, unit_f32};
+use dapple_mesh::{Hierarchy, HierarchyOptions, Surface};
+use dapple_raster::Raster;
+
+/// Stripes and noise, 16 pixels square.
+fn pyramid(edges: Edges, n_levels: usize) -> Pyramid {
+    let image = Raster::from_fn([16, 16], |x, y| {
+        let noise = unit_f32(hash2(Seed(2), [x.into(), y.into()], 0) as u32);
+        LinearRgb::new(noise, if (x + y) % 8 < 4 { 0.9 } else { 0.1 }, 0.5 * noise)
+    });
+    let exemplar = Exemplar::new(&image.unwrap(), edges).unwrap();
+    exemplar.pyramid(n_levels).unwrap()
+}
+
+struct Case {
+    surface: Surface,
+    hierarchy: Hierarchy,
+    orientation: Orientation,
+    sweep: Sweep,
+}
+
+impl Case {
+    fn new(n_sites: usize) -> Self {
+        let surface = Surface::new(crate::shapes::sphere()).unwrap();
+        let options = HierarchyOptions {
+            n_sites,
+            n_levels: 2,
+            seed: Seed(1),
+            ..HierarchyOptions::default()
+        };
+        let hierarchy = Hierarchy::new(&surface, &options).unwrap();
+        let orientation = Orientation::new(&hierarchy, &[]).unwrap();
+        let sweep = Sweep::new(&hierarchy, &orientation, None).unwrap();
+        Self {
+            surface,
+            hierarchy,
+            orientation,
+            sweep,
+        }
+    }
+
+    fn ground(&self) -> MeshGround<'_> {
+        MeshGround {
+            surface: &self.surface,
+            hierarchy: &self.hierarchy,
+            orientation: &self.orientation,
+            sweep: &self.sweep,
+        }
+    }
+}
+
+/// The neighborhood colors N(v).
+fn neighborhood(
+    ground: &MeshGround<'_>,
+    pass: &Pass,
+    site: u32,
+    levels: &[LevelTexture],
+) -> Vec<f32> {
+    let mut query = Vec::new();
+    for part in &pass.parts {
+        let half = part.side as i32 / 2;
+        let reads = pass.level + usize::from(part.reads == Reads::Coarser);
+        let square = Square {
+            site,
+            level: pass.level,
+            reads,
+            half,
+            rows: Rows::All,
+        };
+        let prepared = ground.prepare(pass.level, Some(half), None);
+        let coarser = (reads > pass.level).then(|| ground.prepare(pass.level, None, Some(half)));
+        let mut samples = Samples::default();
+        samples.make_room(square.side(), 3);
+        let colors = &levels[reads].colors;
+        let prepared = coarser.as_ref().unwrap_or(&prepared);
+        ground.read(
+            square,
+            prepared,
+            colors,
+            &mut samples,
+            &mut Default::default(),
+        );
+        for [i, j] in part.offsets() {
+            let sample = ((j + half) * (2 * half + 1) + i + half) as usize;
+            let values = &samples.values[3 * sample..3 * sample + 3];
+            query.extend(values.iter().map(|value| value * part.weight.sqrt()));
+        }
+    }
+    query
+}
+
+/// The passes as the paper's pseudo-code has them; the first colors are those of `started`.
+fn pseudo_code(
+    ground: &MeshGround<'_>,
+    pyramid: &Pyramid,
+    passes: &[Pass],
+    options: &Options,
+    started: &[LevelTexture],
+) -> Vec<LevelTexture> {
+    let mut levels = started.to_vec();
+    for pass in passes {
+        let candidates = Candidates::new(pyramid, pass, options.center).unwrap();
+        levels[pass.level]
+            .colors
+            .resize(3 * ground.n_sites(pass.level), 0.0);
+        levels[pass.level]
+            .sources
+            .resize(ground.n_sites(pass.level), u32::MAX);
+        for site in ground.order(pass.level) {
+            let query = neighborhood(ground, pass, site, &levels);
+            let (mut smallest, mut best) = (f32::INFINITY, 0);
+            for row in 0..candidates.len() {
+                let new = distance_sq(&query, candidates.row(row));
+                if new < smallest {
+                    (smallest, best) = (new, row);
+                }
+            }
+            let pixel = candidates.pixels[best];
+            let from = 3 * pixel as usize;
+            levels[pass.level].sources[site as usize] = pixel;
+            let color = &pyramid.levels()[pass.level].pixels[from..from + 3];
+            levels[pass.level].colors[3 * site as usize..][..3].copy_from_slice(color);
+        }
+    }
+    levels
+}
+
+fn go_on(_: Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+#[test]
+fn passes_are_those_of_the_pseudo_code() {
+    let case = Case::new(300);
+    let ground = case.ground();
+    let paper = Schedule::paper(2);
+    let part = |shape, side, reads| Part::new(shape, side, reads);
+    let other = Schedule {
+        passes: vec![
+            Pass {
+                level: 1,
+                parts: vec![part(Shape::Causal, 5, Reads::Same)],
+            },
+            Pass {
+                level: 0,
+                parts: vec![part(Shape::Full, 3, Reads::Coarser)],
+            },
+            Pass {
+                level: 0,
+                parts: vec![
+                    Part {
+                        weight: 4.0,
+                        ..part(Shape::Full, 3, Reads::Coarser)
+                    },
+                    part(Shape::HalfWithRow, 5, Reads::Same),
+                ],
+            },
+        ],
+    };
+    for (schedule, edges) in [(paper, Edges::Wrap), (other, Edges::Cut)] {
+        let pyramid = pyramid(edges, 2);
+        let options = Options {
+            n_levels: 2,
+            schedule: Some(schedule.clone()),
+            coherence: 0.0,
+            ..Options::default()
+        };
+        let mut started = vec![LevelTexture::default(); 2];
+        super::fill_randomly(&ground, &pyramid, 1, options.seed, &mut started);
+        let passes: Vec<Pass> = schedule.passes.clone();
+        let expected = pseudo_code(&ground, &pyramid, &schedule.passes, &options, &started);
+        let found = run(&ground, &pyramid, &options, &mut go_on).unwrap();
+        assert!(
+            found == expected,
+            "{edges:?}: other colors than the pseudo-code's"
+        );
+    }
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn texture_has_the_same_bits_on_any_number_of_threads() {
+    let case = Case::new(3000);
+    let ground = case.ground();
+    let pyramid = pyramid(Edges::Wrap, 2);
+    for coherence in [0.0, 1.0] {
+        let options = Options {
+            n_levels: 2,
+            coherence,
+            ..Options::default()
+        };
+        let textures = [1, 2, 7].map(|n_threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
+            let pool = pool.build().unwrap();
+            pool.install(|| run(&ground, &pyramid, &options, &mut go_on).unwrap())
+        });
+        assert!(
+            textures[0] == textures[1],
+            "2 threads, coherence {coherence}"
+        );
+        assert!(
+            textures[0] == textures[2],
+            "7 threads, coherence {coherence}"
+        );
+    }
+}
+
+#[test]
+fn coherent_texture_has_more_neighbors_that_continue_each_other() {
+    let case = Case::new(2000);
+    let ground = case.ground();
+    let pyramid = pyramid(Edges::Wrap, 2);
+    let continued = |coherence: f32| {
+        let options = Options {
+            n_levels: 2,
+            coherence,
+            ..Options::default()
+        };
+        let levels = run(&ground, &pyramid, &options, &mut go_on).unwrap();
+        let sources = &levels[0].sources;
+        let graph = case.hierarchy.levels()[0].graph();
+        let near = |a: u32, b: u32| {
+            let step = |a: u32, b: u32| {
+                let steps = (a + 16 - b) % 16;
+                steps.min(16 - steps)
+            };
+            step(a % 16, b % 16) <= 1 && step(a / 16, b / 16) <= 1
+        };
+        case.hierarchy
+            .sites()
+            .iter()
+            .flat_map(|site| {
+                graph
+                    .neighbors(site)
+                    .iter()
+                    .map(move |&other| [site, other])
+            })
+            .filter(|[a, b]| near(sources[a.index()], sources[b.index()]))
+            .count()
+    };
+    let [plain, coherent] = [0.0, 2.0].map(continued);
+    assert!(coherent > plain, "{coherent} beside {plain} edges");
+}
+
+#[test]
+fn callback_hears_of_every_pass_and_can_stop_any() {
+    let case = Case::new(500);
+    let ground = case.ground();
+    let pyramid = pyramid(Edges::Wrap, 2);
+    let options = Options {
+        n_levels: 2,
+        ..Options::default()
+    };
+    let mut heard = Vec::new();
+    let mut listen = |progress: Progress| {
+        heard.push(progress);
+        ControlFlow::Continue(())
+    };
+    run(&ground, &pyramid, &options, &mut listen).unwrap();
+    let ends: Vec<_> = heard
+        .iter()
+        .filter(|progress| progress.done == progress.n_sites)
+        .collect();
+    assert_eq!(
+        ends.iter()
+            .map(|progress| progress.pass)
+            .collect::<Vec<_>>(),
+        [0, 1, 2]
+    );
+    assert!(
+        heard.iter().all(|progress| progress.n_passes == 3),
+        "three passes"
+    );
+    for last in 0..3 {
+        let mut stop = |progress: Progress| {
+            if progress.pass == last {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        let error = run(&ground, &pyramid, &options, &mut stop).unwrap_err();
+        assert_eq!(error.kind(), &SynthErrorKind::Cancelled, "pass {last}");
+    }
+}
+
+#[test]
+fn value_stability_of_a_texture() {
+    let case = Case::new(400);
+    let ground = case.ground();
+    let pyramid = pyramid(Edges::Wrap, 2);
+    let options = Options {
+        n_levels: 2,
+        coherence: 0.5,
+        ..Options::default()
+    };
+    let levels = run(&ground, &pyramid, &options, &mut go_on).unwrap();
+    assert_eq!(levels[0].sources[..8], [40, 39, 3, 251, 1, 23, 248, 42]);
+}
