@@ -22,6 +22,7 @@ mod nested;
 mod operations;
 mod oriented;
 mod parallel;
+mod polygonize;
 mod repair;
 mod repel;
 mod report;
@@ -37,6 +38,9 @@ mod testing;
 mod triangle;
 mod unstick;
 mod walk;
+
+pub mod models;
+pub mod solid;
 
 pub use adjacency::{Adjacency, FaceEdge};
 pub use blend::Blend;
@@ -54,6 +58,8 @@ pub use low_pass::LowPass;
 pub use mesh::Mesh;
 pub use nested::nested_points;
 pub use operations::{DOWNSAMPLE_STEPS, DOWNSAMPLE_T};
+pub use operations::INTERPOLATION_RADIUS;
+pub use polygonize::{TOLERANCE, polygonize, polygonize_n};
 pub use repair::Repair;
 pub use repel::repel;
 pub use report::MeshReport;

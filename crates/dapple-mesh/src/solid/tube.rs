@@ -1,0 +1,87 @@
+//! Tubes along curves.
+
+use super::{RoundCone, Solid};
+use glam::DVec3;
+
+/// A tube whose middle goes through given points on a smooth curve, with a radius at each.
+///
+/// The curve is a Catmull-Rom spline (Catmull and Rom, "A Class of Local Interpolating Splines", 1974), cut into
+/// [`RoundCone`]s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tube {
+    links: Vec<Link>,
+}
+
+/// A part of a tube, with a ball around it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Link {
+    cone: RoundCone,
+    center: DVec3,
+    reach: f64,
+}
+
+/// The links between two points of the caller. Their angles are small enough not to be seen in figures.
+const LINKS: u32 = 5;
+
+impl Tube {
+    /// The tube through these points, each `[x, y, z, radius]`; empty if there are fewer than two.
+    #[must_use]
+    pub fn through(points: &[[f64; 4]]) -> Self {
+        let mut links = Vec::new();
+        for index in 1..points.len() {
+            let before = points[index.saturating_sub(2)];
+            let after = points[(index + 1).min(points.len() - 1)];
+            let spline = [before, points[index - 1], points[index], after];
+            for step in 0..LINKS {
+                let [from, to] = [step, step + 1]
+                    .map(|step| on_spline(&spline, f64::from(step) / f64::from(LINKS)));
+                links.push(link(from, to));
+            }
+        }
+        Self { links }
+    }
+}
+
+impl Solid for Tube {
+    fn distance(&self, at: DVec3) -> f64 {
+        let mut nearest = f64::INFINITY;
+        for link in &self.links {
+            // A link is no nearer than the ball around it.
+            let least = nearest + link.reach;
+            if least > 0.0 && (at - link.center).length_squared() < least * least {
+                nearest = nearest.min(link.cone.distance(at));
+            }
+        }
+        nearest
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        let all = self.links.iter().map(|link| link.cone.bounds());
+        all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+            .unwrap_or_default()
+    }
+}
+
+fn link(from: [f64; 4], to: [f64; 4]) -> Link {
+    let ends = [from, to].map(|[x, y, z, _]| DVec3::new(x, y, z));
+    let radii = [from[3], to[3]];
+    Link {
+        cone: RoundCone { ends, radii },
+        center: (ends[0] + ends[1]) * 0.5,
+        reach: 0.5 * (ends[1] - ends[0]).length() + radii[0].max(radii[1]),
+    }
+}
+
+/// The spline at `part`, from the second of its four points at 0 to the third at 1.
+fn on_spline(points: &[[f64; 4]; 4], part: f64) -> [f64; 4] {
+    core::array::from_fn(|number| {
+        let [before, from, to, after] = points.map(|point| point[number]);
+        let [start, end] = [0.5 * (to - before), 0.5 * (after - from)];
+        let rest = 1.0 - part;
+        // Hermite's form.
+        (1.0 + 2.0 * part) * rest * rest * from
+            + part * rest * rest * start
+            + (3.0 - 2.0 * part) * part * part * to
+            - part * part * rest * end
+    })
+}
