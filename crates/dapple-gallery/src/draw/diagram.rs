@@ -6,7 +6,7 @@ use super::stencil::Stencil;
 use dapple_raster::{Texel, glam::DVec2};
 
 /// The width of a letter's strokes over its height.
-const STROKE: f64 = 0.13;
+const STROKE: f64 = 0.14;
 
 impl<T: Texel> Canvas<T> {
     /// Draws a straight line that ends in a head, with the given width, in pixels.

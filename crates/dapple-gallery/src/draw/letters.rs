@@ -11,7 +11,7 @@ use dapple_raster::glam::DVec2;
 const CAPITAL: f64 = 9.0;
 
 /// The gap between letters, in grid lines.
-const GAP: f64 = 2.5;
+const GAP: f64 = 2.3;
 
 /// The width of a space, in grid lines, beside the gap after it.
 const SPACE: f64 = 2.5;
@@ -43,7 +43,10 @@ pub(super) fn strokes(text: &str) -> Vec<[DVec2; 2]> {
 
 /// The corners of a stroke, on the grid.
 fn corners(stroke: &str) -> Vec<DVec2> {
-    let digits: Vec<_> = stroke.chars().filter_map(|digit| digit.to_digit(36)).collect();
+    let digits: Vec<_> = stroke
+        .chars()
+        .filter_map(|digit| digit.to_digit(36))
+        .collect();
     let mut points: Vec<_> = digits
         .chunks_exact(2)
         .map(|at| DVec2::new(f64::from(at[0]), f64::from(at[1])))
@@ -64,7 +67,7 @@ fn corners(stroke: &str) -> Vec<DVec2> {
 /// A line with its corners cut (Chaikin, An algorithm for high-speed curve generation, 1974), from the same first to
 /// the same last point.
 fn cut(points: &[DVec2]) -> Vec<DVec2> {
-    let last = points.len() - 2;
+    let last = points.len().saturating_sub(2);
     let mut finer = vec![points[0]];
     for (side, pair) in points.windows(2).enumerate() {
         if side > 0 {
@@ -120,7 +123,7 @@ const fn glyph(letter: char) -> &'static str {
         'K' => "0009 6005 2369",
         'L' => "000959",
         'M' => "0900478089",
-        'N' => "09006069",
+        'N' => "09006960",
         'O' => "@00606909",
         'P' => "0009 ~003060653505",
         'Q' => "@00606909 4669",

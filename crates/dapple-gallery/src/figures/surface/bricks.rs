@@ -56,7 +56,10 @@ fn brick(at: DVec2) -> ([i64; 2], DVec2) {
         at.y * N_BRICKS[1] as f64 - row - 0.5,
     );
     let index = [column as i64, row as i64];
-    ([0, 1].map(|axis| index[axis].rem_euclid(N_BRICKS[axis])), place)
+    (
+        [0, 1].map(|axis| index[axis].rem_euclid(N_BRICKS[axis])),
+        place,
+    )
 }
 
 /// How far inside a brick with round corners a place is, in heights of a brick; below zero in the mortar.

@@ -18,17 +18,17 @@ const N_SAMPLES: u32 = 8;
 const ACROSS: [Wave; 3] = [
     Wave {
         periods: [1, 5],
-        height: 0.013,
+        height: 0.009,
         phase: 0.1,
     },
     Wave {
         periods: [-2, 8],
-        height: 0.010,
+        height: 0.006,
         phase: 0.45,
     },
     Wave {
         periods: [3, 2],
-        height: 0.010,
+        height: 0.006,
         phase: 0.8,
     },
 ];
@@ -37,17 +37,17 @@ const ACROSS: [Wave; 3] = [
 const DOWN: [Wave; 3] = [
     Wave {
         periods: [5, -1],
-        height: 0.013,
+        height: 0.009,
         phase: 0.3,
     },
     Wave {
         periods: [7, 2],
-        height: 0.010,
+        height: 0.006,
         phase: 0.9,
     },
     Wave {
         periods: [-2, 3],
-        height: 0.010,
+        height: 0.006,
         phase: 0.6,
     },
 ];

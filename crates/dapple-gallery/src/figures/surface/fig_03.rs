@@ -19,13 +19,22 @@ pub(super) const FIGURE: Figure = Figure {
 const V: [DVec2; 2] = [DVec2::new(0.70, 0.22), DVec2::new(0.95, 0.10)];
 const W: [DVec2; 2] = [DVec2::new(0.26, 0.40), DVec2::new(0.85, 0.45)];
 
-/// Neighbors that only show that there is a mesh.
-const OTHERS: [DVec2; 4] = [
-    DVec2::new(0.40, 0.08),
-    DVec2::new(0.60, 0.57),
-    DVec2::new(0.04, 0.16),
-    DVec2::new(0.97, 0.44),
-];
+/// Edges that only show that there is a mesh.
+const MESH: [[DVec2; 2]; 8] = {
+    let [v, w] = [V[0], W[0]];
+    let [above, below] = [DVec2::new(0.42, 0.08), DVec2::new(0.62, 0.56)];
+    let [left, right] = [DVec2::new(0.06, 0.20), DVec2::new(0.95, 0.42)];
+    [
+        [above, v],
+        [above, w],
+        [below, v],
+        [below, w],
+        [left, above],
+        [left, w],
+        [right, v],
+        [right, below],
+    ]
+};
 
 /// Where the line of the consensus orientation begins.
 const START: DVec2 = DVec2::new(0.10, 0.62);
@@ -39,15 +48,15 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let consensus = (v_field.normalize() + w_field.normalize()).normalize();
     let foot = |vertex: DVec2| START + (vertex - START).dot(consensus) * consensus;
 
-    let mesh = OTHERS.map(|other| [[v, other], [w, other]]);
-    canvas.lines(mesh.as_flattened(), 1.5 * pixel, 0.8);
+    canvas.lines(&MESH, 1.5 * pixel, 0.8);
     canvas.lines(&[[v, w]], 3.0 * pixel, 0.0);
     for [vertex, field] in [V, W] {
         canvas.arrow([vertex, vertex + 0.16 * field], 2.0 * pixel, 0.55);
         canvas.dashes([vertex, foot(vertex)], 9, 2.0 * pixel, 0.0);
         canvas.disk(vertex, 8.0 * pixel, 0.0);
     }
-    canvas.arrow([START, START + 0.86 * consensus], 3.0 * pixel, 0.0);
+    let end = START + 0.86 * consensus;
+    canvas.arrow([START, end], 3.0 * pixel, 0.0);
     // Delta is measured below the line.
     let below = 0.07 * consensus.perp();
     let bracket = [foot(w), foot(v)].map(|end| end + below);
@@ -61,8 +70,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     ] {
         canvas.text(start, 34.0 * pixel, text, 0.0);
     }
-    let end = START + 0.86 * consensus;
-    with_subscript(&mut canvas, end + DVec2::new(-0.10, 0.12), pixel, "O");
+    with_subscript(&mut canvas, end + DVec2::new(-0.11, -0.11), pixel, "O");
     let middle = bracket[0].midpoint(bracket[1]);
     with_subscript(&mut canvas, middle + DVec2::new(-0.03, 0.11), pixel, "Δ");
     Ok(vec![Panel::gray("", canvas.into_raster())])

@@ -26,11 +26,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let window = Window::new(DVec2::splat(-reach), DVec2::splat(2.0 * reach), [size; 2])?;
     let pixel = f64::from(size) / 512.0;
     let mut panels = Vec::new();
-    for (label, shape) in [
-        ("a", Shape::Full),
-        ("b", Shape::Causal),
-        ("c", Shape::Half),
-    ] {
+    for (label, shape) in [("a", Shape::Full), ("b", Shape::Causal), ("c", Shape::Half)] {
         let mut canvas = Canvas::new(&window, 1.0)?;
         for [i, j] in Part::new(shape, SIDE, Reads::Same).offsets() {
             let center = DVec2::new(f64::from(i), f64::from(j));

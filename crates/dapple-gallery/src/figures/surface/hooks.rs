@@ -11,18 +11,18 @@ use glam::{DVec2, DVec3};
 const N_HOOKS: i64 = 3;
 
 /// The radius of the wire. Lengths are half a diagonal of the lattice, the distance between strands.
-const WIRE: f64 = 0.215;
+const WIRE: f64 = 0.19;
 
 /// The middle of the wire: how far along the strand, how far toward the next strand, and how high.
 const PATH: [[f64; 3]; 8] = [
-    [-0.85, 0.00, -0.10],
-    [0.25, 0.00, 0.00],
-    [0.66, 0.00, 0.20],
-    [0.66, 1.00, 0.50],
-    [0.66, 1.46, 0.00],
-    [1.26, 1.46, -0.10],
-    [1.26, 1.00, -0.50],
-    [1.26, 0.52, -0.30],
+    [-1.00, 0.00, -0.10],
+    [0.20, 0.00, 0.00],
+    [0.52, 0.00, 0.15],
+    [0.52, 1.00, 0.50],
+    [0.52, 1.55, 0.10],
+    [1.24, 1.55, -0.10],
+    [1.24, 1.00, -0.50],
+    [1.24, 0.50, -0.40],
 ];
 
 /// Straight lines that a bend of the wire is made of.
@@ -79,17 +79,39 @@ fn highest(wire: &[[DVec3; 2]], at: DVec2) -> Option<DVec3> {
     top.1
 }
 
-/// The height and the normal of a piece of wire at a position along and across its strand.
+/// The height and the normal of a piece of wire with round ends, at a position along and across its strand.
 fn surface([from, to]: [DVec3; 2], at: DVec2) -> Option<(f64, DVec3)> {
-    let (way, reach) = ((to - from).truncate(), at - from.truncate());
-    let t = (reach.dot(way) / way.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-    let aside = reach - t * way;
-    let rise_sq = WIRE * WIRE - aside.length_squared();
-    (rise_sq > 0.0).then(|| {
-        let rise = rise_sq.sqrt();
-        let across = DVec2::new(aside.x - aside.y, aside.x + aside.y) * core::f64::consts::FRAC_1_SQRT_2;
-        (from.z + t * (to.z - from.z) + rise, across.extend(rise) / WIRE)
-    })
+    let length = (to - from).length();
+    let axis = (to - from).normalize_or_zero();
+    // Where the upright line through the position leaves the endless wire.
+    let reach = at.extend(0.0) - from;
+    let start = reach - reach.dot(axis) * axis;
+    let climb = DVec3::Z - axis.z * axis;
+    let height = later_root(
+        climb.length_squared(),
+        start.dot(climb),
+        start.length_squared(),
+    )?;
+    let along = (reach + height * DVec3::Z).dot(axis);
+    if (0.0..=length).contains(&along) {
+        return Some((height, to_image(start + height * climb)));
+    }
+    let end = from + along.clamp(0.0, length) * axis;
+    let aside = at.extend(0.0) - end;
+    let height = later_root(1.0, aside.z, aside.length_squared())?;
+    Some((height, to_image(aside + height * DVec3::Z)))
+}
+
+/// The larger `h` with `square · h² + 2 · half · h + rest = WIRE²`.
+fn later_root(square: f64, half: f64, rest: f64) -> Option<f64> {
+    let inside = half * half - square * (rest - WIRE * WIRE);
+    (inside >= 0.0 && square > 0.0).then(|| (inside.sqrt() - half) / square)
+}
+
+/// A normal along and across the strand, and up, as it is in the image.
+fn to_image(radius: DVec3) -> DVec3 {
+    let turned = DVec2::new(radius.x - radius.y, radius.x + radius.y);
+    (turned * core::f64::consts::FRAC_1_SQRT_2).extend(radius.z) / WIRE
 }
 
 /// The light from the upper left on a wire, from 0 to 1.

@@ -74,7 +74,8 @@ pub(super) fn puzzle(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
 fn on_outline(place: DVec2, own: [i64; 2]) -> bool {
     let s = core::f64::consts::FRAC_1_SQRT_2;
     let ways = [[1.0, 0.0], [s, s], [0.0, 1.0], [-s, s]].map(|way| OUTLINE * DVec2::from(way));
-    ways.iter().any(|&way| piece(place + way) != own || piece(place - way) != own)
+    ways.iter()
+        .any(|&way| piece(place + way) != own || piece(place - way) != own)
 }
 
 /// The piece at a place: the one of its square, or the neighbor whose knob reaches into it.

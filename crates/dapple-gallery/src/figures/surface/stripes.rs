@@ -17,6 +17,10 @@ pub(super) fn stripes(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     let [dark, light] = [[40_u8, 32, 28], [232, 226, 210]].map(LinearRgb::from_srgb);
     Ok(sampled([size; 2], N_SAMPLES, |at| {
         let part = (at.x * N_STRIPES).fract();
-        if (0.25..0.75).contains(&part) { dark } else { light }
+        if (0.25..0.75).contains(&part) {
+            dark
+        } else {
+            light
+        }
     })?)
 }

@@ -11,10 +11,10 @@ use dapple_worley::{Feature, FeatureSet};
 use glam::DVec2;
 
 /// How far apart suckers are at least, in widths of the image.
-const SPACING: f64 = 0.2;
+const SPACING: f64 = 0.21;
 
 /// The largest radius: suckers do not touch.
-const RADIUS: f64 = 0.47 * SPACING;
+const RADIUS: f64 = 0.5 * SPACING;
 
 /// Samples along the side of a pixel.
 const N_SAMPLES: u32 = 5;
@@ -40,7 +40,7 @@ pub(super) fn suckers(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
 /// The radius of the sucker with an id.
 fn radius(id: u64) -> f64 {
     let part = unit_f64(CellHash::new(Seed(5), [id as i64]).at(0));
-    RADIUS * (0.55 + 0.45 * part)
+    RADIUS * (0.62 + 0.38 * part)
 }
 
 /// How steeply a sucker rises outward, a part of its radius from the center: up to the rim, and down behind it.

@@ -8,7 +8,7 @@ use dapple_raster::{Raster, Window};
 use glam::DVec2;
 
 /// The text, line by line; lines are longer than the image is wide.
-const LINES: [&str; 13] = [
+const LINES: [&str; 14] = [
     "of all the small things that a hand",
     "may copy, a page of words is the one",
     "Where a stripe bends, we see a stripe",
@@ -22,15 +22,16 @@ const LINES: [&str; 13] = [
     "wide, of gap and stem, the way a dozen",
     "rows run level and never quite meet or",
     "drift apart. Then it is a good match",
+    "for a page, and so for any other skin",
 ];
 
 /// How far the lines are shifted to the left, in widths of the image.
-const SHIFTS: [f64; 13] = [
-    0.03, -0.01, 0.05, 0.02, -0.02, 0.06, 0.01, 0.04, -0.01, 0.07, 0.03, 0.00, 0.05,
+const SHIFTS: [f64; 14] = [
+    0.03, -0.01, 0.05, 0.02, -0.02, 0.06, 0.01, 0.04, -0.01, 0.07, 0.03, 0.00, 0.05, 0.02,
 ];
 
 /// Lines along the height of the image.
-const N_LINES: f64 = 11.6;
+const N_LINES: f64 = 13.4;
 
 /// The height of capitals, in distances between lines.
 const CAPITAL: f64 = 0.56;
