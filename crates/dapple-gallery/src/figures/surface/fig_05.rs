@@ -1,0 +1,50 @@
+//! Six models with their textures, each shown with the exemplar that it was synthesized from: a ray, an octopus, a rounded
+//! animal, three blended tori, a zebra and an elephant.
+//!
+//! Points, levels and exemplar sizes are those of table 1 in a figure of 1024 pixels (`--full`); smaller figures have fewer
+//! points. Models and exemplars are procedural stand-ins for the paper's. The texture is baked to a map of right triangles, and
+//! the model that is drawn is the one with 14 000 triangles.
+
+use super::stage::lit;
+use super::subject::SUBJECTS;
+use crate::draw::enlarged;
+use crate::figure::source;
+use crate::{Figure, Panel};
+use dapple_color::LinearRgb;
+use dapple_raster::Raster;
+
+pub(super) const FIGURE: Figure = Figure {
+    number: "5",
+    parameters: &[
+        ("points", "256,000 (ray: 64,000) at 1024 pixels"),
+        ("levels", "3: ray, octopus, bunny; 4: tori, zebra, elephant"),
+        ("coherence", "the default"),
+        ("texture map", "two pixels of the map for one of the figure"),
+    ],
+    source: source!(),
+    render,
+};
+
+fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
+    let panel = |subject: &super::subject::Subject| {
+        let textured = subject.textured(size)?;
+        let mesh = textured.synthesizer.surface().mesh();
+        let mut picture = lit(mesh, &subject.view, [size; 2], |surface| textured.color(surface))?;
+        let (exemplar, _) = subject.image()?;
+        inset(&mut picture, &enlarged(&exemplar, (size / 5).max(1))?);
+        let n_points = textured.synthesizer.hierarchy().sites().len();
+        let label = format!("{}, {n_points} points", subject.name);
+        Ok(Panel::color(label, picture))
+    };
+    SUBJECTS.iter().map(panel).collect()
+}
+
+/// Puts a small picture into the upper right corner of another one.
+fn inset(picture: &mut Raster<LinearRgb>, small: &Raster<LinearRgb>) {
+    let width = picture.width() as usize;
+    let first = width - small.width() as usize;
+    for row in 0..small.height() {
+        let target = &mut picture.pixels_mut()[row as usize * width + first..];
+        target[..small.width() as usize].copy_from_slice(small.row(row));
+    }
+}

@@ -1,0 +1,45 @@
+//! Lit pictures of meshes.
+
+use anyhow::Result;
+use dapple_color::LinearRgb;
+use dapple_preview::{
+    Camera, Environment, Light, Material, Mesh, Object, Scene, Shape, Sky, Supersampling, Surface,
+};
+use dapple_raster::Raster;
+use glam::DVec3;
+
+/// Where a mesh is seen from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View {
+    pub(super) eye: DVec3,
+    pub(super) target: DVec3,
+    /// The angle between the top and the bottom of the picture, in radians.
+    pub(super) fov: f64,
+}
+
+/// A mesh in a plain room, with two lights from above that follow the eye.
+pub(super) fn lit(
+    mesh: &dapple_synth::mesh::Mesh,
+    view: &View,
+    size: [u32; 2],
+    color: impl Fn(&Surface) -> LinearRgb + Send + Sync,
+) -> Result<Raster<LinearRgb>> {
+    let toward = (view.eye - view.target).normalize();
+    let right = DVec3::Y.cross(toward).normalize();
+    let look = |surface: &Surface| Material::matte(color(surface)).with_specular(0.06, 25.0);
+    let shape = Shape::mesh(Mesh::from_mesh(mesh.clone()));
+    let room = Sky {
+        nadir: LinearRgb::gray(0.55),
+        horizon: LinearRgb::gray(0.8),
+        zenith: LinearRgb::gray(0.9),
+    };
+    let key = Light::directional(toward - right * 0.5 + DVec3::Y * 0.9, LinearRgb::gray(0.75));
+    let fill = Light::directional(toward + right * 0.9 + DVec3::Y * 0.2, LinearRgb::gray(0.3));
+    let scene = Scene::new(Camera::look_at(view.eye, view.target).with_fov(view.fov))
+        .with_object(Object::new(shape, look))
+        .with_light(key)
+        .with_light(fill)
+        .with_ambient(LinearRgb::gray(0.22))
+        .with_environment(Environment::Sky(room));
+    Ok(scene.render(size, Supersampling(3))?)
+}

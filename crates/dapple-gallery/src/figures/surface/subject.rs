@@ -1,0 +1,254 @@
+//! The six models of figure 5 with their textures, and how they get them.
+
+use super::exemplar::{EXEMPLARS, Edges};
+use super::stage::View;
+use anyhow::{Context, Result};
+use dapple_color::LinearRgb;
+use dapple_preview::Surface;
+use dapple_raster::{Raster, Wrap};
+use dapple_synth::mesh::{HierarchyOptions, Mesh, MeshError, models};
+use dapple_synth::{Atlas, Direction, Exemplar, Options, SurfaceTexture, Synthesizer, bake};
+use glam::{DVec2, DVec3};
+
+/// The size of a figure from which on a subject has as many sites as the paper's.
+const FULL_SIZE: u32 = 1024;
+/// The triangles of a model: the paper has 10 to 20 thousand.
+const TRIANGLES: usize = 14_000;
+/// The side of a texture map in a figure of full size.
+const MAP_SIDE: u32 = 2048;
+
+/// A model that gets a texture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Subject {
+    pub(super) name: &'static str,
+    pub(super) model: fn(n_triangles: usize) -> Result<Mesh, MeshError>,
+    /// The name of the exemplar.
+    exemplar: &'static str,
+    /// Sites of the finest level at full size, and levels: those of table 1.
+    n_sites: usize,
+    n_levels: usize,
+    /// Positions, and the directions there that are the texture's down.
+    directions: &'static [[DVec3; 2]],
+    pub(super) view: View,
+}
+
+/// A subject with its texture.
+pub(super) struct Textured {
+    pub(super) synthesizer: Synthesizer,
+    pub(super) texture: SurfaceTexture,
+    map: Raster<LinearRgb>,
+    uvs: Vec<[DVec2; 3]>,
+}
+
+/// The six, in the order of table 1.
+pub(super) const SUBJECTS: [Subject; 6] = [RAY, OCTOPUS, BUNNY, TORI, ZEBRA, ELEPHANT];
+
+/// The stingray: its texture spreads from the snout.
+pub(super) const RAY: Subject = Subject {
+    name: "ray",
+    model: models::ray,
+    exemplar: "wiggly checker",
+    n_sites: 64_000,
+    n_levels: 3,
+    directions: &[
+        [DVec3::new(0.15, 0.1, 0.75), DVec3::new(0.9, 0.0, -0.6)],
+        [DVec3::new(-0.15, 0.1, 0.75), DVec3::new(-0.9, 0.0, -0.6)],
+        [DVec3::new(0.0, 0.15, 0.6), DVec3::NEG_Z],
+        [DVec3::new(0.0, -0.15, 0.6), DVec3::NEG_Z],
+        [DVec3::new(0.6, 0.1, 0.1), DVec3::new(1.0, 0.0, -0.45)],
+        [DVec3::new(-0.6, 0.1, 0.1), DVec3::new(-1.0, 0.0, -0.45)],
+        [DVec3::new(0.0, 0.1, -0.3), DVec3::NEG_Z],
+        [DVec3::new(0.05, 0.0, -1.0), DVec3::NEG_Z],
+    ],
+    view: View {
+        eye: DVec3::new(1.1, 2.7, 1.9),
+        target: DVec3::new(0.0, 0.0, -0.15),
+        fov: 0.62,
+    },
+};
+
+const OCTOPUS: Subject = Subject {
+    name: "octopus",
+    model: models::octopus,
+    exemplar: "suckers",
+    n_sites: 256_000,
+    n_levels: 3,
+    directions: &[
+        [DVec3::new(0.0, 0.5, 0.4), DVec3::NEG_Y],
+        [DVec3::new(0.0, 0.5, -0.6), DVec3::NEG_Y],
+        [DVec3::new(0.75, -0.2, 0.3), DVec3::new(0.9, 0.0, 0.4)],
+        [DVec3::new(0.3, -0.2, 0.75), DVec3::new(0.4, 0.0, 0.9)],
+        [DVec3::new(-0.75, -0.2, 0.3), DVec3::new(-0.9, 0.0, 0.4)],
+        [DVec3::new(-0.3, -0.2, 0.75), DVec3::new(-0.4, 0.0, 0.9)],
+        [DVec3::new(0.75, -0.2, -0.3), DVec3::new(0.9, 0.0, -0.4)],
+        [DVec3::new(0.3, -0.2, -0.75), DVec3::new(0.4, 0.0, -0.9)],
+        [DVec3::new(-0.75, -0.2, -0.3), DVec3::new(-0.9, 0.0, -0.4)],
+        [DVec3::new(-0.3, -0.2, -0.75), DVec3::new(-0.4, 0.0, -0.9)],
+    ],
+    view: View {
+        eye: DVec3::new(1.0, 1.6, 3.6),
+        target: DVec3::new(0.0, 0.1, 0.0),
+        fov: 0.6,
+    },
+};
+
+/// The rounded animal: rows of scales go from its ears down to its tail.
+const BUNNY: Subject = Subject {
+    name: "bunny",
+    model: models::bunny,
+    exemplar: "scales",
+    n_sites: 256_000,
+    n_levels: 3,
+    directions: &[
+        [models::bunny::LEFT_EAR, DVec3::NEG_Y],
+        [DVec3::new(-0.25, 1.05, -0.05), DVec3::NEG_Y],
+        [DVec3::new(0.0, 0.5, 0.2), DVec3::new(0.0, -0.3, 1.0)],
+        [DVec3::new(0.0, 0.5, -0.2), DVec3::NEG_Y],
+        [DVec3::new(0.5, -0.4, 0.0), DVec3::NEG_Y],
+        [DVec3::new(-0.5, -0.4, 0.0), DVec3::NEG_Y],
+        [DVec3::new(0.0, -0.4, 0.5), DVec3::NEG_Y],
+        [models::bunny::TAIL, DVec3::NEG_Y],
+    ],
+    view: View {
+        eye: DVec3::new(2.3, 1.1, 2.9),
+        target: DVec3::new(0.0, 0.05, 0.0),
+        fov: 0.62,
+    },
+};
+
+/// Three blended tori: strands go around their tubes.
+pub(super) const TORI: Subject = Subject {
+    name: "tori",
+    model: models::blended_tori,
+    exemplar: "woven hooks",
+    n_sites: 256_000,
+    n_levels: 4,
+    directions: &[
+        [DVec3::new(0.55, 0.55, 0.2), DVec3::new(-1.0, 1.0, 0.0)],
+        [DVec3::new(-0.55, -0.55, 0.2), DVec3::new(1.0, -1.0, 0.0)],
+        [DVec3::new(0.2, 0.55, 0.55), DVec3::new(0.0, -1.0, 1.0)],
+        [DVec3::new(0.2, -0.55, -0.55), DVec3::new(0.0, 1.0, -1.0)],
+        [DVec3::new(0.55, 0.2, 0.55), DVec3::new(1.0, 0.0, -1.0)],
+        [DVec3::new(-0.55, 0.2, -0.55), DVec3::new(-1.0, 0.0, 1.0)],
+    ],
+    view: View {
+        eye: DVec3::new(1.7, 1.5, 2.5),
+        target: DVec3::ZERO,
+        fov: 0.62,
+    },
+};
+
+/// The zebra: lines of text run along its body.
+const ZEBRA: Subject = Subject {
+    name: "zebra",
+    model: models::zebra,
+    exemplar: "text",
+    n_sites: 256_000,
+    n_levels: 4,
+    directions: &[
+        [models::zebra::BACK, DVec3::X],
+        [DVec3::new(0.4, 0.0, 0.0), DVec3::NEG_Y],
+        [DVec3::new(-0.4, 0.0, 0.0), DVec3::Y],
+        [DVec3::new(0.2, 0.5, 0.9), DVec3::NEG_Y],
+        [DVec3::new(-0.2, 0.5, 0.9), DVec3::Y],
+    ],
+    view: View {
+        eye: DVec3::new(3.6, 0.9, 1.6),
+        target: DVec3::new(0.0, 0.0, 0.05),
+        fov: 0.62,
+    },
+};
+
+const ELEPHANT: Subject = Subject {
+    name: "elephant",
+    model: models::elephant,
+    exemplar: "puzzle",
+    n_sites: 256_000,
+    n_levels: 4,
+    directions: &[
+        [models::elephant::BACK, DVec3::NEG_Z],
+        [models::elephant::FOREHEAD, DVec3::new(0.0, -1.0, 0.5)],
+        [models::elephant::TRUNK, DVec3::NEG_Y],
+        [DVec3::new(0.6, 0.0, -0.2), DVec3::NEG_Y],
+        [DVec3::new(-0.6, 0.0, -0.2), DVec3::NEG_Y],
+    ],
+    view: View {
+        eye: DVec3::new(2.6, 1.2, 3.0),
+        target: DVec3::new(0.0, 0.0, 0.2),
+        fov: 0.62,
+    },
+};
+
+impl Subject {
+    /// The sites of the subject in a figure of a size: those of the paper at full size, and fewer as there are fewer pixels.
+    pub(super) fn sites(&self, size: u32) -> HierarchyOptions {
+        let part = (f64::from(size) / f64::from(FULL_SIZE)).min(1.0);
+        HierarchyOptions {
+            n_sites: ((self.n_sites as f64 * part * part) as usize).max(1024),
+            n_levels: self.n_levels,
+            ..HierarchyOptions::default()
+        }
+    }
+
+    /// The directions of the texture.
+    pub(super) fn directions(&self) -> Vec<Direction> {
+        let directions = self.directions.iter();
+        directions.map(|&[at, vector]| Direction { at, vector }).collect()
+    }
+
+    /// The exemplar as an image, as large as in table 1.
+    pub(super) fn image(&self) -> Result<(Raster<LinearRgb>, dapple_synth::Edges)> {
+        let exemplar = EXEMPLARS.iter().find(|exemplar| exemplar.name == self.exemplar);
+        let exemplar = exemplar.with_context(|| format!("there is no exemplar {}", self.exemplar))?;
+        let edges = match exemplar.edges {
+            Edges::Repeating => dapple_synth::Edges::Wrap,
+            Edges::Cropped => dapple_synth::Edges::Cut,
+        };
+        Ok(((exemplar.draw)(exemplar.side)?, edges))
+    }
+
+    /// The model with its texture, for a figure of a size.
+    pub(super) fn textured(&self, size: u32) -> Result<Textured> {
+        let (image, edges) = self.image()?;
+        let surface = dapple_synth::mesh::Surface::new((self.model)(TRIANGLES)?)?;
+        let synthesizer = Synthesizer::new(surface, &self.directions(), &self.sites(size))?;
+        let options = Options {
+            n_levels: self.n_levels,
+            ..Options::default()
+        };
+        let texture = synthesizer.synthesize(&Exemplar::new(&image, edges)?, &options)?;
+        let atlas = Atlas::uniform(synthesizer.surface(), (MAP_SIDE / FULL_SIZE * size).max(1024))?;
+        let values = texture.values(0);
+        let map = bake::<3>(
+            synthesizer.surface(),
+            synthesizer.hierarchy(),
+            values,
+            &atlas,
+            [0.0; 3],
+        )?;
+        Ok(Textured {
+            map: map.map(|codes| srgb(*codes)),
+            uvs: atlas.uvs(),
+            synthesizer,
+            texture,
+        })
+    }
+}
+
+impl Textured {
+    /// The color of the texture map where a ray met the model.
+    pub(super) fn color(&self, surface: &Surface) -> LinearRgb {
+        let Some(triangle) = surface.triangle() else {
+            return LinearRgb::BLACK;
+        };
+        let [a, b, c] = self.uvs[triangle.index as usize];
+        let [of_a, of_b, of_c] = triangle.weights;
+        let uv = a * of_a + b * of_b + c * of_c;
+        self.map.sample_bilinear(uv, [Wrap::Mirror; 2])
+    }
+}
+
+/// A color from its sRGB codes from 0 to 1, rounded to 8 bits as in a file.
+pub(super) fn srgb(codes: [f32; 3]) -> LinearRgb {
+    LinearRgb::from_srgb(codes.map(|code| (code.clamp(0.0, 1.0) * 255.0 + 0.5) as u8))
+}
