@@ -26,6 +26,7 @@ mod surface;
 mod testing;
 #[cfg(test)]
 mod timing;
+mod triangles;
 mod walk;
 
 pub use adjacency::{Adjacency, FaceEdge};
@@ -46,4 +47,5 @@ pub use report::MeshReport;
 pub use sites::Sites;
 pub use star::STAR_RADIUS;
 pub use surface::{Surface, SurfacePoint};
+pub use triangles::SiteTriangles;
 pub use walk::Walk;

@@ -7,7 +7,7 @@
 use crate::low_pass::check_length;
 use crate::oriented::Oriented;
 use crate::parallel::par_chunks;
-use crate::{Blend, Hierarchy, LowPass, MeshError};
+use crate::{Blend, Hierarchy, LowPass, MeshError, SiteTriangles};
 use glam::DVec3;
 
 /// The part t of the steps of [`Hierarchy::downsample`], which is the paper's example.
@@ -111,6 +111,15 @@ impl Hierarchy {
             }
         });
         Ok(())
+    }
+
+    /// The sites of a level as the vertices of a triangle mesh, for export: see [`SiteTriangles`] for what is repaired.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshErrorKind::Range`](crate::MeshErrorKind::Range) if there is no such level.
+    pub fn triangles(&self, level: usize) -> Result<SiteTriangles, MeshError> {
+        SiteTriangles::new(&self.oriented(level)?)
     }
 
     /// The sites of a level.
