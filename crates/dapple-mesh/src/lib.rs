@@ -24,8 +24,6 @@ mod star;
 mod surface;
 #[cfg(test)]
 mod testing;
-#[cfg(test)]
-mod timing;
 mod triangles;
 mod walk;
 
