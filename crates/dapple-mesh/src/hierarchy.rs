@@ -3,7 +3,6 @@
 use crate::oriented::Oriented;
 use crate::{Connected, MeshError, SiteGraph, SiteGrid, Sites, Surface, SurfacePoint};
 use dapple_hash::{Seed, unit_f64};
-use glam::DVec3;
 
 /// How a hierarchy is made.
 #[derive(Clone, Debug, PartialEq)]

@@ -82,8 +82,7 @@ impl Oriented<'_> {
     /// Whether the normal of a site is at most a right angle from another one.
     #[inline]
     fn is_on_side(&self, site: SiteIdx, normal: DVec3) -> bool {
-        // Zero where a normal is not known, and with one that is not a number.
-        !(self.normals[site.index()].dot(normal) < 0.0)
+        self.normals[site.index()].dot(normal) >= 0.0
     }
 }
 

@@ -158,8 +158,8 @@ fn push_weights(graph: &SiteGraph, positions: &[DVec3], site: SiteIdx, weights: 
     let longest = weights[first..].iter().copied().fold(0.0, f64::max);
     let mut sum = 0.0;
     for weight in &mut weights[first..] {
-        // From 1 to a million, and the same for all if all lengths are zero.
-        *weight = 1.0 / (*weight / longest).max(1e-6).min(1.0);
+        // If all lengths are zero this is the larger one of what is not a number and a millionth, which is a millionth.
+        *weight = 1.0 / (*weight / longest).max(1e-6);
         sum += *weight;
     }
     for weight in &mut weights[first..] {
