@@ -1,8 +1,8 @@
 //! Triangles of the sites of a level, for export.
 //!
 //! The paper's `M_k` is a graph: stars that disagree about an edge do not fit together, and forcing the edge makes no
-//! triangles. (Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1.) This is
-//! a repair of it that synthesis does not need:
+//! triangles. (Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1.) This
+//! is a repair of it that synthesis does not need:
 //!
 //! * only edges that are in the stars of both of their sites are kept; where four sites have both diagonals, only the
 //!   shorter one;
@@ -157,8 +157,8 @@ impl Edges {
         (0..row.len()).any(begins)
     }
 
-    /// Calls `visit` with the sites around each face, counterclockwise, and whether all of its corners are closed, and are
-    /// agreed on.
+    /// Calls `visit` with the sites around each face, counterclockwise, and whether all of its corners are closed, and
+    /// are agreed on.
     fn visit_faces(&self, mut visit: impl FnMut(&[u32], bool, bool)) {
         let mut is_done = vec![false; self.rows.len()];
         let mut face = Vec::new();
