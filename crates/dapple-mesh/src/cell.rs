@@ -17,9 +17,9 @@ use robust::{Coord, incircle, orient2d};
 
 /// 2^-50: eight units of rounding, for a sum of two products of two coordinates.
 ///
-/// It takes part in what follows with room to spare: the cross product of a and b is off by at most 2 units times `|a|
-/// |b|`, and the quick answer for c, which is farther away than both, by at most 20 units times `|a| |b| |c|²`, where
-/// 32 are taken.
+/// It takes part in what follows with room to spare. The cross product of a and b is off by at most 2 units times
+/// `|a| |b|`; the quick answer for c, which is farther away than both, by at most 20 units times `|a| |b| |c|²`, where 32
+/// are taken.
 const ROUNDING: f64 = 8.881_784_197_001_252e-16;
 
 /// The Voronoi cell of the origin.
