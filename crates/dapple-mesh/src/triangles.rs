@@ -8,9 +8,10 @@
 //!   shorter one;
 //! * the faces between them are found by going around: from site to site, always taking the edge next to the one just
 //!   come by, in the order of the star;
-//! * a triangle in the stars of all its three sites is such a face. A larger face with no border of the surface in it
-//!   is a hole, left where stars disagree or where sites lie on one circle, and is filled by cutting off its
-//!   corners, first the one with the shortest diagonal.
+//! * a triangle in the stars of all its three sites is such a face. A larger face without a gap in the stars is a hole,
+//!   left where stars disagree or where sites lie on one circle, and is filled by cutting off its corners, first the
+//!   one with the shortest diagonal;
+//! * so is a small face with a gap, which sharp edges leave, and real holes of a few spacings. The others are borders.
 //!
 //! Each edge is then in at most two triangles, which go around it in opposite directions.
 
@@ -22,6 +23,8 @@ use std::collections::BTreeSet;
 
 /// Larger holes are left open: the sites around them say little of what is inside.
 const HOLE_MAX: usize = 32;
+/// Faces with gaps in their stars are borders of the surface if they have more edges than this.
+const GAP_MAX: usize = 8;
 
 /// The triangles of the sites of a level, and how they came about.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +37,7 @@ pub struct SiteTriangles {
     pub filled: usize,
     /// The number of holes that could not be filled.
     pub holes: usize,
-    /// The number of loops of edges along borders of the surface.
+    /// The number of loops of edges along borders of the surface, and where stars found nothing on a side.
     pub borders: usize,
 }
 
@@ -51,15 +54,16 @@ impl SiteTriangles {
         };
         let (mut triangles, mut agreed, mut holes, mut borders) = (Vec::new(), 0, 0, 0);
         edges.visit_faces(|face, is_closed, is_agreed| {
-            if !is_closed {
-                borders += 1;
-            } else if let (&[a, b, c], true) = (face, is_agreed) {
+            let is_hole = is_closed || face.len() <= GAP_MAX;
+            if let (&[a, b, c], true) = (face, is_agreed) {
                 triangles.push([a, b, c]);
                 agreed += 1;
-            } else if let Some(filling) = filler.fill(face) {
+            } else if let Some(filling) = is_hole.then(|| filler.fill(face)).flatten() {
                 triangles.extend(filling);
-            } else {
+            } else if is_closed {
                 holes += 1;
+            } else {
+                borders += 1;
             }
         });
         Ok(Self {
@@ -201,7 +205,7 @@ struct Filler<'a> {
 }
 
 impl Filler<'_> {
-    /// Cuts a face into triangles; nothing if it meets itself or has no corner to begin with.
+    /// Cuts a face into triangles that face outward; nothing if that is not possible or the face meets itself.
     fn fill(&mut self, face: &[u32]) -> Option<Vec<[u32; 3]>> {
         let is_simple = || (1..face.len()).all(|at| !face[..at].contains(&face[at]));
         if !(3..=HOLE_MAX).contains(&face.len()) || !is_simple() {
@@ -215,6 +219,9 @@ impl Filler<'_> {
             ring.remove(at);
         }
         triangles.push([ring[0], ring[1], ring[2]]);
+        if !self.is_outward([ring[0], ring[1], ring[2]]) {
+            return None;
+        }
         // All but the last triangle were cut off along a diagonal.
         let cuts = &triangles[..triangles.len() - 1];
         let diagonals = cuts.iter().map(|&[a, _, b]| lower_first(a, b));
@@ -230,13 +237,18 @@ impl Filler<'_> {
         };
         let is_free = |&at: &usize| {
             let [a, middle, b] = corner(ring, at);
-            let up = (self.at(middle) - self.at(a)).cross(self.at(b) - self.at(middle));
-            up.dot(self.sites.normals[middle as usize]) > 0.0
+            self.is_outward([a, middle, b])
                 && !self.edges.contains(a, b)
                 && !self.diagonals.contains(&lower_first(a, b))
         };
         let corners = (0..ring.len()).filter(is_free);
         corners.min_by(|&a, &b| length(a).total_cmp(&length(b)))
+    }
+
+    /// Whether a triangle faces to where the normal of its second site points.
+    fn is_outward(&self, [a, middle, b]: [u32; 3]) -> bool {
+        let up = (self.at(middle) - self.at(a)).cross(self.at(b) - self.at(middle));
+        up.dot(self.sites.normals[middle as usize]) > 0.0
     }
 
     fn at(&self, site: u32) -> DVec3 {
