@@ -35,6 +35,7 @@ mod test_meshes;
 #[cfg(test)]
 mod testing;
 mod triangle;
+mod triangles;
 mod unstick;
 mod walk;
 
@@ -61,4 +62,5 @@ pub use scatter::scatter;
 pub use sites::Sites;
 pub use star::STAR_RADIUS;
 pub use surface::{Surface, SurfacePoint};
+pub use triangles::SiteTriangles;
 pub use walk::Walk;
