@@ -1,24 +1,25 @@
 //! The Voronoi cell of the origin of a plane, found by clipping it with the bisectors of points, one by one.
 //!
-//! The points whose bisectors remain are the neighbors of the origin in the Delaunay triangulation of them all. Only its
-//! corners are kept, as the pairs of neighbors that make them, so nothing adds up: a bisector cuts off a corner if its point lies in the circle
-//! through the origin and the two, and that is decided for the points as they were given. Where the rounding of the quick
-//! answer could matter, the exact one is taken.
+//! The points whose bisectors remain are the neighbors of the origin in the Delaunay triangulation of them all. Only
+//! its corners are kept, as the pairs of neighbors that make them, so nothing adds up: a bisector cuts off a corner if
+//! its point lies in the circle through the origin and the two, and that is decided for the points as they were given.
+//! Where the rounding of the quick answer could matter, the exact one is taken.
 //!
 //! Reference: Jonathan Richard Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
 //! Predicates", Discrete & Computational Geometry 18, 1997, doi 10.1007/PL00009321, for the exact answers.
 //!
-//! Where several points lie on an empty circle through the origin, any diagonal between them would do; none is taken, so the
-//! cell does not depend on the order of the points. Units: those of the points.
+//! Where several points lie on an empty circle through the origin, any diagonal between them would do; none is taken,
+//! so the cell does not depend on the order of the points. Units: those of the points.
 
 use core::cmp::Ordering;
 use glam::DVec2;
 use robust::{Coord, incircle, orient2d};
 
-/// More than the relative error of a product of two coordinates' differences and sums thereof: 2^-50.
+/// 2^-50: eight units of rounding, for a sum of two products of two coordinates.
 ///
-/// Each of the quick answers is a sum of at most six products of four numbers, computed with fewer than eight roundings each;
-/// 2^-50 is eight units of rounding for every product.
+/// It takes part in what follows with room to spare. The cross product of a and b is off by at most 2 units times
+/// `|a| |b|`; the quick answer for c, which is farther away than both, by at most 20 units times `|a| |b| |c|²`, where 32
+/// are taken.
 const ROUNDING: f64 = 8.881_784_197_001_252e-16;
 
 /// The Voronoi cell of the origin.
@@ -178,8 +179,8 @@ impl Cell {
         self.diameter_sq = diameters.fold(0.0, f64::max);
     }
 
-    /// Whether the bisector of a point leaves nothing of a neighbor's side of the cell, of which it is known to cut off or go
-    /// through the one corner, and `corner` is the other one.
+    /// Whether the bisector of a point leaves nothing of a neighbor's side of the cell, of which it is known to cut off
+    /// or go through the one corner, and `corner` is the other one.
     #[inline]
     fn hides(&self, neighbor: usize, corner: usize, new: &Side) -> bool {
         let [before, after] = [self.before(neighbor), neighbor].map(|index| &self.sides[index]);
@@ -191,8 +192,8 @@ impl Cell {
 
     /// Whether a neighbor lies on an empty circle through the origin with at most this squared diameter.
     ///
-    /// The centers of its empty circles are its side of the cell. The smallest circle is in the middle between it and the
-    /// origin if that is on the side, and otherwise at the nearer corner.
+    /// The centers of its empty circles are its side of the cell. The smallest circle is in the middle between it and
+    /// the origin if that is on the side, and otherwise at the nearer corner.
     fn is_within(&self, index: usize, limit_sq: f64) -> bool {
         let side = &self.sides[index];
         let [before, after] = [&self.sides[self.before(index)].corner, &side.corner];

@@ -1,7 +1,7 @@
 //! Connects sites: all stars, and the graph of what any of two sites takes for an edge.
 //!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1: two sites
-//! that disagree whether they are connected are connected. So the graph is no triangulation.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1: two
+//! sites that disagree whether they are connected are connected. So the graph is no triangulation.
 
 use crate::oriented::Oriented;
 use crate::parallel::par_map;
@@ -27,13 +27,13 @@ pub struct Connected {
 impl Connected {
     /// Connects sites by the Delaunay triangulations in their tangent planes.
     ///
-    /// `normals` are unit vectors; `spacing` is the distance of neighbors that is expected. Sites at the same place are not
-    /// connected to each other, but any of them may be to what is around.
+    /// `normals` are unit vectors; `spacing` is the distance of neighbors that is expected. Sites at the same place are
+    /// not connected to each other, but any of them may be to what is around.
     ///
     /// # Errors
     ///
-    /// [`MeshErrorKind::Count`] if there is not one normal for each position, [`MeshErrorKind::Range`] for a spacing that
-    /// is not above zero and finite.
+    /// [`MeshErrorKind::Count`] if there is not one normal for each position, [`MeshErrorKind::Range`] for a spacing
+    /// that is not above zero and finite.
     ///
     /// # Examples
     ///

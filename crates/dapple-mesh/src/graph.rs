@@ -117,3 +117,44 @@ impl SiteGraph {
         self.neighbors.len() / 2
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dapple_hash::{Seed, hash1};
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn graph_has_each_edge_once_in_both_rows() {
+        for n_sites in [0_u32, 1, 2, 7, 50] {
+            // Some are loops, some are repeated, and some name a site that there is not.
+            let end =
+                |edge, counter| SiteIdx(hash1(Seed(9), [edge], counter) as u32 % (n_sites + 2));
+            let edges: Vec<[SiteIdx; 2]> =
+                (0..200).map(|edge| [end(edge, 0), end(edge, 1)]).collect();
+            let mut expected = BTreeSet::new();
+            for &[a, b] in &edges {
+                if a != b && a.0 < n_sites && b.0 < n_sites {
+                    expected.extend([[a, b], [b, a]]);
+                }
+            }
+            let graph = SiteGraph::from_edges(n_sites as usize, edges);
+            assert_eq!(graph.len(), n_sites as usize, "a row for each site");
+            assert_eq!(
+                2 * graph.n_edges(),
+                expected.len(),
+                "edges of {n_sites} sites"
+            );
+            let row = |site| graph.neighbors(site).iter().map(move |&to| [site, to]);
+            let found: Vec<[SiteIdx; 2]> = (0..n_sites).map(SiteIdx).flat_map(row).collect();
+            assert!(found.iter().eq(&expected), "rows are sorted and complete");
+        }
+    }
+
+    #[test]
+    fn edges_given_once_are_counted() {
+        let edges = [[0, 1], [1, 0], [1, 2], [2, 3], [3, 2]].map(|edge| edge.map(SiteIdx));
+        let (graph, once) = SiteGraph::from_ends(4, edges.into_iter());
+        assert_eq!((graph.n_edges(), once), (3, 1), "1 to 2 is given once");
+    }
+}

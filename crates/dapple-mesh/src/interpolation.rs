@@ -1,8 +1,9 @@
 //! The value between sites: equation 1.
 //!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2, with the
-//! weights `w(x) = 2x³ - 3x² + 1` of the distances over the radius. The paper states neither the radius nor what holds
-//! where no site is in reach; see [`INTERPOLATION_RADIUS`] and [`Hierarchy::interpolate`](crate::Hierarchy::interpolate).
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2, with
+//! the weights `w(x) = 2x³ - 3x² + 1` of the distances over the radius. The paper states neither the radius nor what
+//! holds where no site is in reach; see [`INTERPOLATION_RADIUS`] and
+//! [`Hierarchy::interpolate`](crate::Hierarchy::interpolate).
 //!
 //! The sum is that of the differences to the first site in reach, so that a constant column gives just that
 //! constant. Sites are taken in the order of [`SiteGrid::visit`](crate::SiteGrid::visit). Units: those of the mesh.
@@ -22,7 +23,9 @@ const WEIGHTS_LEAST: f64 = 1e-9;
 const NEAREST_REACHES: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
 impl Oriented<'_> {
-    /// The value at a position: the weighted mean, or the value of the nearest site up to 8 radii away. `column` has a value for each site.
+    /// The value at a position: the weighted mean, or the value of the nearest site up to 8 radii away.
+    ///
+    /// `column` has a value for each site.
     #[inline]
     pub(crate) fn interpolate<T: Blend>(
         &self,
@@ -82,8 +85,7 @@ impl Oriented<'_> {
     /// Whether the normal of a site is at most a right angle from another one.
     #[inline]
     fn is_on_side(&self, site: SiteIdx, normal: DVec3) -> bool {
-        // Zero where a normal is not known, and with one that is not a number.
-        !(self.normals[site.index()].dot(normal) < 0.0)
+        self.normals[site.index()].dot(normal) >= 0.0
     }
 }
 

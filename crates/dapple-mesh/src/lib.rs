@@ -36,6 +36,7 @@ mod test_meshes;
 #[cfg(test)]
 mod testing;
 mod triangle;
+mod triangles;
 mod unstick;
 mod walk;
 
@@ -67,4 +68,5 @@ pub use scatter::scatter;
 pub use sites::Sites;
 pub use star::STAR_RADIUS;
 pub use surface::{Surface, SurfacePoint};
+pub use triangles::SiteTriangles;
 pub use walk::Walk;

@@ -2,14 +2,14 @@
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2; the
 //! smoothing is that of Gabriel Taubin, "A Signal Processing Approach to Fair Surface Design", SIGGRAPH 1995, doi
-//! 10.1145/218380.218473. Each step moves the value of a site by a part t toward the mean of its neighbors, whose weights
-//! are the inverse lengths of the edges over their sum:
+//! 10.1145/218380.218473. Each step moves the value of a site by a part t toward the mean of its neighbors, whose
+//! weights are the inverse lengths of the edges over their sum:
 //!
 //! `C' = C + t Σ wᵢ (Cᵢ - C)`
 //!
 //! All sites move at once (Jacobi), from the values before the step. The sum is over differences, in the order of the
-//! neighbors, so that a constant column does not change in a single bit. On even sites a step adds `t r² / 2` to the variance of a
-//! spot along each axis, with r the spacing.
+//! neighbors, so that a constant column does not change in a single bit. On even sites a step adds `t r² / 2` to the
+//! variance of a spot along each axis, with r the spacing.
 
 use crate::parallel::{par_chunks, par_map};
 use crate::{Blend, MeshError, MeshErrorKind, SiteGraph, SiteIdx};
@@ -44,7 +44,8 @@ pub struct LowPass<'a> {
 impl<'a> LowPass<'a> {
     /// The filter for a graph of sites at these positions.
     ///
-    /// An edge counts as at least a millionth of the longest one of its site, so that sites at the same place have weights.
+    /// An edge counts as at least a millionth of the longest one of its site, so that sites at the same place have
+    /// weights.
     ///
     /// # Errors
     ///
@@ -76,12 +77,13 @@ impl<'a> LowPass<'a> {
 
     /// Filters a column so many times, each with the part `t`; equation 3. The paper takes 0.1 for `t`.
     ///
-    /// As long as `t` is at most 0.99, no value leaves the range of the values of the site and its neighbors, not even by rounding.
+    /// As long as `t` is at most 0.99, no value leaves the range of the values of the site and its neighbors, not even
+    /// by rounding.
     ///
     /// # Errors
     ///
-    /// [`MeshErrorKind::Count`] if there is not one value for each site, [`MeshErrorKind::Range`] for a `t` that is not from
-    /// 0 to 1.
+    /// [`MeshErrorKind::Count`] if there is not one value for each site, [`MeshErrorKind::Range`] for a `t` that is not
+    /// from 0 to 1.
     pub fn apply<T: Blend>(&self, column: &mut [T], t: f64, steps: usize) -> Result<(), MeshError> {
         let mut other = column.to_vec();
         let mut from_column = true;
@@ -158,8 +160,8 @@ fn push_weights(graph: &SiteGraph, positions: &[DVec3], site: SiteIdx, weights: 
     let longest = weights[first..].iter().copied().fold(0.0, f64::max);
     let mut sum = 0.0;
     for weight in &mut weights[first..] {
-        // From 1 to a million, and the same for all if all lengths are zero.
-        *weight = 1.0 / (*weight / longest).max(1e-6).min(1.0);
+        // If all lengths are zero this is the larger one of what is not a number and a millionth, which is a millionth.
+        *weight = 1.0 / (*weight / longest).max(1e-6);
         sum += *weight;
     }
     for weight in &mut weights[first..] {

@@ -1,18 +1,19 @@
 //! The four operations on a mesh hierarchy: interpolation, low-pass, down- and upsampling of columns of values.
 //!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2. A column
-//! holds a value for each site of a level. How strongly to blur before downsampling is not in the paper: here until a spot
-//! has the variance of Burt and Adelson's kernel 1-4-6-4-1 on pixels of one spacing.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2. A
+//! column holds a value for each site of a level. How strongly to blur before downsampling is not in the paper: here
+//! until a spot has the variance of Burt and Adelson's kernel 1-4-6-4-1 on pixels of one spacing.
 
 use crate::low_pass::check_length;
 use crate::oriented::Oriented;
 use crate::parallel::par_chunks;
-use crate::{Blend, Hierarchy, LowPass, MeshError};
+use crate::{Blend, Hierarchy, LowPass, MeshError, SiteTriangles};
 use glam::DVec3;
 
 /// The part t of the steps of [`Hierarchy::downsample`], which is the paper's example.
 pub const DOWNSAMPLE_T: f64 = 0.1;
-/// The number of steps of [`Hierarchy::downsample`]: each adds half of t to the variance, in squared spacings, and 1 is wanted.
+/// The number of steps of [`Hierarchy::downsample`]: each adds half of t to the variance, in squared spacings, and 1 is
+/// wanted.
 pub const DOWNSAMPLE_STEPS: usize = 20;
 
 /// The sites that one thread works on at a time.
@@ -22,8 +23,8 @@ impl Hierarchy {
     /// The value at a position of the surface: equation 1, with `w(x) = 2x³ - 3x² + 1` and the radius
     /// [`INTERPOLATION_RADIUS`](crate::INTERPOLATION_RADIUS) spacings of the level.
     ///
-    /// Sites whose normal is more than a right angle from `normal` are on another sheet and do not count. Where no site is
-    /// in reach, the nearest one of a wider ball counts alone; there is no value where none is within 8 radii.
+    /// Sites whose normal is more than a right angle from `normal` are on another sheet and do not count. Where no site
+    /// is in reach, the nearest one of a wider ball counts alone; there is no value where none is within 8 radii.
     ///
     /// # Errors
     ///
@@ -81,13 +82,14 @@ impl Hierarchy {
 
     /// As [`upsample`](Self::upsample), into a column that there is.
     ///
-    /// Where interpolation finds no value, as on a small piece of the surface that has no site of the coarser level, that
-    /// of the nearest site anywhere is taken.
+    /// Where interpolation finds no value, as on a small piece of the surface that has no site of the coarser level,
+    /// that of the nearest site anywhere is taken.
     ///
     /// # Errors
     ///
     /// [`MeshErrorKind::Range`](crate::MeshErrorKind::Range) if there is no such level or none above it,
-    /// [`MeshErrorKind::Count`](crate::MeshErrorKind::Count) if a column does not have a value for each site of its level.
+    /// [`MeshErrorKind::Count`](crate::MeshErrorKind::Count) if a column does not have a value for each site of its
+    /// level.
     pub fn upsample_into<T: Blend>(
         &self,
         level: usize,
@@ -111,6 +113,15 @@ impl Hierarchy {
             }
         });
         Ok(())
+    }
+
+    /// The sites of a level as the vertices of a triangle mesh, for export: see [`SiteTriangles`] for what is repaired.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshErrorKind::Range`](crate::MeshErrorKind::Range) if there is no such level.
+    pub fn triangles(&self, level: usize) -> Result<SiteTriangles, MeshError> {
+        SiteTriangles::new(&self.oriented(level)?)
     }
 
     /// The sites of a level.

@@ -3,10 +3,11 @@
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1, which
 //! projects nearby points to a tangent plane and triangulates them there. Here
 //!
-//! * a site keeps its distance in space and the direction of its projection, so that a steep slope does not bring far sites
-//!   near, as a plain projection does;
+//! * a site keeps its distance in space and the direction of its projection, so that a steep slope does not bring far
+//!   sites near, as a plain projection does;
 //! * a site whose normal is more than a right angle from that of the center is on another sheet, and left out;
-//! * the star is found by clipping the Voronoi cell of the center, nearest site first, and no triangle away from the center is made;
+//! * the star is found by clipping the Voronoi cell of the center, nearest site first, and no triangle away from the
+//!   center is made;
 //! * two sites are neighbors only if there is an empty circle through them with a radius of at most [`STAR_RADIUS`]
 //!   spacings. Without that limit all sites along a border would have to see all of the others, and be connected across
 //!   bays of any width.
@@ -20,7 +21,8 @@ use glam::{DVec2, DVec3};
 
 /// The largest radius, in spacings of the level, of the empty circle that makes two sites neighbors.
 ///
-/// Even sites leave no empty circles of more than 1 spacing except at borders, and random ones hardly any of more than 2.
+/// Even sites leave no empty circles of more than 1 spacing except at borders, and random ones hardly any of more than
+/// 2.
 pub const STAR_RADIUS: f64 = 2.0;
 
 /// How far to look for neighbors, in spacings: as far as the diameter of the empty circles of even sites, then of

@@ -55,8 +55,8 @@ fn naive_star(points: &[DVec2]) -> Vec<u32> {
                 .enumerate()
                 .filter(move |(other, _)| *other != tag as usize)
         };
-        // Circles through the origin and a: on the left the center may go as far as the first point allows, and on the right too.
-        // They are found as the points that no other one is inside of.
+        // Circles through the origin and a: on the left the center may go as far as the first point allows, and on the
+        // right too. They are found as the points that no other one is inside of.
         let left = others().filter(|(_, b)| turns(a, *b).is_gt());
         let right = others().filter(|(_, b)| turns(a, *b).is_lt());
         let first_left = left.reduce(|b, c| if in_circle(a, b.1, c.1).is_gt() { c } else { b });

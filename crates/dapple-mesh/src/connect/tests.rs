@@ -11,7 +11,8 @@ fn graph_of_a_sphere_is_nearly_a_triangulation() {
     let surface = sphere(3);
     let sites = even_sites(&surface, 1000, 1);
     let connected = connect(&sites, spacing(&surface, 1000));
-    // Euler: a triangulated sphere has 3 n - 6 edges. Forced edges are few: the research counted up to 1.2 % at 1000 sites.
+    // Euler: a triangulated sphere has 3 n - 6 edges. Forced edges are few: the research counted up to 1.2 % at 1000
+    // sites.
     let expected = 3 * sites.len() - 6;
     let edges = connected.graph.n_edges();
     assert!(

@@ -122,7 +122,8 @@ fn interpolation_of_a_linear_function_is_near_it() {
             assert!(error < slope * 1.1 * sites.spacing, "{error} at {at}");
             let inside = at.x.min(at.y).min(1.0 - at.x).min(1.0 - at.y) > 1.1 * sites.spacing;
             if inside {
-                // Where a single site counts it is no farther away than the sites' least distance, or a dart would have fit.
+                // Where a single site counts it is no farther away than the sites' least distance, or a dart would have
+                // fit.
                 assert!(
                     error < slope * 0.75 * sites.spacing,
                     "{error} inside, at {at}"

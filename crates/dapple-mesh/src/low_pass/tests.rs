@@ -126,7 +126,8 @@ fn step_adds_half_t_to_the_variance_in_squared_spacings() {
             .sum()
     };
     for axis in [0, 1] {
-        // Twenty steps of variance t / 2, exact on a lattice but for rounding, which also makes weights differ a little.
+        // Twenty steps of variance t / 2, exact on a lattice but for rounding, which also makes weights differ a
+        // little.
         assert!(
             (moment(axis) - 1.0).abs() < 1e-9,
             "axis {axis}: {}",

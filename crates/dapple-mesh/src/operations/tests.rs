@@ -1,13 +1,11 @@
 use super::*;
 use crate::testing::{sheets, sphere};
 use crate::{HierarchyOptions, MeshErrorKind, SiteIdx, Surface};
-use dapple_hash::Seed;
 
+/// A hierarchy of three levels.
 fn hierarchy(surface: &Surface, n_sites: usize) -> Hierarchy {
     let options = HierarchyOptions {
         n_sites,
-        n_levels: 3,
-        seed: Seed(3),
         ..HierarchyOptions::default()
     };
     Hierarchy::new(surface, &options).unwrap()
