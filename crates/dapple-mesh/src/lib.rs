@@ -59,7 +59,6 @@ pub use low_pass::LowPass;
 pub use mesh::Mesh;
 pub use nested::nested_points;
 pub use operations::{DOWNSAMPLE_STEPS, DOWNSAMPLE_T};
-pub use operations::INTERPOLATION_RADIUS;
 pub use polygonize::{TOLERANCE, polygonize, polygonize_n};
 pub use repair::Repair;
 pub use repel::repel;

@@ -3,14 +3,19 @@
 mod bricks;
 mod checker;
 mod exemplar;
+mod fig_01;
+mod fig_02;
 mod fig_03;
 mod fig_04;
+mod fig_05;
 mod fig_extra_exemplars;
 mod hooks;
 mod letter;
 mod puzzle;
 mod scales;
+mod stage;
 mod stripes;
+mod subject;
 mod suckers;
 mod text;
 mod wobble;
@@ -22,5 +27,12 @@ pub(super) const PAPER: Paper = Paper {
     key: "surface",
     title: "Texture Synthesis on Surfaces",
     reference: "Greg Turk, Georgia Institute of Technology, SIGGRAPH 2001, doi 10.1145/383259.383297",
-    figures: &[fig_03::FIGURE, fig_04::FIGURE, fig_extra_exemplars::FIGURE],
+    figures: &[
+        fig_01::FIGURE,
+        fig_02::FIGURE,
+        fig_03::FIGURE,
+        fig_04::FIGURE,
+        fig_05::FIGURE,
+        fig_extra_exemplars::FIGURE,
+    ],
 };

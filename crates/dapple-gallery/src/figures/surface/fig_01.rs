@@ -33,9 +33,9 @@ const VIEW: View = View {
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let (image, edges) = RAY.image()?;
-    let ball = solid::Ellipsoid {
+    let ball = solid::Ball {
         center: DVec3::ZERO,
-        radii: DVec3::ONE,
+        radius: 1.0,
     };
     let surface = dapple_synth::mesh::Surface::new(polygonize_n(&ball, 0.2, 4000)?)?;
     let options = HierarchyOptions {
@@ -48,10 +48,14 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let texture = synthesizer.synthesize(&Exemplar::new(&image, edges)?, &Options::default())?;
     let mesh = synthesizer.surface().mesh();
     let panel = |level: usize| {
-        let color = |at: &Surface| point_color(synthesizer.hierarchy(), &texture, level, at.position);
+        let color =
+            |at: &Surface| point_color(synthesizer.hierarchy(), &texture, level, at.position);
         let picture = lit(mesh, &VIEW, [size; 2], color)?;
         let n_points = synthesizer.hierarchy().levels()[level].n_sites();
-        Ok(Panel::color(format!("M{}, {n_points} points", level + 1), picture))
+        Ok(Panel::color(
+            format!("M{}, {n_points} points", level + 1),
+            picture,
+        ))
     };
     (0..3).rev().map(panel).collect()
 }
@@ -65,12 +69,14 @@ fn point_color(
 ) -> LinearRgb {
     let radius = RADIUS * hierarchy.levels()[level].spacing();
     let mut nearest = (radius, None);
-    hierarchy.levels()[level].grid().visit(position, radius, |site| {
-        let distance = hierarchy.sites().positions()[site.index()].distance(position);
-        if distance < nearest.0 {
-            nearest = (distance, Some(site));
-        }
-    });
+    hierarchy.levels()[level]
+        .grid()
+        .visit(position, radius, |site| {
+            let distance = hierarchy.sites().positions()[site.index()].distance(position);
+            if distance < nearest.0 {
+                nearest = (distance, Some(site));
+            }
+        });
     let (distance, Some(site)) = nearest else {
         return LinearRgb::gray(0.1);
     };

@@ -5,9 +5,10 @@ use super::stage::lit;
 use super::subject::TORI;
 use crate::figure::source;
 use crate::{Figure, Panel};
-use dapple_color::{LinearRgb, Ramp};
-use dapple_synth::mesh::{Hierarchy, Surface};
+use dapple_color::{ColorError, LinearRgb, Ramp};
+use dapple_preview::Surface as Point;
 use dapple_synth::Synthesizer;
+use dapple_synth::mesh::Surface;
 use glam::DVec3;
 
 pub(super) const FIGURE: Figure = Figure {
@@ -39,27 +40,71 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let clay = LinearRgb::gray(0.7);
     let ink = LinearRgb::new(0.45, 0.02, 0.02);
     let directions = TORI.directions();
-    let given = |at: &dapple_preview::Surface| {
-        let hit = directions.iter().any(|direction| {
-            let vector = direction.vector - at.normal * direction.vector.dot(at.normal);
-            is_arrow(at.position - direction.at, vector, DIRECTION) && near(direction.at, at)
-        });
+    let given = |at: &Point| {
+        let hit = directions
+            .iter()
+            .any(|direction| is_arrow(at.position - direction.at, direction.vector, DIRECTION));
         if hit { ink } else { clay }
     };
-    let vectors = synthesizer.orientation().vectors();
-    let field = |at: &dapple_preview::Surface| {
-        if is_field(hierarchy, vectors, at.position) { ink } else { clay }
+    let field = |at: &Point| {
+        if is_field(&synthesizer, at.position) {
+            ink
+        } else {
+            clay
+        }
     };
     let ramp = cycle()?;
     let distances = synthesizer.sweep().distances(0);
-    let sweep = |at: &dapple_preview::Surface| {
+    let sweep = |at: &Point| {
         let value = hierarchy.interpolate(0, distances, at.position, at.geometric_normal);
         let turns = value.ok().flatten().unwrap_or(0.0) / CYCLE;
-        ramp.color((turns - turns.floor()) as f32)
+        ramp.at((turns - turns.floor()) as f32)
     };
     Ok(vec![
-        Panel::color("the user's directions", lit(mesh, &TORI.view, [size; 2], given)?),
+        Panel::color(
+            "the user's directions",
+            lit(mesh, &TORI.view, [size; 2], given)?,
+        ),
         Panel::color("the field", lit(mesh, &TORI.view, [size; 2], field)?),
         Panel::color("sweep distance", lit(mesh, &TORI.view, [size; 2], sweep)?),
+    ])
+}
+
+/// Whether a place relative to the start of a vector is in the arrow of that direction, `length` long and twice `half_width`
+/// wide.
+fn is_arrow(from: DVec3, vector: DVec3, [length, half_width]: [f64; 2]) -> bool {
+    let vector = vector.normalize_or(DVec3::X);
+    let along = from.dot(vector) / length;
+    let aside = (from - vector * (along * length)).length();
+    // The head is the last third.
+    let width = if along < 0.66 {
+        half_width
+    } else {
+        3.0 * half_width * (1.0 - along) / 0.34
+    };
+    (0.0..1.0).contains(&along) && aside < width
+}
+
+/// Whether a position is in the arrow of a site of the coarsest level but one.
+fn is_field(synthesizer: &Synthesizer, position: DVec3) -> bool {
+    let (hierarchy, level) = (
+        synthesizer.hierarchy(),
+        &synthesizer.hierarchy().levels()[2],
+    );
+    let size = FIELD.map(|part| part * level.spacing());
+    let mut hit = false;
+    level.grid().visit(position, size[0], |site| {
+        let vector = synthesizer.orientation().vectors()[site.index()];
+        // The arrow's middle is at its site.
+        let start = hierarchy.sites().positions()[site.index()] - vector * (0.5 * size[0]);
+        hit |= is_arrow(position - start, vector, size);
+    });
+    hit
+}
+
+/// The colors of a cycle, which ends as it begins.
+fn cycle() -> Result<Ramp, ColorError> {
+    Ramp::from_hex(&[
+        "#1b2a6b", "#2f9bd0", "#f4f0c8", "#e8743b", "#7a1b4b", "#1b2a6b",
     ])
 }

@@ -29,7 +29,9 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let panel = |subject: &super::subject::Subject| {
         let textured = subject.textured(size)?;
         let mesh = textured.synthesizer.surface().mesh();
-        let mut picture = lit(mesh, &subject.view, [size; 2], |surface| textured.color(surface))?;
+        let mut picture = lit(mesh, &subject.view, [size; 2], |surface| {
+            textured.color(surface)
+        })?;
         let (exemplar, _) = subject.image()?;
         inset(&mut picture, &enlarged(&exemplar, (size / 5).max(1))?);
         let n_points = textured.synthesizer.hierarchy().sites().len();

@@ -162,7 +162,7 @@ const ZEBRA: Subject = Subject {
 const ELEPHANT: Subject = Subject {
     name: "elephant",
     model: models::elephant,
-    exemplar: "puzzle",
+    exemplar: "puzzle pieces",
     n_sites: 256_000,
     n_levels: 4,
     directions: &[
@@ -193,13 +193,18 @@ impl Subject {
     /// The directions of the texture.
     pub(super) fn directions(&self) -> Vec<Direction> {
         let directions = self.directions.iter();
-        directions.map(|&[at, vector]| Direction { at, vector }).collect()
+        directions
+            .map(|&[at, vector]| Direction { at, vector })
+            .collect()
     }
 
     /// The exemplar as an image, as large as in table 1.
     pub(super) fn image(&self) -> Result<(Raster<LinearRgb>, dapple_synth::Edges)> {
-        let exemplar = EXEMPLARS.iter().find(|exemplar| exemplar.name == self.exemplar);
-        let exemplar = exemplar.with_context(|| format!("there is no exemplar {}", self.exemplar))?;
+        let exemplar = EXEMPLARS
+            .iter()
+            .find(|exemplar| exemplar.name == self.exemplar);
+        let exemplar =
+            exemplar.with_context(|| format!("there is no exemplar {}", self.exemplar))?;
         let edges = match exemplar.edges {
             Edges::Repeating => dapple_synth::Edges::Wrap,
             Edges::Cropped => dapple_synth::Edges::Cut,
@@ -217,7 +222,10 @@ impl Subject {
             ..Options::default()
         };
         let texture = synthesizer.synthesize(&Exemplar::new(&image, edges)?, &options)?;
-        let atlas = Atlas::uniform(synthesizer.surface(), (MAP_SIDE / FULL_SIZE * size).max(1024))?;
+        let atlas = Atlas::uniform(
+            synthesizer.surface(),
+            (MAP_SIDE / FULL_SIZE * size).max(1024),
+        )?;
         let values = texture.values(0);
         let map = bake::<3>(
             synthesizer.surface(),
