@@ -1,0 +1,104 @@
+//! Repairs of files and of soups.
+
+use super::turned;
+use crate::test_meshes::{cube, ring, soup, tetrahedron};
+use crate::{Mesh, Surface};
+use glam::DVec3;
+use proptest::prelude::*;
+
+#[test]
+fn repair_of_files_gives_surfaces() {
+    let folder = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../../shared/data/meshes/degenerate"
+    );
+    // Faces, components and open edges afterward.
+    let want = [
+        ("cube", 12, 1, 0),
+        ("degenerate_edge", 1, 1, 3),
+        ("double_sided", 2, 1, 4),
+        ("duplicate_edge", 2, 1, 4),
+        ("zero_area_face", 0, 0, 0),
+        ("zero_length_edge", 1, 1, 3),
+    ];
+    for (name, faces, components, borders) in want {
+        let Some(before) = read(&format!("{folder}/{name}.obj")) else {
+            println!("skipped: {name}.obj is not there");
+            continue;
+        };
+        let (after, repair) = before.repair();
+        let got = (
+            repair.after.faces,
+            repair.after.components,
+            repair.after.boundary_edges,
+        );
+        assert_eq!(got, (faces, components, borders), "{name}");
+        assert_eq!(Surface::new(after).is_ok(), faces > 0, "{name}");
+    }
+}
+
+/// The triangles of an OBJ file, polygons as fans.
+#[expect(clippy::disallowed_methods, reason = "reads test data")]
+fn read(path: &str) -> Option<Mesh> {
+    let text = std::fs::read_to_string(path).ok()?;
+    let (mut positions, mut faces) = (Vec::new(), Vec::new());
+    for line in text.lines() {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => {
+                let parts: Vec<f64> = words.map(|word| word.parse().expect("a number")).collect();
+                positions.push(DVec3::from_slice(&parts));
+            }
+            Some("f") => {
+                let number = |word: &str| {
+                    word.split('/')
+                        .next()
+                        .and_then(|number| number.parse().ok())
+                };
+                let corners: Vec<u32> = words.map(|word| number(word).expect("a number")).collect();
+                faces.extend(
+                    (2..corners.len())
+                        .map(|last| [corners[0] - 1, corners[last - 1] - 1, corners[last] - 1]),
+                );
+            }
+            _ => {}
+        }
+    }
+    Mesh::new(positions, &faces).ok()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn repair_turns_back_any_faces_of_closed_meshes(mask in 0_u32..4096, n in 3_u32..9) {
+        let over = |face: usize| mask >> (face % 12) & 1 == 1;
+        for closed in [tetrahedron(), cube()] {
+            let (after, repair) = turned(&closed, over).repair();
+            prop_assert_eq!(&after, &closed);
+            prop_assert_eq!(repair.turned_faces, (0..closed.faces().len()).filter(|&face| over(face)).count());
+        }
+        let (after, repair) = turned(&ring(n, false), over).repair();
+        prop_assert_eq!(&repair.after, &ring(n, false).report());
+        prop_assert!(repair.turned_faces <= n as usize);
+        prop_assert_eq!(after.repair().0, after);
+    }
+
+    #[test]
+    fn repair_of_any_soup_gives_a_surface_and_is_idempotent(mesh in soup()) {
+        let (after, repair) = mesh.repair();
+        prop_assert_eq!(&repair.before, &mesh.report());
+        prop_assert_eq!(&repair.after, &after.report());
+        let report = &repair.after;
+        prop_assert_eq!([report.degenerate_faces, report.duplicate_faces, report.winding_edges, report.unused_vertices], [0; 4]);
+        prop_assert_eq!(Surface::new(after.clone()).is_ok(), !after.faces().is_empty());
+        prop_assert!(repair.cut_edges > 0 || report.duplicate_vertices == 0);
+        for (position, before) in after.positions().iter().zip(&repair.vertex_before) {
+            prop_assert_eq!(position, &mesh.positions()[before.index()]);
+        }
+        prop_assert_eq!(repair.face_before.len(), after.faces().len());
+        let (again, second) = after.repair();
+        prop_assert_eq!(again, after);
+        prop_assert_eq!(second.turned_faces, 0);
+    }
+}
