@@ -36,6 +36,30 @@ impl Adjacency {
         Self::from_pairs(n_faces, edges, |_, _| true)
     }
 
+    /// As [`new`](Self::new), but at every edge as many faces as possible are made neighbors, two by two, first those that
+    /// go through it in opposite directions.
+    pub(crate) fn paired(n_faces: usize, edges: &[SortedEdge]) -> Self {
+        let mut across = Self {
+            across: vec![[None; 3]; n_faces],
+        };
+        for group in edges.chunk_by(|a, b| a.ends == b.ends) {
+            let (ahead, back): (Vec<&SortedEdge>, Vec<&SortedEdge>) =
+                group.iter().partition(|edge| edge.forward);
+            let n_opposite = ahead.len().min(back.len());
+            let opposite = ahead.iter().zip(&back).flat_map(|(a, b)| [*a, *b]);
+            let rest = ahead[n_opposite..]
+                .iter()
+                .chain(&back[n_opposite..])
+                .copied();
+            let order: Vec<&SortedEdge> = opposite.chain(rest).collect();
+            for pair in order.chunks_exact(2) {
+                across.set(pair[0].of, Some(pair[1].of));
+                across.set(pair[1].of, Some(pair[0].of));
+            }
+        }
+        across
+    }
+
     fn from_pairs(
         n_faces: usize,
         edges: &[SortedEdge],

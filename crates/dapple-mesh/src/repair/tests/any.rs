@@ -18,6 +18,8 @@ fn repair_of_files_gives_surfaces() {
         ("degenerate_edge", 1, 1, 3),
         ("double_sided", 2, 1, 4),
         ("duplicate_edge", 2, 1, 4),
+        ("gazebo", 730, 56, 8),
+        ("../spot", 5856, 1, 0),
         ("zero_area_face", 0, 0, 0),
         ("zero_length_edge", 1, 1, 3),
     ];
@@ -67,8 +69,44 @@ fn read(path: &str) -> Option<Mesh> {
     Mesh::new(positions, &faces).ok()
 }
 
+/// Puts a vertex on an edge for one of its faces only, with a cap between the parts and the other face.
+///
+/// `part` says where: 0 at the start of the edge, 1 at its end.
+fn crack(mesh: &Mesh, face: usize, edge: usize, part: f64) -> Mesh {
+    let mut positions = mesh.positions().to_vec();
+    let mut faces: Vec<[u32; 3]> = mesh
+        .faces()
+        .iter()
+        .map(|face| face.map(|vertex| vertex.0))
+        .collect();
+    let corners = faces[face];
+    let [a, b, c] = [0, 1, 2].map(|step| corners[(edge + step) % 3]);
+    let middle = positions.len() as u32;
+    positions.push(positions[a as usize].lerp(positions[b as usize], part));
+    faces[face] = [a, middle, c];
+    faces.extend([[middle, b, c], [a, b, middle]]);
+    Mesh::new(positions, &faces).expect("valid")
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn repair_of_a_closed_mesh_with_caps_and_needles_leaves_no_crack(
+        cracks in prop::collection::vec((0_usize..1000, 0_usize..3, prop::sample::select(vec![0.5, 0.25, 0.75, 0.0, 1.0, 1e-17, 1.0 - 1e-16])), 1..6),
+    ) {
+        for closed in [tetrahedron(), cube()] {
+            let mut mesh = closed.clone();
+            for &(face, edge, part) in &cracks {
+                mesh = crack(&mesh, face % mesh.faces().len(), edge, part);
+            }
+            let (after, repair) = mesh.repair();
+            let counts = [repair.after.boundary_edges, repair.after.non_manifold_edges, repair.after.components];
+            prop_assert_eq!(counts, [0, 0, 1]);
+            let [before, after] = [closed, after].map(|mesh| Surface::new(mesh).expect("no defects").area());
+            prop_assert!((before - after).abs() < 1e-7);
+        }
+    }
 
     #[test]
     fn repair_turns_back_any_faces_of_closed_meshes(mask in 0_u32..4096, n in 3_u32..9) {
