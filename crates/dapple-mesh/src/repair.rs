@@ -50,8 +50,8 @@ pub struct Repair {
 impl Mesh {
     /// The mesh without duplicate vertices, unused vertices, degenerate and duplicate faces, and with consistent winding.
     ///
-    /// The result has no face, or [`Surface::new`](crate::Surface::new) takes it. Vertices and faces keep their order. A mesh that needs
-    /// nothing stays as it is, and so does one that was repaired, except that cuts in a piece with only one side leave
+    /// The result has no face, or [`Surface::new`](crate::Surface::new) takes it. Vertices and faces keep their order. A
+    /// mesh that needs nothing stays as it is, and so does one that was repaired. Only cuts in a piece with one side leave
     /// duplicate vertices.
     ///
     /// Two vertices at one position become one, which closes seams, and makes one sheet of two that coincide.
