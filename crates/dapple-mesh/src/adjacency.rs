@@ -26,33 +26,58 @@ impl Adjacency {
     /// A face that names a vertex twice has no neighbors.
     #[must_use]
     pub fn new(mesh: &Mesh) -> Self {
-        Self::from_pairs(mesh.faces().len(), &sorted_edges(mesh), |a, b| {
-            a.forward != b.forward
-        })
+        let mut across = Self::alone(mesh.faces().len());
+        for group in sorted_edges(mesh).chunk_by(|a, b| a.ends == b.ends) {
+            if let [a, b] = group
+                && a.forward != b.forward
+            {
+                across.join(a.of, b.of);
+            }
+        }
+        across
     }
 
     /// As [`new`](Self::new), but two faces are also neighbors if they go through their edge in the same direction.
     pub(crate) fn of_any_winding(n_faces: usize, edges: &[SortedEdge]) -> Self {
-        Self::from_pairs(n_faces, edges, |_, _| true)
-    }
-
-    fn from_pairs(
-        n_faces: usize,
-        edges: &[SortedEdge],
-        joined: fn(&SortedEdge, &SortedEdge) -> bool,
-    ) -> Self {
-        let mut across = Self {
-            across: vec![[None; 3]; n_faces],
-        };
+        let mut across = Self::alone(n_faces);
         for group in edges.chunk_by(|a, b| a.ends == b.ends) {
-            if let [a, b] = group
-                && joined(a, b)
-            {
-                across.set(a.of, Some(b.of));
-                across.set(b.of, Some(a.of));
+            if let [a, b] = group {
+                across.join(a.of, b.of);
             }
         }
         across
+    }
+
+    /// As [`of_any_winding`](Self::of_any_winding), but as many faces as possible are neighbors at every edge, two by two,
+    /// first those that go through it in opposite directions.
+    pub(crate) fn paired(n_faces: usize, edges: &[SortedEdge]) -> Self {
+        let mut across = Self::alone(n_faces);
+        for group in edges.chunk_by(|a, b| a.ends == b.ends) {
+            let (ahead, back): (Vec<&SortedEdge>, Vec<&SortedEdge>) =
+                group.iter().partition(|edge| edge.forward);
+            for (a, b) in ahead.iter().zip(&back) {
+                across.join(a.of, b.of);
+            }
+            let n_opposite = ahead.len().min(back.len());
+            // One of the two is empty.
+            for rest in [&ahead[n_opposite..], &back[n_opposite..]] {
+                for pair in rest.chunks_exact(2) {
+                    across.join(pair[0].of, pair[1].of);
+                }
+            }
+        }
+        across
+    }
+
+    /// Faces without neighbors.
+    fn alone(n_faces: usize) -> Self {
+        let across = vec![[None; 3]; n_faces];
+        Self { across }
+    }
+
+    fn join(&mut self, a: FaceEdge, b: FaceEdge) {
+        self.set(a, Some(b));
+        self.set(b, Some(a));
     }
 
     /// The same edge seen from the face on its other side, or nothing at a border.

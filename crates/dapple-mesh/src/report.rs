@@ -60,7 +60,11 @@ impl Mesh {
             degenerate_faces: (0..self.faces().len())
                 .filter(|&face| self.is_degenerate(FaceIdx(face as u32)))
                 .count(),
-            duplicate_faces: self.duplicate_faces().len(),
+            duplicate_faces: self
+                .faces_by_vertices()
+                .windows(2)
+                .filter(|pair| pair[0].0 == pair[1].0)
+                .count(),
             duplicate_vertices: (0..)
                 .zip(self.first_at_position())
                 .filter(|(vertex, first)| vertex != first)
@@ -76,23 +80,16 @@ impl Mesh {
         names_twice(self.faces()[face.index()]) || area_vector(self.corners(face)).is_none()
     }
 
-    /// The faces with the same three vertices as an earlier one, in rising order.
-    pub(crate) fn duplicate_faces(&self) -> Vec<FaceIdx> {
-        let mut sets: Vec<([VertexIdx; 3], FaceIdx)> = self
-            .faces()
-            .iter()
-            .zip((0..).map(FaceIdx))
-            .map(|(&corners, face)| {
-                let mut corners = corners;
-                corners.sort_unstable();
-                (corners, face)
-            })
-            .collect();
-        sets.sort_unstable();
-        let later = sets.chunk_by(|a, b| a.0 == b.0).flat_map(|same| &same[1..]);
-        let mut duplicates: Vec<FaceIdx> = later.map(|&(_, face)| face).collect();
-        duplicates.sort_unstable();
-        duplicates
+    /// All faces, each with its vertices in rising order, and those with the same vertices together in rising order.
+    pub(crate) fn faces_by_vertices(&self) -> Vec<([VertexIdx; 3], FaceIdx)> {
+        let set = |mut corners: [VertexIdx; 3]| {
+            corners.sort_unstable();
+            corners
+        };
+        let corners = self.faces().iter().map(|&corners| set(corners));
+        let mut faces: Vec<_> = corners.zip((0..).map(FaceIdx)).collect();
+        faces.sort_unstable();
+        faces
     }
 
     /// For each vertex the first one at the same position.

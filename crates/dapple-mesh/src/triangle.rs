@@ -13,15 +13,15 @@ use glam::DVec3;
 const FLATNESS_MIN: f64 = 4.0 * f64::EPSILON;
 /// The shortest longest edge that a triangle with an area has, in units of the mesh.
 const LENGTH_MIN: f64 = 1e-60;
-/// The shortest over the longest edge, at or below which a degenerate triangle is a needle: 2^-40.
-const NEEDLE_MAX: f64 = 4096.0 * f64::EPSILON;
+/// What is thin beside the longest edge: 2^-40.
+pub(crate) const THIN_MAX: f64 = 4096.0 * f64::EPSILON;
 
 /// What is wrong with the shape of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     /// Nothing: it has an area.
     Fair,
-    /// Degenerate, and the edge from this corner to the next is shorter than 2^-40 times the longest.
+    /// Degenerate, and the edge from this corner to the next is the shortest, and short beside the longest.
     Needle { shortest: usize },
     /// Degenerate, and the corner that is not on this longest edge lies on the edge, well within it.
     Cap { longest: usize },
@@ -45,8 +45,8 @@ pub(crate) fn area_vector(corners: [DVec3; 3]) -> Option<DVec3> {
     Some(if odd { -vector } else { vector })
 }
 
-/// The shape of a triangle.
-pub(crate) fn shape(corners: [DVec3; 3]) -> Shape {
+/// The shape of a triangle; in a needle the shortest edge is at most `thin` times the longest.
+pub(crate) fn shape(corners: [DVec3; 3], thin: f64) -> Shape {
     if area_vector(corners).is_some() {
         return Shape::Fair;
     }
@@ -54,11 +54,18 @@ pub(crate) fn shape(corners: [DVec3; 3]) -> Shape {
     let longest = first_longest(lengths_sq);
     let shortest = first_longest(lengths_sq.map(|length_sq| -length_sq));
     let tiny = lengths_sq[longest] < LENGTH_MIN * LENGTH_MIN;
-    if tiny || lengths_sq[shortest] <= NEEDLE_MAX * NEEDLE_MAX * lengths_sq[longest] {
+    if tiny || lengths_sq[shortest] <= thin * thin * lengths_sq[longest] {
         Shape::Needle { shortest }
     } else {
         Shape::Cap { longest }
     }
+}
+
+/// Whether twice the area of a triangle is at most 2^-40 times the square of its longest edge, or it is degenerate.
+pub(crate) fn is_thin(corners: [DVec3; 3]) -> bool {
+    let lengths_sq = edge_lengths_sq(corners);
+    let longest_sq = lengths_sq[first_longest(lengths_sq)];
+    area_vector(corners).is_none_or(|vector| vector.length() <= THIN_MAX * longest_sq)
 }
 
 /// The squared lengths of the edges from each corner to the next.
@@ -128,19 +135,27 @@ mod tests {
 
     #[test]
     fn shape_tells_needles_from_caps() {
-        assert_eq!(shape(triangle([0.5, 0.1, 0.0])), Shape::Fair, "fair");
         assert_eq!(
-            shape(triangle([0.5, 0.0, 0.0])),
+            shape(triangle([0.5, 0.1, 0.0]), THIN_MAX),
+            Shape::Fair,
+            "fair"
+        );
+        assert_eq!(
+            shape(triangle([0.5, 0.0, 0.0]), THIN_MAX),
             Shape::Cap { longest: 0 },
             "cap"
         );
         assert_eq!(
-            shape(triangle([1.0 + 1e-13, 0.0, 0.0])),
+            shape(triangle([1.0 + 1e-13, 0.0, 0.0]), THIN_MAX),
             Shape::Needle { shortest: 1 },
             "needle"
         );
         let same = [DVec3::ONE; 3];
-        assert_eq!(shape(same), Shape::Needle { shortest: 0 }, "one point");
+        assert_eq!(
+            shape(same, THIN_MAX),
+            Shape::Needle { shortest: 0 },
+            "one point"
+        );
     }
 
     proptest! {

@@ -2,28 +2,34 @@
 
 use super::Draft;
 use crate::adjacency::{Adjacency, FaceEdge, names_twice, root, sorted_edges, unite};
-use crate::triangle::{Shape, edge_lengths_sq, shape};
-use crate::{FaceIdx, Mesh};
+use crate::triangle::{Shape, THIN_MAX, area_vector, edge_lengths_sq, is_thin, shape};
+use crate::{FaceIdx, Mesh, VertexIdx};
 use std::collections::BinaryHeap;
 
 /// How often faces without an area are mended before the rest is dropped.
 const TURNS_MAX: usize = 64;
 /// The most flips in one turn, for each face of the mesh. Flips make edges shorter as a rule, but not always.
 const FLIPS_MAX: usize = 4;
+/// The shortest over the longest edge, at or below which a cap that cannot be flipped is taken for a needle: 2^-20.
+const STUCK_MAX: f64 = 1.0 / 1_048_576.0;
 
 impl Draft {
     /// Drops duplicate faces, and mends or drops faces without an area.
     pub(super) fn mend_faces(&mut self) {
         for _ in 0..TURNS_MAX {
             self.drop_useless();
-            let caps: Vec<FaceIdx> = match self.weld_needles() {
-                Turn::Welded => continue,
-                Turn::Caps(caps) => caps,
-            };
+            if self.weld_needles(THIN_MAX) {
+                continue;
+            }
+            let caps: Vec<Cap> = (0..self.mesh.faces.len() as u32)
+                .filter_map(|face| Cap::new(&self.mesh, FaceIdx(face)))
+                .collect();
             if caps.is_empty() {
                 return;
             }
-            self.flip_caps(&caps);
+            if !self.flip_caps(caps) && !self.weld_needles(STUCK_MAX) {
+                break;
+            }
         }
         self.drop_useless();
         let faces = 0..self.mesh.faces.len() as u32;
@@ -33,50 +39,52 @@ impl Draft {
         self.keep_faces(&keep);
     }
 
-    /// Drops duplicates, and faces that name a vertex twice.
+    /// Drops faces that name a vertex twice, and duplicates.
+    ///
+    /// Of duplicates with hardly an area two cancel each other, so that the faces around them are neighbors afterward. Of
+    /// others one stays, since both may be all there is of a sheet.
     fn drop_useless(&mut self) {
         let faces = self.mesh.faces.iter();
         let mut keep: Vec<bool> = faces.map(|&corners| !names_twice(corners)).collect();
-        for face in self.mesh.duplicate_faces() {
-            keep[face.index()] = false;
+        for same in self.mesh.faces_by_vertices().chunk_by(|a, b| a.0 == b.0) {
+            let cancel = same.len().is_multiple_of(2) && is_thin(self.mesh.corners(same[0].1));
+            for (_, face) in &same[usize::from(!cancel)..] {
+                keep[face.index()] = false;
+            }
         }
         self.keep_faces(&keep);
     }
 
-    /// Makes one vertex of the shortest edge of every needle, or finds that there are only caps.
-    fn weld_needles(&mut self) -> Turn {
+    /// Makes one vertex of the shortest edge of every needle, and says whether there are any.
+    ///
+    /// In a needle that edge is at most `thin` times the longest.
+    fn weld_needles(&mut self, thin: f64) -> bool {
         let mut parents: Vec<usize> = (0..self.mesh.positions.len()).collect();
-        let (mut welded, mut caps) = (false, Vec::new());
+        let mut welded = false;
         for (face, corners) in (0..).map(FaceIdx).zip(&self.mesh.faces) {
-            match shape(self.mesh.corners(face)) {
-                Shape::Fair => {}
-                Shape::Cap { .. } => caps.push(face),
-                Shape::Needle { shortest } => {
-                    let ends = [corners[shortest], corners[(shortest + 1) % 3]];
-                    unite(&mut parents, ends[0].index(), ends[1].index());
-                    welded = true;
-                }
+            if let Shape::Needle { shortest } = shape(self.mesh.corners(face), thin) {
+                let [a, b] = [shortest, (shortest + 1) % 3].map(|corner| corners[corner].index());
+                unite(&mut parents, a, b);
+                welded = true;
             }
         }
-        if !welded {
-            return Turn::Caps(caps);
+        if welded {
+            let names: Vec<u32> = (0..parents.len())
+                .map(|vertex| root(&mut parents, vertex) as u32)
+                .collect();
+            self.rename(&names);
         }
-        let names: Vec<u32> = (0..parents.len())
-            .map(|vertex| root(&mut parents, vertex) as u32)
-            .collect();
-        self.rename(&names);
-        Turn::Welded
+        welded
     }
 
-    /// Flips the longest edges of caps, the longest of all first, and drops caps that have no neighbor there.
-    fn flip_caps(&mut self, caps: &[FaceIdx]) {
+    /// Flips the longest edges of caps, the longest of all first, drops caps that have no neighbor there, and says whether
+    /// it did anything.
+    fn flip_caps(&mut self, caps: Vec<Cap>) -> bool {
         let edges = sorted_edges(&self.mesh);
-        let mut across = Adjacency::of_any_winding(self.mesh.faces.len(), &edges);
+        let mut across = Adjacency::paired(self.mesh.faces.len(), &edges);
         let mut keep = vec![true; self.mesh.faces.len()];
-        let mut open: BinaryHeap<Cap> = caps
-            .iter()
-            .filter_map(|&face| Cap::new(&self.mesh, face))
-            .collect();
+        let mut open = BinaryHeap::from(caps);
+        let mut changed = false;
         for _ in 0..FLIPS_MAX * self.mesh.faces.len() {
             let Some(cap) = open.pop() else {
                 break;
@@ -85,71 +93,81 @@ impl Draft {
             if !keep[cap.of.face.index()] || Cap::new(&self.mesh, cap.of.face) != Some(cap) {
                 continue;
             }
-            let neighbor = across
-                .across(cap.of)
-                .filter(|to| self.third(*to) != self.third(cap.of));
-            if let Some(to) = neighbor {
-                self.flip(cap.of, to, &mut across);
-                open.extend(
-                    [cap.of.face, to.face]
-                        .into_iter()
-                        .filter_map(|face| Cap::new(&self.mesh, face)),
-                );
-            } else {
+            let Some(to) = across.across(cap.of) else {
                 keep[cap.of.face.index()] = false;
-                for (edge, to) in (0..).zip(across.around(cap.of.face)) {
-                    link(&mut across, FaceEdge { edge, ..cap.of }, None);
-                    if let Some(to) = to {
-                        across.set(to, None);
-                    }
-                }
+                detach(&mut across, cap.of.face);
+                changed = true;
+                continue;
+            };
+            if self.third(to) == self.third(cap.of) {
+                keep[cap.of.face.index()] = false;
+                keep[to.face.index()] = false;
+                let [[cap_start, cap_end], [past_start, past_end]] =
+                    self.sides(cap.of, to, &across);
+                join(&mut across, cap_start, past_start);
+                join(&mut across, cap_end, past_end);
+                changed = true;
+            } else if self.gains(&cap, to) {
+                self.flip(cap.of, to, &mut across);
+                let faces = [cap.of.face, to.face].into_iter();
+                open.extend(faces.filter_map(|face| Cap::new(&self.mesh, face)));
+                changed = true;
             }
         }
         self.keep_faces(&keep);
+        changed
     }
 
-    /// The vertex of the face that is not on the edge.
-    fn third(&self, at: FaceEdge) -> crate::VertexIdx {
-        self.mesh.faces[at.face.index()][(usize::from(at.edge) + 2) % 3]
+    /// Whether a flip makes a shorter edge, or leaves no face without an area; other flips could go on forever.
+    fn gains(&self, cap: &Cap, to: FaceEdge) -> bool {
+        let corner = |vertex: VertexIdx| self.mesh.positions[vertex.index()];
+        let [tip, third] = [self.third(cap.of), self.third(to)].map(corner);
+        let [start, end] = [0, 1].map(|steps| corner(self.vertex(step(to, steps))));
+        (third - tip).length_squared() < cap.length_sq
+            || [[start, tip, third], [tip, end, third]]
+                .into_iter()
+                .all(|corners| area_vector(corners).is_some())
+    }
+
+    /// What is across the other two edges of a cap, and of its neighbor: at the start of the edge as the neighbor goes through
+    /// it, and at the end.
+    fn sides(&self, cap: FaceEdge, to: FaceEdge, across: &Adjacency) -> [[Option<FaceEdge>; 2]; 2] {
+        let after = |at: FaceEdge, steps| across.across(step(at, steps));
+        let [past_end, past_start] = [1, 2].map(|steps| after(to, steps));
+        let [next, last] = [1, 2].map(|steps| after(cap, steps));
+        let same = self.vertex(cap) == self.vertex(to);
+        let cap_sides = if same { [last, next] } else { [next, last] };
+        [cap_sides, [past_start, past_end]]
     }
 
     /// Splits the neighbor of a cap at the corner of the cap that lies on their edge; the cap becomes one of the parts.
     ///
     /// The parts go around the same side as the neighbor.
     fn flip(&mut self, cap: FaceEdge, to: FaceEdge, across: &mut Adjacency) {
-        let after = |at: FaceEdge, steps: u8| FaceEdge {
-            edge: (at.edge + steps) % 3,
-            ..at
-        };
-        let vertex = |at: FaceEdge| self.mesh.faces[at.face.index()][usize::from(at.edge)];
         let tip = self.third(cap);
-        let [start, end, third] = [0, 1, 2].map(|steps| vertex(after(to, steps)));
-        let [past_end, past_start] = [1, 2].map(|steps| across.across(after(to, steps)));
-        let [next, last] = [1, 2].map(|steps| across.across(after(cap, steps)));
-        let (tip_start, tip_end) = if vertex(cap) == start {
-            (last, next)
-        } else {
-            (next, last)
-        };
+        let [start, end, third] = [0, 1, 2].map(|steps| self.vertex(step(to, steps)));
+        let [[cap_start, cap_end], [past_start, past_end]] = self.sides(cap, to, across);
         let of = |face: FaceIdx, edge: u8| FaceEdge { face, edge };
         let (one, two) = (cap.face, to.face);
         self.mesh.faces[one.index()] = [start, tip, third];
         self.mesh.faces[two.index()] = [tip, end, third];
         self.face_before[one.index()] = self.face_before[two.index()];
-        link(across, of(one, 0), tip_start);
-        link(across, of(one, 2), past_start);
-        link(across, of(two, 0), tip_end);
-        link(across, of(two, 1), past_end);
-        link(across, of(one, 1), Some(of(two, 2)));
+        join(across, Some(of(one, 0)), cap_start);
+        join(across, Some(of(one, 2)), past_start);
+        join(across, Some(of(two, 0)), cap_end);
+        join(across, Some(of(two, 1)), past_end);
+        join(across, Some(of(one, 1)), Some(of(two, 2)));
     }
-}
 
-/// What a look at the faces without an area gave.
-enum Turn {
-    /// Vertices of needles became one; the mesh is to be looked at again.
-    Welded,
-    /// There are no needles, and these caps.
-    Caps(Vec<FaceIdx>),
+    /// The vertex that an edge of a face starts at.
+    fn vertex(&self, at: FaceEdge) -> VertexIdx {
+        self.mesh.faces[at.face.index()][usize::from(at.edge)]
+    }
+
+    /// The vertex of the face that is not on the edge.
+    fn third(&self, at: FaceEdge) -> VertexIdx {
+        self.vertex(step(at, 2))
+    }
 }
 
 /// A cap and its longest edge; longer ones are greater, and of equal ones the lower face.
@@ -162,7 +180,7 @@ struct Cap {
 impl Cap {
     fn new(mesh: &Mesh, face: FaceIdx) -> Option<Self> {
         let corners = mesh.corners(face);
-        match shape(corners) {
+        match shape(corners, THIN_MAX) {
             Shape::Cap { longest } => Some(Self {
                 length_sq: edge_lengths_sq(corners)[longest],
                 of: FaceEdge {
@@ -191,10 +209,29 @@ impl PartialOrd for Cap {
     }
 }
 
-/// Says what is across an edge, to both sides.
-fn link(across: &mut Adjacency, from: FaceEdge, to: Option<FaceEdge>) {
-    across.set(from, to);
-    if let Some(to) = to {
-        across.set(to, Some(from));
+/// The edge of the same face some steps on.
+fn step(at: FaceEdge, steps: u8) -> FaceEdge {
+    FaceEdge {
+        edge: (at.edge + steps) % 3,
+        ..at
+    }
+}
+
+/// Makes neighbors of two edges; one without the other has a border.
+fn join(across: &mut Adjacency, a: Option<FaceEdge>, b: Option<FaceEdge>) {
+    for (from, to) in [(a, b), (b, a)] {
+        if let Some(from) = from {
+            across.set(from, to);
+        }
+    }
+}
+
+/// Says that nothing is across the edges of a face.
+fn detach(across: &mut Adjacency, face: FaceIdx) {
+    for (edge, to) in (0..).zip(across.around(face)) {
+        across.set(FaceEdge { face, edge }, None);
+        if let Some(to) = to {
+            across.set(to, None);
+        }
     }
 }

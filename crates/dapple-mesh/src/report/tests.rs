@@ -76,14 +76,14 @@ fn naive_report(mesh: &Mesh) -> MeshReport {
         corners.sort();
         corners
     };
-    for face in 0..faces.len() {
+    for (face, &corners) in faces.iter().enumerate() {
         report.duplicate_faces += usize::from((0..face).any(|other| set(face) == set(other)));
-        let [a, b, c] = faces[face].map(|vertex| positions[vertex.index()]);
+        let [a, b, c] = corners.map(|vertex| positions[vertex.index()]);
         let longest = (b - a).length().max((c - b).length()).max((a - c).length());
         // The product of the two shorter edges, in the order that the rule uses.
         let flat = area_vector([a, b, c])
             .is_none_or(|vector| vector.length() <= 8e-16 * longest * longest);
-        report.degenerate_faces += usize::from(directed(faces[face]).is_empty() || flat);
+        report.degenerate_faces += usize::from(directed(corners).is_empty() || flat);
     }
     let all: Vec<usize> = (0..faces.len()).collect();
     report.components = count_sets(&all, |one, other| {
