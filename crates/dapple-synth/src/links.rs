@@ -147,3 +147,82 @@ fn weigh(positions: &[DVec3], graph: &SiteGraph, site: usize, least: f64, row: &
         *weight = 1.0 / at.distance(positions[other.index()]).max(least);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::{sites_on, sphere, two_squares};
+
+    #[test]
+    fn weights_are_inverse_lengths_and_symmetric() {
+        let hierarchy = sites_on(sphere(), 300, 2);
+        for level in 0..2 {
+            let links = Links::new(&hierarchy, level);
+            assert_eq!(links.len(), hierarchy.levels()[level].n_sites());
+            for site in 0..links.len() {
+                let at = hierarchy.sites().positions()[site];
+                let mut sum = 0.0;
+                for (other, &weight) in links.neighbors(site).iter().zip(links.weights(site)) {
+                    let there = hierarchy.sites().positions()[other.index()];
+                    assert_eq!(weight, 1.0 / at.distance(there));
+                    let back = links
+                        .neighbors(other.index())
+                        .iter()
+                        .position(|end| end.index() == site);
+                    assert_eq!(
+                        links.weights(other.index())[back.unwrap()],
+                        weight,
+                        "from the other end"
+                    );
+                    sum += weight;
+                }
+                assert_eq!(links.sums()[site], sum);
+            }
+        }
+    }
+
+    #[test]
+    fn fill_goes_ring_by_ring_and_not_beyond_a_component() {
+        let hierarchy = sites_on(two_squares(), 400, 1);
+        let links = Links::new(&hierarchy, 0);
+        let components = components(hierarchy.levels()[0].graph());
+        let mut assigned = vec![false; 400];
+        let mut rings = vec![0_u32; 400];
+        assigned[7] = true;
+        links.fill(&mut assigned, &mut rings, |site, assigned, rings| {
+            let before = links.neighbors(site).iter().map(|other| other.index());
+            1 + before
+                .filter(|&other| assigned[other])
+                .map(|other| rings[other])
+                .min()
+                .unwrap()
+        });
+        for site in 0..400 {
+            assert_eq!(
+                assigned[site],
+                components[site] == components[7],
+                "site {site}"
+            );
+            for other in links.neighbors(site) {
+                assert!(
+                    rings[site].abs_diff(rings[other.index()]) <= 1,
+                    "neighbors are in rings side by side"
+                );
+            }
+            assert!(
+                rings[site] > 0 || site == 7 || !assigned[site],
+                "site {site} is in ring 0"
+            );
+        }
+    }
+
+    #[test]
+    fn components_are_numbered_by_their_lowest_sites() {
+        let edges = [[0, 3], [1, 5], [5, 2]].map(|ends: [u32; 2]| ends.map(SiteIdx));
+        assert_eq!(
+            components(&SiteGraph::from_edges(7, edges)),
+            [0, 1, 1, 0, 2, 1, 3]
+        );
+        assert!(components(&SiteGraph::default()).is_empty(), "no sites");
+    }
+}

@@ -99,13 +99,15 @@ impl Field<'_> {
             .map(|&vector| vector != DVec3::ZERO)
             .collect();
         self.fill(&mut assigned, &mut vectors);
+        let mut before = vectors.clone();
         for _ in 0..SWEEPS {
-            vectors = columns::column(vectors.len(), |site| {
-                if assigned[site] {
-                    self.sweep(site, &vectors)
+            core::mem::swap(&mut before, &mut vectors);
+            columns::update(&mut vectors, |site, vector| {
+                *vector = if assigned[site] {
+                    self.sweep(site, &before)
                 } else {
                     DVec3::ZERO
-                }
+                };
             });
             mix(&mut vectors, known);
         }

@@ -131,12 +131,11 @@ fn orientation_goes_through_the_directions_at_their_sites() {
     let hierarchy = sites_on(sphere(), 4000, 4);
     let directions: Vec<Direction> = (0..12)
         .map(|i| {
-            let turn =
-                DQuat::from_rotation_z(f64::from(i)) * DQuat::from_rotation_x(0.5 * f64::from(i));
-            toward(
-                turn * DVec3::X,
-                turn * DVec3::new(0.3, f64::from(i % 3) - 0.9, 1.0),
-            )
+            // A spiral of golden angles keeps them apart.
+            let z = (f64::from(2 * i) - 11.0) / 12.0;
+            let around = DQuat::from_rotation_z(2.4 * f64::from(i));
+            let at = around * DVec3::new((1.0 - z * z).sqrt(), 0.0, z);
+            toward(at, DVec3::new(0.3, f64::from(i % 3) - 0.9, 1.0))
         })
         .collect();
     let orientation = Orientation::new(&hierarchy, &directions).unwrap();

@@ -86,8 +86,12 @@ impl<'a> LevelSweep<'a> {
             }
         }
         self.fill(&mut assigned, &mut distances);
+        let mut before = distances.clone();
         for _ in 0..SWEEPS {
-            distances = columns::column(distances.len(), |site| self.sweep(site, &distances));
+            core::mem::swap(&mut before, &mut distances);
+            columns::update(&mut distances, |site, distance| {
+                *distance = self.sweep(site, &before);
+            });
         }
         distances
     }

@@ -249,19 +249,19 @@ fn sweep_solves_equation_5_on_one_level() {
 
 #[test]
 fn refined_levels_are_near_the_solution() {
-    let hierarchy = sites_on(sphere(), 4000, 3);
-    let alone = sites_on(sphere(), 4000, 1);
-    assert_eq!(
-        hierarchy.sites(),
-        alone.sites(),
-        "the same sites, whatever the number of levels"
-    );
-    let field = |at: DVec3, _: DVec3| DVec3::new(at.y, 1.0, at.x);
-    let refined = Sweep::new(&hierarchy, &Orientation::from_fn(&hierarchy, field), None).unwrap();
-    let solved = Sweep::new(&alone, &Orientation::from_fn(&alone, field), None).unwrap();
-    let spread = spread(refined.distances(0), solved.distances(0));
-    println!("{spread} {}", alone.levels()[0].spacing());
-    assert!(spread < alone.levels()[0].spacing(), "{spread}");
+    for (mesh, most) in [(cap(), 0.05), (sphere(), 0.5)] {
+        let hierarchy = sites_on(mesh, 8000, 4);
+        let field = |at: DVec3, _: DVec3| DVec3::new(at.y, 1.0, at.x);
+        let orientation = Orientation::from_fn(&hierarchy, field);
+        let refined = Sweep::new(&hierarchy, &orientation, None).unwrap();
+        let finest = &hierarchy.levels()[0];
+        let solved = LevelSweep::new(&hierarchy, orientation.vectors(), 0)
+            .solve(&components(finest.graph()), None);
+        // The sweeps leave the long waves of the error of the coarser level, which measures with longer edges.
+        let spread = spread(refined.distances(0), &solved) / finest.spacing();
+        println!("spread {spread} spacings");
+        assert!(spread < most, "{spread} spacings");
+    }
 }
 
 #[test]
