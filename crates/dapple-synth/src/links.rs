@@ -5,7 +5,6 @@
 //! [`conjugate_gradients`](crate::solve::conjugate_gradients) solves.
 
 use crate::columns;
-use dapple_mesh::glam::DVec3;
 use dapple_mesh::{Hierarchy, SiteGraph, SiteIdx};
 
 /// Edges shorter than this part of the spacing weigh as if they were so long, so that no site outvotes all others.
@@ -33,25 +32,42 @@ impl<'a> Links<'a> {
         for site in 0..level.n_sites() {
             offsets[site + 1] = offsets[site] + graph.neighbors(SiteIdx(site as u32)).len() as u32;
         }
-        let mut weights = vec![0.0; offsets[level.n_sites()] as usize];
-        let mut rows: Vec<&mut [f64]> = Vec::with_capacity(level.n_sites());
-        let mut rest = weights.as_mut_slice();
-        for site in 0..level.n_sites() {
-            let (row, after) = rest.split_at_mut((offsets[site + 1] - offsets[site]) as usize);
+        let mut links = Self {
+            graph,
+            weights: vec![0.0; offsets[level.n_sites()] as usize],
+            sums: vec![0.0; level.n_sites()],
+            offsets,
+        };
+        links.reweigh(|site, neighbors, row| {
+            let at = positions[site];
+            for (weight, other) in row.iter_mut().zip(neighbors) {
+                *weight = 1.0 / at.distance(positions[other.index()]).max(least);
+            }
+        });
+        links
+    }
+
+    /// Changes the weights of every site, given its neighbors, and gathers what `change` returns for each.
+    ///
+    /// The weights must stay symmetric.
+    pub(crate) fn reweigh<T: Send>(
+        &mut self,
+        change: impl Fn(usize, &[SiteIdx], &mut [f64]) -> T + Sync + Send,
+    ) -> Vec<T> {
+        let n_sites = self.len();
+        let mut rows: Vec<&mut [f64]> = Vec::with_capacity(n_sites);
+        let mut rest = self.weights.as_mut_slice();
+        for ends in self.offsets.windows(2) {
+            let (row, after) = rest.split_at_mut((ends[1] - ends[0]) as usize);
             rows.push(row);
             rest = after;
         }
-        columns::update(&mut rows, |site, row| {
-            weigh(positions, graph, site, least, row);
+        let graph = self.graph;
+        let found = columns::map(&mut rows, |site, row| {
+            change(site, graph.neighbors(SiteIdx(site as u32)), row)
         });
-        let mut links = Self {
-            graph,
-            offsets,
-            weights,
-            sums: Vec::new(),
-        };
-        links.sums = columns::column(links.len(), |site| links.weights(site).iter().sum());
-        links
+        self.sums = columns::column(n_sites, |site| self.weights(site).iter().sum());
+        found
     }
 
     /// The number of sites.
@@ -138,14 +154,6 @@ pub(crate) fn components(graph: &SiteGraph) -> Vec<u32> {
         count += 1;
     }
     components
-}
-
-/// The weights of the edges of a site.
-fn weigh(positions: &[DVec3], graph: &SiteGraph, site: usize, least: f64, row: &mut [f64]) {
-    let at = positions[site];
-    for (weight, other) in row.iter_mut().zip(graph.neighbors(SiteIdx(site as u32))) {
-        *weight = 1.0 / at.distance(positions[other.index()]).max(least);
-    }
 }
 
 #[cfg(test)]

@@ -50,7 +50,7 @@ impl Parents {
 
     /// The sites and their weights, which are not negative and not all zero.
     #[inline]
-    pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
         let sites = self.sites[..self.count].iter().map(|site| site.index());
         sites.zip(self.weights[..self.count].iter().copied())
     }
