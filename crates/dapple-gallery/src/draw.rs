@@ -3,12 +3,18 @@
 //! It needs nothing but arithmetic and square roots, so drawings are the same bits everywhere. What lies on a domain
 //! that wraps is drawn wherever the window shows it.
 
+mod diagram;
+mod enlarged;
 mod label;
+mod letters;
+mod sampled;
 mod sheet;
 mod shrink;
 mod stencil;
 
+pub use enlarged::enlarged;
 pub use label::{graph_grays, label_color, label_gray};
+pub use sampled::{sampled, smooth_step};
 pub use sheet::sheet;
 pub use shrink::shrink;
 

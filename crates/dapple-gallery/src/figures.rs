@@ -3,13 +3,20 @@
 mod fractal;
 mod house;
 mod pups;
+mod surface;
 mod wavelet;
 mod worley;
 
 use crate::{Figure, Paper};
 
 /// The papers, in the order of the page.
-pub const PAPERS: &[Paper] = &[worley::PAPER, wavelet::PAPER, pups::PAPER, house::PAPER];
+pub const PAPERS: &[Paper] = &[
+    worley::PAPER,
+    wavelet::PAPER,
+    surface::PAPER,
+    pups::PAPER,
+    house::PAPER,
+];
 
 /// All figures, in the order of the page.
 pub fn figures() -> impl Iterator<Item = &'static Figure> {

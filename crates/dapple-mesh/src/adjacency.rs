@@ -26,17 +26,33 @@ impl Adjacency {
     /// A face that names a vertex twice has no neighbors.
     #[must_use]
     pub fn new(mesh: &Mesh) -> Self {
-        let mut across = vec![[None; 3]; mesh.faces().len()];
-        let edges = sorted_edges(mesh);
+        Self::from_pairs(mesh.faces().len(), &sorted_edges(mesh), |a, b| {
+            a.forward != b.forward
+        })
+    }
+
+    /// As [`new`](Self::new), but two faces are also neighbors if they go through their edge in the same direction.
+    pub(crate) fn of_any_winding(n_faces: usize, edges: &[SortedEdge]) -> Self {
+        Self::from_pairs(n_faces, edges, |_, _| true)
+    }
+
+    fn from_pairs(
+        n_faces: usize,
+        edges: &[SortedEdge],
+        joined: fn(&SortedEdge, &SortedEdge) -> bool,
+    ) -> Self {
+        let mut across = Self {
+            across: vec![[None; 3]; n_faces],
+        };
         for group in edges.chunk_by(|a, b| a.ends == b.ends) {
             if let [a, b] = group
-                && a.forward != b.forward
+                && joined(a, b)
             {
-                across[a.of.face.index()][usize::from(a.of.edge)] = Some(b.of);
-                across[b.of.face.index()][usize::from(b.of.edge)] = Some(a.of);
+                across.set(a.of, Some(b.of));
+                across.set(b.of, Some(a.of));
             }
         }
-        Self { across }
+        across
     }
 
     /// The same edge seen from the face on its other side, or nothing at a border.
@@ -48,6 +64,73 @@ impl Adjacency {
     #[must_use]
     pub fn across(&self, from: FaceEdge) -> Option<FaceEdge> {
         self.across[from.face.index()][usize::from(from.edge)]
+    }
+
+    /// Says what is across an edge, seen from one side.
+    pub(crate) fn set(&mut self, from: FaceEdge, to: Option<FaceEdge>) {
+        self.across[from.face.index()][usize::from(from.edge)] = to;
+    }
+
+    /// What is across the three edges of a face.
+    pub(crate) fn around(&self, face: FaceIdx) -> [Option<FaceEdge>; 3] {
+        self.across[face.index()]
+    }
+
+    /// For each face the number of its component, the set of faces that can be reached over neighbors.
+    ///
+    /// Components are numbered from 0 in the order of their lowest faces.
+    #[must_use]
+    pub fn components(&self) -> Vec<u32> {
+        const UNSEEN: u32 = u32::MAX;
+        let mut labels = vec![UNSEEN; self.across.len()];
+        let mut count = 0;
+        let mut open = Vec::new();
+        for seed in 0..labels.len() {
+            if labels[seed] != UNSEEN {
+                continue;
+            }
+            labels[seed] = count;
+            open.push(seed);
+            while let Some(face) = open.pop() {
+                for to in self.across[face].iter().flatten() {
+                    if labels[to.face.index()] == UNSEEN {
+                        labels[to.face.index()] = count;
+                        open.push(to.face.index());
+                    }
+                }
+            }
+            count += 1;
+        }
+        labels
+    }
+
+    /// For each corner, `3 * face + corner`, the lowest corner of its fan.
+    ///
+    /// A fan is a set of corners at one vertex whose faces follow each other around it as neighbors.
+    pub(crate) fn fans(&self, mesh: &Mesh) -> Vec<usize> {
+        let mut fans: Vec<usize> = (0..3 * self.across.len()).collect();
+        for (face, across) in self.across.iter().enumerate() {
+            for (edge, to) in across.iter().enumerate() {
+                let Some(to) = to.filter(|to| to.face.index() > face) else {
+                    continue;
+                };
+                let [from, until] = [edge, (edge + 1) % 3];
+                let other = to.face.index();
+                let [there, next] = [usize::from(to.edge), (usize::from(to.edge) + 1) % 3];
+                // Faces of the same winding go through their edge in opposite directions.
+                let opposite = mesh.faces()[face][from] != mesh.faces()[other][there];
+                let ends = if opposite {
+                    [next, there]
+                } else {
+                    [there, next]
+                };
+                unite(&mut fans, 3 * face + from, 3 * other + ends[0]);
+                unite(&mut fans, 3 * face + until, 3 * other + ends[1]);
+            }
+        }
+        (0..fans.len())
+            .map(|corner| root(&mut fans, corner))
+            .collect()
     }
 }
 
@@ -66,7 +149,7 @@ pub(crate) fn sorted_edges(mesh: &Mesh) -> Vec<SortedEdge> {
     let mut edges = Vec::with_capacity(mesh.faces().len() * 3);
     for (face, corners) in (0..).map(FaceIdx).zip(mesh.faces()) {
         let [a, b, c] = *corners;
-        if a == b || b == c || c == a {
+        if names_twice(*corners) {
             continue;
         }
         for (edge, [from, to]) in (0..).zip([[a, b], [b, c], [c, a]]) {
@@ -79,4 +162,122 @@ pub(crate) fn sorted_edges(mesh: &Mesh) -> Vec<SortedEdge> {
     }
     edges.sort_unstable();
     edges
+}
+
+/// Whether a face names a vertex twice.
+pub(crate) fn names_twice([a, b, c]: [VertexIdx; 3]) -> bool {
+    a == b || b == c || c == a
+}
+
+/// Makes one set of two: in `parents` every element names a lower one of its set, and the lowest itself.
+pub(crate) fn unite(parents: &mut [usize], a: usize, b: usize) {
+    let (a, b) = (root(parents, a), root(parents, b));
+    parents[a.max(b)] = a.min(b);
+}
+
+/// The lowest element of a set.
+pub(crate) fn root(parents: &mut [usize], mut element: usize) -> usize {
+    while parents[element] != element {
+        // Halves the path for the next time.
+        parents[element] = parents[parents[element]];
+        element = parents[element];
+    }
+    element
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_meshes::{mesh, plane, ring, soup, tetrahedron};
+    use proptest::prelude::*;
+
+    fn edge(face: u32, edge: u8) -> FaceEdge {
+        let face = FaceIdx(face);
+        FaceEdge { face, edge }
+    }
+
+    #[test]
+    fn adjacency_of_a_tetrahedron_joins_every_edge_to_its_twin() {
+        let tetrahedron = tetrahedron();
+        let adjacency = Adjacency::new(&tetrahedron);
+        for face in 0..4 {
+            for start in 0..3 {
+                let to = adjacency.across(edge(face, start)).expect("closed");
+                assert_eq!(adjacency.across(to), Some(edge(face, start)), "back");
+                let ends = |at: FaceEdge| {
+                    let corners = tetrahedron.faces()[at.face.index()];
+                    [
+                        corners[usize::from(at.edge)],
+                        corners[(usize::from(at.edge) + 1) % 3],
+                    ]
+                };
+                let [a, b] = ends(edge(face, start));
+                assert_eq!(ends(to), [b, a], "the other way");
+            }
+        }
+        assert_eq!(adjacency.components(), [0; 4], "in one piece");
+    }
+
+    #[test]
+    fn adjacency_has_borders_where_faces_disagree_or_are_three() {
+        let corners = [
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [0.0, -1.0, 0.0],
+        ];
+        for faces in [
+            &[[0, 1, 2], [0, 1, 3]][..],
+            &[[0, 1, 2], [1, 0, 3], [1, 0, 4]],
+            &[[0, 1, 2], [1, 0, 0]],
+            &[[0, 1, 2]],
+        ] {
+            let adjacency = Adjacency::new(&mesh(&corners, faces));
+            assert_eq!(adjacency.across(edge(0, 0)), None, "{faces:?}");
+        }
+    }
+
+    #[test]
+    fn components_are_numbered_by_their_lowest_faces() {
+        let corners = [
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [0.0, -1.0, 0.0],
+        ];
+        let apart = mesh(&corners, &[[0, 1, 2], [0, 3, 4], [2, 1, 3], [4, 3, 2]]);
+        assert_eq!(Adjacency::new(&apart).components(), [0, 1, 0, 1]);
+    }
+
+    #[test]
+    fn fans_of_a_plane_are_its_vertices() {
+        for mesh in [plane(3, 2), ring(5, false), tetrahedron()] {
+            let fans = Adjacency::new(&mesh).fans(&mesh);
+            let vertices = mesh.faces().as_flattened();
+            for (corner, &fan) in fans.iter().enumerate() {
+                let first = vertices
+                    .iter()
+                    .position(|&vertex| vertex == vertices[corner]);
+                assert_eq!(Some(fan), first, "corner {corner}");
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn adjacency_on_any_soup_is_its_own_inverse(mesh in soup()) {
+            let adjacency = Adjacency::new(&mesh);
+            let labels = adjacency.components();
+            for face in 0..mesh.faces().len() as u32 {
+                for start in 0..3 {
+                    if let Some(to) = adjacency.across(edge(face, start)) {
+                        prop_assert_eq!(adjacency.across(to), Some(edge(face, start)));
+                        prop_assert_eq!(labels[face as usize], labels[to.face.index()]);
+                    }
+                }
+            }
+        }
+    }
 }

@@ -160,7 +160,10 @@ fn remove_clashes(surface: &Surface, edges: &mut Vec<Edge>, clash: f64) {
         let mut clashes = false;
         grid.visit(positions[edge], clash, |other| {
             let other = other.index();
-            if other < edge && kept[other] && positions[edge].distance_squared(positions[other]) < clash * clash {
+            if other < edge
+                && kept[other]
+                && positions[edge].distance_squared(positions[other]) < clash * clash
+            {
                 let [a, b] = [edge, other].map(|edge| surface.normal(edges[edge].middle));
                 clashes |= a.dot(b) >= 0.0;
             }

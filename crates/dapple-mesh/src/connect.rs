@@ -3,16 +3,17 @@
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1: two sites
 //! that disagree whether they are connected are connected. So the graph is no triangulation.
 
+use crate::oriented::Oriented;
 use crate::parallel::par_map;
-use crate::star::{Oriented, Spoke, StarFinder};
+use crate::star::{Spoke, StarFinder};
 use crate::{MeshError, MeshErrorKind, SiteGraph, SiteGrid, SiteIdx};
 use core::ops::Range;
 use glam::DVec3;
 
 /// The stars that one thread makes at a time.
 const CHUNK: usize = 1024;
-/// The side of the cells of the grid, in spacings: most stars then look into two cells along each axis.
-const GRID_SIDE: f64 = 1.6;
+/// The side of the cells of the grid, in spacings: most stars then look into two or three cells along each axis.
+const GRID_SIDE: f64 = 2.0;
 
 /// Sites that are connected where either of the two has the other in its star.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -127,7 +128,7 @@ impl Stars {
     }
 
     /// The graph of the edges of all stars.
-    fn union(&self) -> Connected {
+    pub(crate) fn union(&self) -> Connected {
         let edges = (0..self.len() as u32).flat_map(|site| {
             let star = self.star(SiteIdx(site));
             star.iter().map(move |spoke| [SiteIdx(site), spoke.to])
@@ -136,3 +137,6 @@ impl Stars {
         Connected { graph, one_sided }
     }
 }
+
+#[cfg(test)]
+mod tests;

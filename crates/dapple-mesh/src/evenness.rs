@@ -47,11 +47,16 @@ pub fn hexagonal_spacing(area: f64, n: usize) -> f64 {
 pub fn evenness(surface: &Surface, sites: &Sites, n: usize) -> Evenness {
     let n = n.min(sites.len());
     if n == 0 {
-        return Evenness { mean: 0.0, min: 0.0 };
+        return Evenness {
+            mean: 0.0,
+            min: 0.0,
+        };
     }
     let spacing = hexagonal_spacing(surface.area(), n);
     let grid = SiteGrid::new(&sites.positions()[..n], 2.0 * spacing);
-    let ratios = par_map(n, |site| nearest(sites, &grid, SiteIdx(site as u32), spacing) / spacing);
+    let ratios = par_map(n, |site| {
+        nearest(sites, &grid, SiteIdx(site as u32), spacing) / spacing
+    });
     Evenness {
         mean: ratios.iter().sum::<f64>() / n as f64,
         min: ratios.iter().copied().fold(f64::INFINITY, f64::min),
@@ -60,13 +65,19 @@ pub fn evenness(surface: &Surface, sites: &Sites, n: usize) -> Evenness {
 
 /// The distance to the nearest neighbor on the same sheet, at most four spacings.
 fn nearest(sites: &Sites, grid: &SiteGrid, site: SiteIdx, spacing: f64) -> f64 {
-    let (position, normal) = (sites.positions()[site.index()], sites.normals()[site.index()]);
+    let (position, normal) = (
+        sites.positions()[site.index()],
+        sites.normals()[site.index()],
+    );
     // Most sites have a neighbor within one and a half spacings, so the wide ball is rarely needed.
     for reach in [1.5 * spacing, 4.0 * spacing] {
         let mut least = reach;
         grid.visit(position, reach, |other| {
             let distance = position.distance(sites.positions()[other.index()]);
-            if other != site && distance < least && normal.dot(sites.normals()[other.index()]) >= 0.0 {
+            if other != site
+                && distance < least
+                && normal.dot(sites.normals()[other.index()]) >= 0.0
+            {
                 least = distance;
             }
         });

@@ -102,8 +102,13 @@ impl SiteGraph {
     #[inline]
     #[must_use]
     pub fn neighbors(&self, site: SiteIdx) -> &[SiteIdx] {
-        let [from, to] = [site.index(), site.index() + 1].map(|at| self.offsets[at] as usize);
-        &self.neighbors[from..to]
+        &self.neighbors[self.row(site)]
+    }
+
+    /// Where the neighbors of a site are among those of all sites.
+    #[inline]
+    pub(crate) fn row(&self, site: SiteIdx) -> core::ops::Range<usize> {
+        self.offsets[site.index()] as usize..self.offsets[site.index() + 1] as usize
     }
 
     /// The number of edges, each counted once.

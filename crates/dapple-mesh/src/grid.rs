@@ -240,8 +240,7 @@ impl SiteGrid {
         visit: &mut impl FnMut(SiteIdx),
     ) {
         let first = [0, 1, 2].map(|axis| low[axis].max(at[axis] << BRICK_BITS));
-        let last =
-            [0, 1, 2].map(|axis| high[axis].min(((at[axis] + 1) << BRICK_BITS) - 1));
+        let last = [0, 1, 2].map(|axis| high[axis].min(((at[axis] + 1) << BRICK_BITS) - 1));
         for z in first[2]..=last[2] {
             for y in first[1]..=last[1] {
                 let from = place(brick, [first[0], y, z]) as usize;
@@ -259,9 +258,8 @@ impl SiteGrid {
         let mask = (1 << BITS) - 1;
         for (brick, &key) in (0..).zip(&self.bricks) {
             let at = [0, BITS, 2 * BITS].map(|shift| (key >> shift & mask) as u32);
-            let meets = |axis: usize| {
-                (brick_of(low[axis])..=brick_of(high[axis])).contains(&at[axis])
-            };
+            let meets =
+                |axis: usize| (brick_of(low[axis])..=brick_of(high[axis])).contains(&at[axis]);
             if meets(0) && meets(1) && meets(2) {
                 self.visit_brick(brick, at, [low, high], &mut visit);
             }

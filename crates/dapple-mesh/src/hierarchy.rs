@@ -1,9 +1,18 @@
 //! Nested sets of even points on a surface, connected on every level: the paper's mesh hierarchy.
 
-use crate::star::Oriented;
-use crate::{Connected, MeshError, SiteGraph, SiteGrid, Sites, Surface, SurfacePoint};
-use dapple_hash::{Seed, unit_f64};
-use glam::DVec3;
+use crate::oriented::Oriented;
+use crate::{
+    Connected, MeshError, MeshErrorKind, SiteGraph, SiteGrid, Sites, Surface, hexagonal_spacing,
+    nested_points,
+};
+use dapple_hash::Seed;
+
+/// The most sites: about 120 GB of them and of their lists of neighbors.
+const SITES_MAX: usize = 1 << 28;
+/// The most levels; even of the most sites, the coarsest of 15 has only one.
+const LEVELS_MAX: usize = 16;
+/// The most iterations, so that a mistaken number does not take forever.
+const ITERATIONS_MAX: usize = 10_000;
 
 /// How a hierarchy is made.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +23,9 @@ pub struct HierarchyOptions {
     pub n_levels: usize,
     /// Where the sites begin.
     pub seed: Seed,
+    /// How often the new sites of a level push each other apart; by default 6. Those of the coarsest level do so four
+    /// times as often. More than 40 change next to nothing.
+    pub iterations: usize,
 }
 
 impl Default for HierarchyOptions {
@@ -22,7 +34,34 @@ impl Default for HierarchyOptions {
             n_sites: 65_536,
             n_levels: 3,
             seed: Seed(0),
+            iterations: 6,
         }
+    }
+}
+
+impl HierarchyOptions {
+    /// The number of sites of each level, the finest first.
+    fn counts(&self) -> Result<Vec<usize>, MeshError> {
+        let refuse = |what, count, needed| {
+            Err(MeshError::new(MeshErrorKind::Count {
+                what,
+                count,
+                needed,
+            }))
+        };
+        if !(1..=SITES_MAX).contains(&self.n_sites) {
+            return refuse("sites", self.n_sites, "1 to 2^28");
+        }
+        if !(1..=LEVELS_MAX).contains(&self.n_levels) {
+            return refuse("levels", self.n_levels, "1 to 16");
+        }
+        if self.iterations > ITERATIONS_MAX {
+            return refuse("iterations", self.iterations, "at most 10000");
+        }
+        let coarser = |&count: &usize| Some(count.div_ceil(4));
+        Ok(core::iter::successors(Some(self.n_sites), coarser)
+            .take(self.n_levels)
+            .collect())
     }
 }
 
@@ -47,37 +86,16 @@ impl Hierarchy {
     ///
     /// # Errors
     ///
-    /// Typed errors for counts of zero and counts beyond memory.
+    /// [`MeshErrorKind::Count`] unless there are 1 to 2^28 sites, 1 to 16 levels and at most 10,000 iterations.
     pub fn new(surface: &Surface, options: &HierarchyOptions) -> Result<Self, MeshError> {
-        // SKELETON: random sites without repulsion, connected to those within 1.6 spacings. To be replaced by nested,
-        // repelled sites and by the Delaunay stars in the tangent planes.
-        let mut counts = vec![options.n_sites];
-        for _ in 1..options.n_levels {
-            counts.push(counts[counts.len() - 1].div_ceil(4));
-        }
-        let seed = options.seed.child("skeleton sites", 0);
-        let mut ends = Vec::new();
-        let mut sum = 0.0;
-        for face in 0..surface.mesh().faces().len() as u32 {
-            sum += surface.face_area(crate::FaceIdx(face));
-            ends.push(sum);
-        }
-        let points: Vec<SurfacePoint> = (0..options.n_sites as i64)
-            .map(|site| {
-                let at = |counter| unit_f64(dapple_hash::hash1(seed, [site], counter));
-                let face = ends
-                    .partition_point(|&end| end <= at(0) * sum)
-                    .min(ends.len() - 1);
-                let root = at(1).sqrt();
-                let weights = [1.0 - root, root * (1.0 - at(2)), root * at(2)];
-                surface.point(crate::FaceIdx(face as u32), weights)
-            })
-            .collect();
+        let counts = options.counts()?;
+        let ascending: Vec<usize> = counts.iter().rev().copied().collect();
+        let points = nested_points(surface, &ascending, options.seed, options.iterations);
         let sites = Sites::new(surface, points);
         let levels = counts
             .iter()
             .map(|&n_sites| {
-                let spacing = (2.0 * surface.area() / (3.0_f64.sqrt() * n_sites as f64)).sqrt();
+                let spacing = hexagonal_spacing(surface.area(), n_sites);
                 let positions = &sites.positions()[..n_sites];
                 let grid = SiteGrid::new(positions, 2.0 * spacing);
                 let connected = Connected::among(&Oriented {
@@ -139,47 +157,5 @@ impl Level {
     #[must_use]
     pub fn grid(&self) -> &SiteGrid {
         &self.grid
-    }
-}
-
-/// A value that can be mixed with weights: what the operations on a hierarchy work on.
-pub trait Blend: Copy {
-    /// Nothing.
-    const ZERO: Self;
-
-    /// This and a part of another one.
-    #[must_use]
-    fn add_scaled(self, other: Self, weight: f64) -> Self;
-}
-
-impl Blend for f64 {
-    const ZERO: Self = 0.0;
-
-    fn add_scaled(self, other: Self, weight: f64) -> Self {
-        self + other * weight
-    }
-}
-
-impl Blend for f32 {
-    const ZERO: Self = 0.0;
-
-    fn add_scaled(self, other: Self, weight: f64) -> Self {
-        self + other * weight as Self
-    }
-}
-
-impl Blend for DVec3 {
-    const ZERO: Self = Self::ZERO;
-
-    fn add_scaled(self, other: Self, weight: f64) -> Self {
-        self + other * weight
-    }
-}
-
-impl<const N: usize> Blend for [f32; N] {
-    const ZERO: Self = [0.0; N];
-
-    fn add_scaled(self, other: Self, weight: f64) -> Self {
-        core::array::from_fn(|part| self[part] + other[part] * weight as f32)
     }
 }

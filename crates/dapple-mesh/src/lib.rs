@@ -3,19 +3,24 @@
 #![forbid(unsafe_code)]
 
 mod adjacency;
+mod between;
+mod blend;
+mod bvh;
 mod cell;
 mod connect;
-mod between;
 mod error;
 mod evenness;
 mod graph;
 mod grid;
 mod hierarchy;
 mod idx;
+mod interpolation;
+mod low_pass;
 mod mesh;
 mod near;
 mod nested;
 mod operations;
+mod oriented;
 mod parallel;
 mod repair;
 mod repel;
@@ -26,21 +31,29 @@ mod sites;
 mod star;
 mod surface;
 #[cfg(test)]
+mod test_meshes;
+#[cfg(test)]
 mod testing;
+mod triangle;
+mod unstick;
 mod walk;
 
 pub use adjacency::{Adjacency, FaceEdge};
+pub use blend::Blend;
+pub use bvh::{Bvh, NearestPoint, Ray, RayHit};
 pub use connect::Connected;
 pub use error::{MeshError, MeshErrorKind};
 pub use evenness::{Evenness, evenness, hexagonal_spacing};
 pub use glam;
 pub use graph::SiteGraph;
 pub use grid::SiteGrid;
-pub use hierarchy::{Blend, Hierarchy, HierarchyOptions, Level};
+pub use hierarchy::{Hierarchy, HierarchyOptions, Level};
 pub use idx::{FaceIdx, SiteIdx, VertexIdx};
+pub use interpolation::INTERPOLATION_RADIUS;
+pub use low_pass::LowPass;
 pub use mesh::Mesh;
 pub use nested::nested_points;
-pub use operations::INTERPOLATION_RADIUS;
+pub use operations::{DOWNSAMPLE_STEPS, DOWNSAMPLE_T};
 pub use repair::Repair;
 pub use repel::repel;
 pub use report::MeshReport;

@@ -24,8 +24,8 @@ const COUNT_MAX: usize = 1 << 31;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    positions: Vec<DVec3>,
-    faces: Vec<[VertexIdx; 3]>,
+    pub(crate) positions: Vec<DVec3>,
+    pub(crate) faces: Vec<[VertexIdx; 3]>,
 }
 
 impl Mesh {
@@ -102,5 +102,101 @@ impl Mesh {
             }
         }
         normals.into_iter().map(DVec3::normalize_or_zero).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::FaceIdx;
+    use crate::test_meshes::{cube, mesh, plane};
+
+    fn refused(positions: Vec<DVec3>, faces: &[[u32; 3]]) -> MeshErrorKind {
+        Mesh::new(positions, faces)
+            .expect_err("it is refused")
+            .kind()
+            .clone()
+    }
+
+    #[test]
+    fn mesh_refuses_positions_that_are_not_finite_or_too_large() {
+        for value in [f64::NAN, f64::INFINITY, -1.1e30] {
+            for axis in 0..3 {
+                let mut parts = [1.0, -1e30, 1e30];
+                parts[axis] = value;
+                let kind = refused(vec![DVec3::ONE, DVec3::from_array(parts)], &[]);
+                let MeshErrorKind::Position {
+                    vertex: 1,
+                    value: got,
+                } = kind
+                else {
+                    panic!("{kind:?}")
+                };
+                assert_eq!(got.to_bits(), value.to_bits(), "the part");
+            }
+        }
+        assert!(
+            Mesh::new(vec![DVec3::splat(-1e30)], &[]).is_ok(),
+            "the limit"
+        );
+    }
+
+    #[test]
+    fn mesh_refuses_corners_that_name_no_vertex() {
+        let kind = refused(vec![DVec3::ZERO; 3], &[[0, 1, 2], [2, 3, 0]]);
+        let want = MeshErrorKind::Corner {
+            face: 1,
+            vertex: 3,
+            count: 3,
+        };
+        assert_eq!(kind, want);
+        assert!(
+            matches!(
+                refused(vec![], &[[0, 0, u32::MAX]]),
+                MeshErrorKind::Corner { count: 0, .. }
+            ),
+            "empty"
+        );
+    }
+
+    #[test]
+    fn mesh_gives_back_what_it_was_made_of() {
+        let mesh = mesh(&[[0.0; 3], [1.0, 2.0, 3.0], [0.5, 0.0, 0.0]], &[[2, 0, 1]]);
+        let corners = [
+            DVec3::new(0.5, 0.0, 0.0),
+            DVec3::ZERO,
+            DVec3::new(1.0, 2.0, 3.0),
+        ];
+        assert_eq!(mesh.corners(FaceIdx(0)), corners);
+        assert_eq!(
+            (mesh.positions().len(), mesh.faces()),
+            (3, &[[2, 0, 1].map(VertexIdx)][..])
+        );
+    }
+
+    #[test]
+    fn vertex_normals_are_weighted_by_area_and_zero_where_nothing_is() {
+        assert_eq!(plane(2, 2).vertex_normals(), vec![DVec3::Z; 9], "flat");
+        // At the first corner all three sides have both or one of their triangles.
+        let normal = cube().vertex_normals()[0];
+        assert!(normal.max_element() < 0.0, "outward");
+        let alone = mesh(
+            &[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [5.0; 3]],
+            &[[0, 1, 2], [1, 1, 2]],
+        );
+        assert_eq!(alone.vertex_normals(), vec![DVec3::ZERO; 4], "no area");
+    }
+
+    #[test]
+    fn vertex_normals_are_unit_vectors_at_all_scales() {
+        for scale in [1e-59, 1e-20, 1.0, 1e30] {
+            let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+                .map(|corner| corner.map(|part| part * scale));
+            assert_eq!(
+                mesh(&corners, &[[0, 1, 2]]).vertex_normals(),
+                vec![DVec3::Z; 3],
+                "{scale}"
+            );
+        }
     }
 }

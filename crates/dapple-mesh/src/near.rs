@@ -96,8 +96,9 @@ impl Rows {
             }
         });
         if self.others.len() - first > CROWD_MAX {
-            self.others[first..]
-                .sort_unstable_by(|&a, &b| distance_sq(a).total_cmp(&distance_sq(b)).then(a.cmp(&b)));
+            self.others[first..].sort_unstable_by(|&a, &b| {
+                distance_sq(a).total_cmp(&distance_sq(b)).then(a.cmp(&b))
+            });
             self.others.truncate(first + CROWD_MAX);
         }
         self.starts.push(self.others.len() as u32);

@@ -12,6 +12,7 @@ use crate::between::{Edge, edges};
 use crate::repel::repel;
 use crate::scatter::Scatter;
 use crate::share::Pieces;
+use crate::unstick::unstick;
 use crate::{Surface, SurfacePoint};
 use dapple_hash::Seed;
 use glam::DVec3;
@@ -20,6 +21,8 @@ use glam::DVec3;
 const RANDOM_MOST: usize = 256;
 /// Iterations for random points, which cost nothing, for there are few of them.
 const ITERATIONS_RANDOM: usize = 40;
+/// The points of the coarsest count and of those before it, which are few as well, get so many times the iterations.
+const ITERATIONS_HIDDEN: usize = 4;
 /// Bits of a position along one axis in Morton order.
 const MORTON_BITS: u32 = 21;
 
@@ -55,14 +58,20 @@ pub fn nested_points(
         let seed = seed.child("hidden level", level as u64);
         grow(surface, &pieces, &mut points, count, seed);
         sort(surface, &mut points);
-        repel(surface, &mut points, 0, if level == 0 { 40 } else { std::env::var("ITH").ok().and_then(|v| v.parse().ok()).unwrap_or(4 * iterations) });
+        let iterations = if level == 0 {
+            ITERATIONS_RANDOM
+        } else {
+            iterations.saturating_mul(ITERATIONS_HIDDEN)
+        };
+        relax(surface, &pieces, &mut points, (0, iterations), seed);
     }
     sort(surface, &mut points);
     for (level, &count) in counts.iter().enumerate().skip(1) {
+        let seed = seed.child("level", level as u64);
         let n_fixed = points.len();
-        grow(surface, &pieces, &mut points, count, seed.child("level", level as u64));
+        grow(surface, &pieces, &mut points, count, seed);
         sort(surface, &mut points[n_fixed..]);
-        repel(surface, &mut points, n_fixed, iterations);
+        relax(surface, &pieces, &mut points, (n_fixed, iterations), seed);
         sort(surface, &mut points[n_fixed..]);
     }
     points
@@ -95,25 +104,38 @@ fn grow(
         if left > 0 {
             let scatter = Scatter::new(surface, pieces.faces[piece].clone());
             let seed = seed.child("piece", piece as u64);
-            points.extend((0..left as u64).filter_map(|number| scatter.point(surface, seed, number)));
+            points
+                .extend((0..left as u64).filter_map(|number| scatter.point(surface, seed, number)));
         }
     }
 }
 
 /// Adds `missing` points on edges, the longest of which come first: one in the middle, or two on the first edges if there are
 /// too few.
-fn split_edges(
-    surface: &Surface,
-    edges: &[Edge],
-    missing: usize,
-    points: &mut Vec<SurfacePoint>,
-) {
+fn split_edges(surface: &Surface, edges: &[Edge], missing: usize, points: &mut Vec<SurfacePoint>) {
     let n_thirds = missing.saturating_sub(edges.len()).min(edges.len());
     for edge in &edges[..n_thirds] {
         points.extend(edge.thirds(surface));
     }
-    let n_halves = missing.saturating_sub(2 * n_thirds).min(edges.len() - n_thirds);
+    let n_halves = missing
+        .saturating_sub(2 * n_thirds)
+        .min(edges.len() - n_thirds);
     points.extend(edges[n_thirds..][..n_halves].iter().map(|edge| edge.middle));
+}
+
+/// Repels the points from `n_fixed` on, and halfway moves those that are stuck.
+fn relax(
+    surface: &Surface,
+    pieces: &Pieces,
+    points: &mut [SurfacePoint],
+    (n_fixed, iterations): (usize, usize),
+    seed: Seed,
+) {
+    repel(surface, points, n_fixed, iterations / 2);
+    if iterations > 1 {
+        unstick(surface, pieces, points, n_fixed, seed.child("stuck", 0));
+    }
+    repel(surface, points, n_fixed, iterations - iterations / 2);
 }
 
 /// Sorts points along Morton's curve through their bounding box.

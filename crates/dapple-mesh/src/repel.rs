@@ -106,11 +106,15 @@ impl<'a> Crowd<'a> {
             n_limited.fetch_add(crowd.step_chunk(chunk, points, gain), Ordering::Relaxed);
         });
         let (surface, points) = (self.surface, &points[self.n_fixed..]);
-        par_chunks(&mut self.positions[self.n_fixed..], CHUNK, |chunk, positions| {
-            for (position, &point) in positions.iter_mut().zip(&points[chunk * CHUNK..]) {
-                *position = surface.position(point);
-            }
-        });
+        par_chunks(
+            &mut self.positions[self.n_fixed..],
+            CHUNK,
+            |chunk, positions| {
+                for (position, &point) in positions.iter_mut().zip(&points[chunk * CHUNK..]) {
+                    *position = surface.position(point);
+                }
+            },
+        );
         n_limited.into_inner()
     }
 
@@ -143,16 +147,14 @@ fn push(flat: &Flat, positions: &[DVec3], site: usize, others: &[SiteIdx], radiu
     for other in others {
         let from = position - positions[other.index()];
         let distance_sq = from.length_squared();
-        if distance_sq < radius_sq {
-            let up = from.dot(normal);
-            let along_sq = distance_sq - up * up;
-            if along_sq > same_sq {
-                sum += from * ((radius_sq - distance_sq) / (distance_sq * along_sq.sqrt()));
-            } else if site < other.index() {
-                sum += flat.x * 8.0;
-            } else {
-                sum -= flat.x * 8.0;
-            }
+        let up = from.dot(normal);
+        let along_sq = distance_sq - up * up;
+        if along_sq > same_sq {
+            // Without a branch: about a quarter of the listed points are past the radius, in no order.
+            let inside = (radius_sq - distance_sq).max(0.0);
+            sum += from * (inside / (distance_sq * along_sq.sqrt()));
+        } else if distance_sq < radius_sq {
+            sum += flat.x * if site < other.index() { 8.0 } else { -8.0 };
         }
     }
     sum * (0.125 * radius)

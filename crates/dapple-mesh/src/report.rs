@@ -1,8 +1,13 @@
 //! What is wrong with a mesh, as data.
 
-use crate::Mesh;
+use crate::adjacency::{Adjacency, names_twice, sorted_edges};
+use crate::triangle::area_vector;
+use crate::{FaceIdx, Mesh, VertexIdx};
 
 /// Counts of everything about a mesh that may be in the way.
+///
+/// An edge is a pair of vertices that follow each other in a face. Faces that name a vertex twice have no edges here and
+/// are in no fan; all other faces count, also those without an area and duplicates.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MeshReport {
@@ -10,19 +15,23 @@ pub struct MeshReport {
     pub vertices: usize,
     /// Faces.
     pub faces: usize,
-    /// Pieces: sets of faces that share edges with two faces, as [`Adjacency`](crate::Adjacency) has it.
+    /// Pieces: sets of faces that are joined by edges of exactly two faces, whichever way these go through them. A face
+    /// that names a vertex twice is a piece of its own; faces that share only a vertex, or an edge with a third face, are
+    /// not joined by it.
     pub components: usize,
     /// Edges of exactly one face.
     pub boundary_edges: usize,
     /// Edges of three or more faces.
     pub non_manifold_edges: usize,
-    /// Vertices whose faces do not follow each other around them in one fan.
+    /// Vertices whose faces do not follow each other around them, over edges of exactly two faces, in one open or closed
+    /// fan. The ends of a non-manifold edge are always among them; a vertex that no face names is not.
     pub non_manifold_vertices: usize,
-    /// Edges whose two faces go through them in the same direction.
+    /// Edges of exactly two faces that go through them in the same direction.
     pub winding_edges: usize,
-    /// Faces that name a vertex twice, or have an area that is zero.
+    /// Faces that name a vertex twice, or have no area: twice the area is at most 2^-50 times the square of the longest
+    /// edge, where rounding drowns the normal, or that edge is shorter than 1e-60.
     pub degenerate_faces: usize,
-    /// Faces with the same three vertices as an earlier one.
+    /// Faces with the same three vertices, in any order, as an earlier one.
     pub duplicate_faces: usize,
     /// Vertices at the same position as an earlier one.
     pub duplicate_vertices: usize,
@@ -32,18 +41,112 @@ pub struct MeshReport {
 
 impl Mesh {
     /// Counts what may be in the way of an algorithm.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_mesh::{Mesh, glam::DVec3};
+    ///
+    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let report = Mesh::new(corners, &[[0, 1, 2], [0, 1, 3]])?.report();
+    /// assert_eq!((report.boundary_edges, report.winding_edges), (4, 1));
+    /// # Ok::<(), dapple_mesh::MeshError>(())
+    /// ```
     #[must_use]
     pub fn report(&self) -> MeshReport {
-        // SKELETON: all counts are to be filled in.
-        let degenerate = |face: &&[crate::VertexIdx; 3]| {
-            let [a, b, c] = face.map(|vertex| self.positions()[vertex.index()]);
-            (b - a).cross(c - a).length_squared() == 0.0
-        };
-        MeshReport {
+        let mut report = MeshReport {
             vertices: self.positions().len(),
             faces: self.faces().len(),
-            degenerate_faces: self.faces().iter().filter(degenerate).count(),
+            degenerate_faces: (0..self.faces().len())
+                .filter(|&face| self.is_degenerate(FaceIdx(face as u32)))
+                .count(),
+            duplicate_faces: self.duplicate_faces().len(),
+            duplicate_vertices: (0..)
+                .zip(self.first_at_position())
+                .filter(|(vertex, first)| vertex != first)
+                .count(),
             ..MeshReport::default()
+        };
+        self.count_edges(&mut report);
+        report
+    }
+
+    /// Whether a face names a vertex twice or has no area.
+    pub(crate) fn is_degenerate(&self, face: FaceIdx) -> bool {
+        names_twice(self.faces()[face.index()]) || area_vector(self.corners(face)).is_none()
+    }
+
+    /// The faces with the same three vertices as an earlier one, in rising order.
+    pub(crate) fn duplicate_faces(&self) -> Vec<FaceIdx> {
+        let mut sets: Vec<([VertexIdx; 3], FaceIdx)> = self
+            .faces()
+            .iter()
+            .zip((0..).map(FaceIdx))
+            .map(|(&corners, face)| {
+                let mut corners = corners;
+                corners.sort_unstable();
+                (corners, face)
+            })
+            .collect();
+        sets.sort_unstable();
+        let later = sets.chunk_by(|a, b| a.0 == b.0).flat_map(|same| &same[1..]);
+        let mut duplicates: Vec<FaceIdx> = later.map(|&(_, face)| face).collect();
+        duplicates.sort_unstable();
+        duplicates
+    }
+
+    /// For each vertex the first one at the same position.
+    pub(crate) fn first_at_position(&self) -> Vec<u32> {
+        let positions = self.positions();
+        let order = |&a: &u32, &b: &u32| {
+            let [p, q] = [a, b].map(|vertex| positions[vertex as usize].to_array());
+            // Positions are never NaN, so that those that do not differ are equal; so are zeros of both signs.
+            p.partial_cmp(&q)
+                .unwrap_or(core::cmp::Ordering::Equal)
+                .then(a.cmp(&b))
+        };
+        let mut vertices: Vec<u32> = (0..positions.len() as u32).collect();
+        vertices.sort_unstable_by(order);
+        let mut first = vec![0; positions.len()];
+        for same in vertices.chunk_by(|&a, &b| positions[a as usize] == positions[b as usize]) {
+            for &vertex in same {
+                first[vertex as usize] = same[0];
+            }
         }
+        first
+    }
+
+    fn count_edges(&self, report: &mut MeshReport) {
+        let edges = sorted_edges(self);
+        for group in edges.chunk_by(|a, b| a.ends == b.ends) {
+            match group {
+                [_] => report.boundary_edges += 1,
+                [a, b] => report.winding_edges += usize::from(a.forward == b.forward),
+                _ => report.non_manifold_edges += 1,
+            }
+        }
+        let adjacency = Adjacency::of_any_winding(self.faces().len(), &edges);
+        let last = adjacency.components().into_iter().max();
+        report.components = last.map_or(0, |last| last as usize + 1);
+        let mut used = vec![false; self.positions().len()];
+        let mut n_fans = vec![0_u32; self.positions().len()];
+        let fans = adjacency.fans(self);
+        for (corners, fans) in self
+            .faces()
+            .iter()
+            .zip((0..).step_by(3).zip(fans.chunks_exact(3)))
+        {
+            let (first, fans) = fans;
+            for (corner, vertex) in corners.iter().enumerate() {
+                used[vertex.index()] = true;
+                let is_new = fans[corner] == first + corner && !names_twice(*corners);
+                n_fans[vertex.index()] += u32::from(is_new);
+            }
+        }
+        report.unused_vertices = used.iter().filter(|&&used| !used).count();
+        report.non_manifold_vertices = n_fans.iter().filter(|&&count| count > 1).count();
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -27,7 +27,9 @@ pub fn scatter(surface: &Surface, n: usize, seed: Seed) -> Vec<SurfacePoint> {
     let faces = (0..surface.mesh().faces().len() as u32).map(FaceIdx);
     let scatter = Scatter::new(surface, faces.collect());
     let seed = seed.child("scattered points", 0);
-    (0..n as u64).filter_map(|number| scatter.point(surface, seed, number)).collect()
+    (0..n as u64)
+        .filter_map(|number| scatter.point(surface, seed, number))
+        .collect()
 }
 
 /// Some faces of a surface, ready for points to fall on them.

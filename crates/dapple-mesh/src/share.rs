@@ -47,7 +47,11 @@ impl Pieces {
         }
         let area = |faces: &Vec<FaceIdx>| faces.iter().map(|&face| surface.face_area(face)).sum();
         let areas = faces.iter().map(area).collect();
-        Self { of_face, faces, areas }
+        Self {
+            of_face,
+            faces,
+            areas,
+        }
     }
 
     /// How many of `n` sites each piece gets: in proportion to the areas, by Webster's method.
@@ -65,7 +69,11 @@ impl Pieces {
             weight: self.areas[piece] / (2 * share + 1) as f64,
             piece,
         };
-        let mut claims: BinaryHeap<Claim> = shares.iter().enumerate().map(|(piece, &share)| claim(piece, share)).collect();
+        let mut claims: BinaryHeap<Claim> = shares
+            .iter()
+            .enumerate()
+            .map(|(piece, &share)| claim(piece, share))
+            .collect();
         while left > 0
             && let Some(Claim { piece, .. }) = claims.pop()
         {
@@ -88,7 +96,9 @@ impl Eq for Claim {}
 
 impl Ord for Claim {
     fn cmp(&self, other: &Self) -> core::cmp::Ordering {
-        self.weight.total_cmp(&other.weight).then(other.piece.cmp(&self.piece))
+        self.weight
+            .total_cmp(&other.weight)
+            .then(other.piece.cmp(&self.piece))
     }
 }
 

@@ -13,8 +13,9 @@
 //!
 //! Units: the tangent plane is measured in spacings.
 
+use crate::SiteIdx;
 use crate::cell::Cell;
-use crate::{SiteGrid, SiteIdx};
+use crate::oriented::Oriented;
 use glam::{DVec2, DVec3};
 
 /// The largest radius, in spacings of the level, of the empty circle that makes two sites neighbors.
@@ -24,20 +25,7 @@ pub const STAR_RADIUS: f64 = 2.0;
 
 /// How far to look for neighbors, in spacings: as far as the diameter of the empty circles of even sites, then of
 /// uneven ones, then of the largest that count.
-const REACHES: [f64; 3] = [1.6, 2.4, 2.0 * STAR_RADIUS];
-
-/// What stars are made of.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Oriented<'a> {
-    /// Where the sites are.
-    pub(crate) positions: &'a [DVec3],
-    /// Unit vectors out of the surface.
-    pub(crate) normals: &'a [DVec3],
-    /// The sites near a position.
-    pub(crate) grid: &'a SiteGrid,
-    /// The distance of neighbors that is expected.
-    pub(crate) spacing: f64,
-}
+const REACHES: [f64; 3] = [1.8, 2.8, 2.0 * STAR_RADIUS];
 
 /// A neighbor in a star.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,3 +143,6 @@ impl Tangent {
         (projected_sq > 0.0).then(|| projected * (distance_sq / projected_sq).sqrt())
     }
 }
+
+#[cfg(test)]
+mod tests;

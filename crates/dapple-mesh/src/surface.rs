@@ -1,6 +1,14 @@
 //! A mesh that can be walked on: every face laid out flat, and how its neighbors continue it.
+//!
+//! Every face has a plane with the first corner at the origin and the second on the positive x axis. Planes of neighbors
+//! are joined by the rigid motion that lays the other face beside this one, unfolded about their edge.
+//!
+//! All is worked out from differences of positions, so that needles and flat triangles down to the limit that
+//! [`MeshReport::degenerate_faces`](crate::MeshReport::degenerate_faces) states have unit axes at right angles and turns
+//! that are right to a few roundings; their places are right to a few roundings of their longest edge.
 
 use crate::adjacency::{Adjacency, FaceEdge};
+use crate::triangle::area_vector;
 use crate::{FaceIdx, Mesh, MeshError, MeshErrorKind};
 use glam::{DVec2, DVec3};
 
@@ -73,22 +81,30 @@ impl Surface {
                 winding,
             }));
         }
-        if mesh.faces().is_empty() {
+        let faces = || (0..mesh.faces().len() as u32).map(FaceIdx);
+        // The report has found that all faces have an area.
+        let mut flats: Vec<Flat> = faces()
+            .filter_map(|face| Flat::new(mesh.corners(face)))
+            .collect();
+        if flats.is_empty() {
             return Err(MeshError::new(MeshErrorKind::NoArea));
         }
         let adjacency = Adjacency::new(&mesh);
-        let mut flats: Vec<Flat> = (0..mesh.faces().len() as u32)
-            .map(|face| Flat::new(mesh.corners(FaceIdx(face))))
-            .collect();
-        for face in 0..flats.len() {
+        for face in faces() {
+            let corners = mesh.corners(face);
             for edge in 0..3 {
-                let from = FaceEdge {
-                    face: FaceIdx(face as u32),
-                    edge,
-                };
-                flats[face].across[usize::from(edge)] = adjacency
-                    .across(from)
-                    .map(|to| fold(&flats[face], edge, &flats[to.face.index()], to));
+                let start = usize::from(edge);
+                let along = corners[(start + 1) % 3] - corners[start];
+                let to = adjacency.across(FaceEdge { face, edge });
+                flats[face.index()].across[start] = to.map(|to| {
+                    fold(
+                        &flats[face.index()],
+                        edge,
+                        &flats[to.face.index()],
+                        to,
+                        along,
+                    )
+                });
             }
         }
         Ok(Self {
@@ -128,6 +144,38 @@ impl Surface {
         self.flats[face.index()].area()
     }
 
+    /// For each face the number of its component, the set of faces that can be walked to from it.
+    ///
+    /// Components are numbered from 0 in the order of their lowest faces.
+    #[must_use]
+    pub fn components(&self) -> Vec<u32> {
+        self.adjacency.components()
+    }
+
+    /// The areas of the components, in squared units of the mesh.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_mesh::{Mesh, Surface, glam::DVec3};
+    ///
+    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let surface = Surface::new(Mesh::new(corners, &[[0, 1, 2], [1, 0, 3]])?)?;
+    /// assert_eq!((surface.components(), surface.component_areas()), (vec![0, 0], vec![1.0]));
+    /// # Ok::<(), dapple_mesh::MeshError>(())
+    /// ```
+    #[must_use]
+    pub fn component_areas(&self) -> Vec<f64> {
+        let mut areas = Vec::new();
+        for (component, flat) in self.components().into_iter().zip(&self.flats) {
+            if component as usize == areas.len() {
+                areas.push(0.0);
+            }
+            areas[component as usize] += flat.area();
+        }
+        areas
+    }
+
     /// The unit normal of a face.
     ///
     /// # Panics
@@ -165,7 +213,8 @@ impl Surface {
         (na * a + nb * b + nc * c).normalize_or(self.face_normal(point.face))
     }
 
-    /// The weights of the three corners of the face that give the point; they sum to 1, and are at least 0 inside.
+    /// The weights of the three corners of the face that give the point; they sum to 1, and are at least 0 inside, but for
+    /// roundings of the longest edge over the height of the face.
     ///
     /// # Panics
     ///
@@ -239,23 +288,22 @@ impl Surface {
 }
 
 impl Flat {
-    /// The face in its plane; the area must not be zero.
-    fn new([a, b, c]: [DVec3; 3]) -> Self {
-        let along = b - a;
+    /// The face in its plane, or nothing if it has no area.
+    fn new(corners: [DVec3; 3]) -> Option<Self> {
+        let [a, b, c] = corners;
+        let vector = area_vector(corners)?;
+        let (along, up) = (b - a, c - a);
         let width = along.length();
         let x = along / width;
-        let up = c - a;
-        let apex_x = up.dot(x);
-        let across = up - x * apex_x;
-        let apex_y = across.length();
-        Self {
+        Some(Self {
             origin: a,
             x,
-            y: across / apex_y,
+            // In a flat triangle the normal is not quite at a right angle to x, but this axis is.
+            y: vector.cross(x).normalize(),
             width,
-            apex: DVec2::new(apex_x, apex_y),
+            apex: DVec2::new(up.dot(x), vector.length() / width),
             across: [None; 3],
-        }
+        })
     }
 
     /// The corners in the plane.
@@ -270,23 +318,22 @@ impl Flat {
 }
 
 /// The rigid motion of the plane that takes an edge of one face to where the other face has it.
-fn fold(here: &Flat, edge: u8, there: &Flat, to: FaceEdge) -> Fold {
-    let ends = |flat: &Flat, edge: u8| {
-        let corners = flat.corners();
-        let next = (usize::from(edge) + 1) % 3;
-        [corners[usize::from(edge)], corners[next]]
-    };
-    let [from, until] = ends(here, edge);
+///
+/// `along` is the edge in space; its directions in both planes give the turn. Those between the corners as they are in the
+/// planes would be less precise for short edges of needles.
+fn fold(here: &Flat, edge: u8, there: &Flat, to: FaceEdge, along: DVec3) -> Fold {
+    let direction = |flat: &Flat| DVec2::new(along.dot(flat.x), along.dot(flat.y)).normalize();
+    let (a, b) = (direction(here), direction(there));
+    let turn = DVec2::new(a.dot(b), a.perp_dot(b)).normalize();
+    let from = here.corners()[usize::from(edge)];
     // The other face goes through the edge in the other direction.
-    let [until_there, from_there] = ends(there, to.edge);
-    let (a, b) = (
-        (until - from).normalize_or(DVec2::X),
-        (until_there - from_there).normalize_or(DVec2::X),
-    );
-    let turn = DVec2::new(a.dot(b), a.perp_dot(b));
+    let from_there = there.corners()[(usize::from(to.edge) + 1) % 3];
     Fold {
         to,
         turn,
         shift: from_there - turn.rotate(from),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,7 @@
 //! Why a scene was refused.
 
 use core::fmt;
+use dapple_mesh::MeshError;
 use dapple_raster::RasterError;
 use glam::DVec3;
 
@@ -33,24 +34,8 @@ pub enum PreviewErrorKind {
         /// What the vector is.
         what: &'static str,
     },
-    /// A triangle has a corner that is not a vertex of the mesh.
-    Corner {
-        /// The index of the triangle.
-        triangle: usize,
-        /// The index of the vertex that it asks for.
-        vertex: u32,
-        /// How many vertices there are.
-        count: usize,
-    },
-    /// A mesh has more vertices or triangles than an index can tell apart.
-    Count {
-        /// What was counted.
-        what: &'static str,
-        /// How many there are.
-        count: usize,
-        /// The most there may be.
-        limit: usize,
-    },
+    /// The mesh was refused.
+    Mesh(MeshError),
     /// A shape without an inside cannot be cut.
     NotSolid {
         /// The name of the shape.
@@ -107,6 +92,12 @@ impl PreviewError {
     }
 }
 
+impl From<MeshError> for PreviewError {
+    fn from(error: MeshError) -> Self {
+        Self::new(PreviewErrorKind::Mesh(error))
+    }
+}
+
 impl From<RasterError> for PreviewError {
     fn from(error: RasterError) -> Self {
         Self::new(PreviewErrorKind::Raster(error))
@@ -122,17 +113,7 @@ impl fmt::Display for PreviewError {
             PreviewErrorKind::NoDirection { what } => {
                 write!(f, "the {what} has no direction")
             }
-            PreviewErrorKind::Corner {
-                triangle,
-                vertex,
-                count,
-            } => write!(
-                f,
-                "triangle {triangle} asks for vertex {vertex}, but there are {count} vertices"
-            ),
-            PreviewErrorKind::Count { what, count, limit } => {
-                write!(f, "there are {count} {what}, but the limit is {limit}")
-            }
+            PreviewErrorKind::Mesh(error) => error.fmt(f),
             PreviewErrorKind::NotSolid { shape } => {
                 write!(f, "a {shape} has no inside, so it cannot be cut")
             }
@@ -144,6 +125,7 @@ impl fmt::Display for PreviewError {
 impl core::error::Error for PreviewError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match &self.kind {
+            PreviewErrorKind::Mesh(error) => Some(error),
             PreviewErrorKind::Raster(error) => Some(error),
             _ => None,
         }

@@ -70,5 +70,5 @@ pub use mesh::Mesh;
 pub use object::Object;
 pub use scene::{Scene, Supersampling};
 pub use shape::{Cut, Shape};
-pub use surface::{Part, Surface};
+pub use surface::{Part, Surface, Triangle};
 pub use transform::Transform;

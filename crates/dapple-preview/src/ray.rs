@@ -1,20 +1,8 @@
 //! Rays, and the frame around a direction.
 
+pub(crate) use dapple_mesh::Ray;
+
 use glam::DVec3;
-
-/// A half line; `direction` has length 1, so that a parameter along it is a distance.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Ray {
-    pub(crate) origin: DVec3,
-    pub(crate) direction: DVec3,
-}
-
-impl Ray {
-    /// The point at a distance from the origin.
-    pub(crate) fn at(&self, distance: f64) -> DVec3 {
-        self.origin + self.direction * distance
-    }
-}
 
 /// Two unit vectors at right angles to a unit vector and to each other.
 ///

@@ -8,10 +8,11 @@ mod solid;
 
 pub use cut::Cut;
 
-use crate::mesh::{Mesh, MeshHit};
+use crate::mesh::Mesh;
 use crate::ray::Ray;
 use crate::surface::{Chart, Part};
 use crate::{PreviewError, PreviewErrorKind};
+use dapple_mesh::RayHit;
 use glam::{DVec2, DVec3};
 use solid::{Boundary, Skin, Solid};
 use std::sync::Arc;
@@ -136,7 +137,7 @@ pub(crate) struct Hit {
 enum HitFace {
     Flat,
     Solid(Boundary),
-    Triangle(MeshHit),
+    Triangle(RayHit),
 }
 
 /// What a body is like where a ray meets it, in the space of the object. The normals may point either way.
@@ -161,7 +162,7 @@ impl Body<'_> {
                 (boundary.distance, HitFace::Solid(boundary))
             }
             Body::Mesh(mesh) => {
-                let hit = mesh.nearest(ray, limit)?;
+                let hit = mesh.first_hit(ray, limit)?;
                 (hit.distance, HitFace::Triangle(hit))
             }
         };
@@ -171,7 +172,7 @@ impl Body<'_> {
     /// Whether any point of the ray is on the body, with a distance above zero and below `limit`.
     pub(crate) fn blocks(&self, ray: &Ray, limit: f64) -> bool {
         match self {
-            Body::Mesh(mesh) => mesh.blocks(ray, limit),
+            Body::Mesh(mesh) => mesh.is_blocked(ray, limit),
             Body::Flat { .. } | Body::Solid(_) => self.hit(ray, limit).is_some(),
         }
     }

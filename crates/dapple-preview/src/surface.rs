@@ -38,10 +38,20 @@ pub enum Part {
     Cut,
 }
 
+/// A point of a triangle of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle {
+    /// The index of the triangle.
+    pub index: u32,
+    /// The weights of its corners, which sum to 1: what mixes anything that the corners have, such as uv.
+    pub weights: [f64; 3],
+}
+
 /// How a shape is laid out flat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Chart {
     None,
+    Triangle(Triangle),
     Plane,
     Sphere,
     Torus { major_radius: f64 },
@@ -65,12 +75,21 @@ impl Surface {
         let around = || turn(-at.z, at.x);
         let outward = || (at.x * at.x + at.z * at.z).sqrt();
         match self.chart {
-            Chart::None => None,
+            Chart::None | Chart::Triangle(_) => None,
             Chart::Plane => Some(DVec2::new(at.x, at.z)),
             Chart::Sphere => Some(DVec2::new(around(), libm::atan2(outward(), at.y) / PI)),
             Chart::Torus { major_radius } => {
                 Some(DVec2::new(around(), turn(at.y, outward() - major_radius)))
             }
+        }
+    }
+
+    /// The triangle of a mesh, and where in it; nothing on other shapes.
+    #[must_use]
+    pub fn triangle(&self) -> Option<Triangle> {
+        match self.chart {
+            Chart::Triangle(triangle) => Some(triangle),
+            _ => None,
         }
     }
 }

@@ -1,7 +1,28 @@
 //! The neighborhoods of an exemplar, as rows of numbers.
+//!
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297, section 5.
+//!
+//! A row has the pixels of a neighborhood in a fixed order: part after part, in each the offsets row by row from the top,
+//! for each all channels. Values are multiplied with the root of the part's weight, so that plain squared distances
+//! between rows are the weighted ones.
+//!
+//! Pixels whose neighborhoods reach past an edge are left out, as in the paper. It leaves open what to do on small levels,
+//! where nearly none remains: of 8 × 8 pixels, ten have H(7, 0). Where fewer than [`FEW`] remain, here all pixels are
+//! compared, and the exemplar is mirrored at its edges.
+//!
+//! The paper centers a neighborhood on the coarser level at half of the coordinates rounded down. Four pixels then have
+//! the same F(n, 1), and the first of them always wins. By default it is centered at exactly half, with bilinear
+//! interpolation; both readings are there as [`CoarserCenter`].
 
-use crate::neighborhood::{Part, Pass};
-use crate::{Pyramid, SynthError};
+use crate::error::{SynthError, SynthErrorKind};
+use crate::grid::Grid;
+use crate::neighborhood::{Part, Pass, Reads};
+use crate::{Edges, Exemplar, Pyramid};
+
+/// Where fewer neighborhoods lie within the exemplar, those that reach past an edge are compared, too.
+///
+/// Bricks fell apart with the 100 that 16 × 16 pixels have, and were whole with 700.
+const FEW: usize = 400;
 
 /// Where a neighborhood on the coarser level is centered, for a pixel whose coordinates halved are not whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -23,18 +44,49 @@ pub struct Candidates {
     pub(crate) rows: Vec<f32>,
     /// The pixel of each row, as `row * width + column` of the pass' level of the pyramid; ascending.
     pub(crate) pixels: Vec<u32>,
+    /// What lies past the edges of the pass' level, and its size.
+    edges: Edges,
+    size: [u32; 2],
+    /// The rectangle of the pixels that have rows.
+    inner: [Inner; 2],
+}
+
+/// The columns or the rows that are compared: from `first` to before `end`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Inner {
+    first: u32,
+    end: u32,
 }
 
 impl Candidates {
-    /// The neighborhoods of all pixels of the pass' level that do not reach past an edge.
+    /// The neighborhoods of all pixels of the pass' level that do not reach past an edge; of all pixels where the exemplar
+    /// wraps, and where fewer than 400 would remain.
     ///
     /// # Errors
     ///
-    /// Typed errors for a level that the pyramid does not have or that is too small, and for parts out of their ranges.
+    /// [`SynthErrorKind::Exemplar`] for a level that has less than half of a neighborhood's side, and the errors of
+    /// [`Schedule::check`](crate::Schedule::check) for levels that the pyramid does not have and parts out of their ranges.
     pub fn new(pyramid: &Pyramid, pass: &Pass, center: CoarserCenter) -> Result<Self, SynthError> {
-        let _ = (pyramid, pass, center);
-        let _: Option<Part> = None;
-        todo!()
+        pass.check(pyramid.levels.len())?;
+        for part in &pass.parts {
+            check_level(pyramid, pass.level + part.reads.step(), part.side)?;
+        }
+        let level = &pyramid.levels[pass.level];
+        let mut inner = [0, 1].map(|axis| inner_of(pyramid, pass, center, axis));
+        if inner[0].len() * inner[1].len() < FEW {
+            inner = level.size.map(|end| Inner { first: 0, end });
+        }
+        let n_values = |part: &Part| part.offsets().len() * level.n_channels;
+        let mut candidates = Self {
+            dims: pass.parts.iter().map(n_values).sum(),
+            rows: Vec::new(),
+            pixels: Vec::new(),
+            edges: level.edges,
+            size: level.size,
+            inner,
+        };
+        candidates.fill(pyramid, pass, center);
+        Ok(candidates)
     }
 
     /// The number of values of a neighborhood.
@@ -64,4 +116,158 @@ impl Candidates {
     pub fn row(&self, row: usize) -> &[f32] {
         &self.rows[row * self.dims..(row + 1) * self.dims]
     }
+
+    /// The column and the row in the exemplar's level of the pixel in the middle of a neighborhood.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such row.
+    #[must_use]
+    pub fn pixel(&self, row: usize) -> [u32; 2] {
+        let pixel = self.pixels[row];
+        [pixel % self.size[0], pixel / self.size[0]]
+    }
+
+    /// The neighborhood of a pixel, which may lie past an edge where the exemplar wraps. None if it is not compared.
+    #[must_use]
+    #[inline]
+    pub fn row_of_pixel(&self, [mut column, mut line]: [i64; 2]) -> Option<u32> {
+        if self.edges == Edges::Wrap {
+            column = column.rem_euclid(self.size[0].into());
+            line = line.rem_euclid(self.size[1].into());
+        }
+        let [columns, lines] = self.inner;
+        let within = columns.contains(column) && lines.contains(line);
+        // Within the exemplar, which has at most 2^31 pixels.
+        let row = || (line as u32 - lines.first) * columns.len() as u32;
+        within.then(|| row() + (column as u32 - columns.first))
+    }
+
+    /// Writes the rows of all pixels in the rectangle.
+    fn fill(&mut self, pyramid: &Pyramid, pass: &Pass, center: CoarserCenter) {
+        let parts: Vec<PartReader<'_>> = pass
+            .parts
+            .iter()
+            .map(|part| PartReader::new(pyramid, pass.level, part))
+            .collect();
+        let [columns, lines] = self.inner;
+        self.pixels.reserve(columns.len() * lines.len());
+        self.rows.reserve(columns.len() * lines.len() * self.dims);
+        let mut samples = Vec::new();
+        for line in lines.first..lines.end {
+            for column in columns.first..columns.end {
+                self.pixels.push(line * self.size[0] + column);
+                for part in &parts {
+                    let halves = halves([column, line], part.reads, center);
+                    part.read(halves, &mut samples, &mut self.rows);
+                }
+            }
+        }
+    }
 }
+
+impl Inner {
+    fn len(self) -> usize {
+        self.end.saturating_sub(self.first) as usize
+    }
+
+    fn contains(self, at: i64) -> bool {
+        (i64::from(self.first)..i64::from(self.end)).contains(&at)
+    }
+}
+
+/// Where a pixel lies on the level that is read, in half pixels.
+pub(crate) fn halves(pixel: [u32; 2], reads: Reads, center: CoarserCenter) -> [i64; 2] {
+    pixel.map(|at| match (reads, center) {
+        (Reads::Same, _) => 2 * i64::from(at),
+        (Reads::Coarser, CoarserCenter::Exact) => i64::from(at),
+        (Reads::Coarser, CoarserCenter::Floor) => i64::from(at / 2 * 2),
+    })
+}
+
+/// Reads one part of a neighborhood.
+struct PartReader<'a> {
+    grid: Grid<'a>,
+    reads: Reads,
+    half: i32,
+    /// The root of the part's weight.
+    scale: f32,
+    /// Where the offsets are in the square.
+    places: Vec<usize>,
+}
+
+impl<'a> PartReader<'a> {
+    fn new(pyramid: &'a Pyramid, level: usize, part: &Part) -> Self {
+        let half = part.side as i32 / 2;
+        let place = |[i, j]: [i32; 2]| ((j + half) * (2 * half + 1) + i + half) as usize;
+        Self {
+            grid: pyramid.levels[level + part.reads.step()].grid(),
+            reads: part.reads,
+            half,
+            scale: part.weight.sqrt(),
+            places: part.offsets().into_iter().map(place).collect(),
+        }
+    }
+
+    /// Appends the values of the part around a position.
+    fn read(&self, halves: [i64; 2], samples: &mut Vec<f32>, target: &mut Vec<f32>) {
+        let (half, n) = (self.half, self.grid.n_channels);
+        let side = 2 * half as usize + 1;
+        samples.resize(side * side * n, 0.0);
+        self.grid.read(halves, half, -half..=half, samples);
+        for &place in &self.places {
+            let values = &samples[place * n..][..n];
+            target.extend(values.iter().map(|value| value * self.scale));
+        }
+    }
+}
+
+/// Refuses a level that has less than half of a neighborhood's side.
+fn check_level(pyramid: &Pyramid, level: usize, side: u32) -> Result<(), SynthError> {
+    let size = pyramid.levels[level].size;
+    if size[0].min(size[1]) > side / 2 {
+        return Ok(());
+    }
+    Err(SynthError::new(SynthErrorKind::Exemplar {
+        level,
+        size,
+        side,
+    }))
+}
+
+/// The pixels along an axis whose neighborhoods do not reach past an edge.
+fn inner_of(pyramid: &Pyramid, pass: &Pass, center: CoarserCenter, axis: usize) -> Inner {
+    let n_pixels = pyramid.levels[pass.level].size[axis];
+    let mut inner = Inner {
+        first: 0,
+        end: n_pixels,
+    };
+    for part in &pass.parts {
+        let read: &Exemplar = &pyramid.levels[pass.level + part.reads.step()];
+        if read.edges == Edges::Wrap {
+            continue;
+        }
+        let along = || {
+            part.offsets()
+                .into_iter()
+                .map(|offset| i64::from(offset[axis]))
+        };
+        let [before, after] = [along().min(), along().max()].map(|reach| reach.unwrap_or(0));
+        let fits = |at: &u32| {
+            let halves = halves([*at; 2], part.reads, center)[0];
+            let last = (halves + 1).div_euclid(2) + after;
+            halves.div_euclid(2) + before >= 0 && last < i64::from(read.size[axis])
+        };
+        // What fits is without gaps.
+        let first = (inner.first..inner.end).find(fits).unwrap_or(inner.end);
+        let end = (first..inner.end)
+            .rev()
+            .find(fits)
+            .map_or(first, |last| last + 1);
+        inner = Inner { first, end };
+    }
+    inner
+}
+
+#[cfg(test)]
+mod tests;

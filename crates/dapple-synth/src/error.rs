@@ -44,6 +44,13 @@ pub enum SynthErrorKind {
         /// The side of the neighborhood.
         side: u32,
     },
+    /// A pass reads a coarser level that has no colors yet.
+    Unfilled {
+        /// Which pass.
+        pass: usize,
+        /// The level that it reads.
+        level: usize,
+    },
     /// A pixel of the exemplar is NaN or infinite.
     NotFinite {
         /// Its column.
@@ -136,6 +143,10 @@ impl fmt::Display for SynthError {
                 f,
                 "level {level} of the exemplar has {} x {} pixels, too few for a neighborhood of side {side}",
                 size[0], size[1]
+            ),
+            SynthErrorKind::Unfilled { pass, level } => write!(
+                f,
+                "pass {pass} reads level {level}, which no pass before it visits"
             ),
             SynthErrorKind::NotFinite { column, row, value } => write!(
                 f,

@@ -1,8 +1,26 @@
 //! The image that a texture is to look like, and its Gaussian pyramid.
+//!
+//! References: Peter J. Burt and Edward H. Adelson, "The Laplacian Pyramid as a Compact Image Code", IEEE Transactions on
+//! Communications, 1983, DOI 10.1109/TCOM.1983.1095851, for the pyramid; Greg Turk, "Texture Synthesis on Surfaces",
+//! SIGGRAPH 2001, DOI 10.1145/383259.383297, section 5.2, for its use.
+//!
+//! Pixel `(a, b)` of a level lies on pixel `(2a, 2b)` of the next finer one, and is the mean of the pixels around it with
+//! the weights 1-4-6-4-1 along both axes. A side of `n` pixels becomes one of `n / 2`, rounded up. Nothing is rounded to
+//! the codes of a file on the way.
+//!
+//! A wrapping level with an odd side has no coarser version that wraps: its pixels would lie two apart but for the last
+//! and the first, which would lie one apart. From there on the pyramid is cut; [`Exemplar::edges`] says what a level is.
 
-use crate::SynthError;
+use crate::error::{SynthError, SynthErrorKind};
+use crate::grid::Grid;
 use dapple_color::LinearRgb;
-use dapple_raster::Raster;
+use dapple_raster::{Raster, Wrap};
+
+/// The most levels of a pyramid.
+pub(crate) const MAX_LEVELS: usize = 16;
+
+/// The largest value of a pixel, times the root of its weight: no sum of squares can overflow.
+const MAX_VALUE: f32 = 1e12;
 
 /// What lies past the edges of an exemplar.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -15,7 +33,7 @@ pub enum Edges {
     Wrap,
 }
 
-/// An image whose neighborhoods are matched: pixels of one or several channels, one after the other.
+/// An image whose neighborhoods are matched: pixels of one or several channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exemplar {
     pub(crate) size: [u32; 2],
@@ -34,38 +52,155 @@ pub struct Pyramid {
 impl Exemplar {
     /// A color image, matched in its sRGB codes from 0 to 1, as the paper's were.
     ///
+    /// The codes have 16 bits, so those of 8-bit files are exact. Colors outside of 0 to 1 are clamped for matching.
+    ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::NotFinite`](crate::SynthErrorKind::NotFinite).
+    /// [`SynthErrorKind::NotFinite`].
     pub fn new(image: &Raster<LinearRgb>, edges: Edges) -> Result<Self, SynthError> {
-        let _ = (image, edges);
-        todo!()
+        for (pixel, color) in image.pixels().iter().enumerate() {
+            for value in color.to_array() {
+                check_finite(value, pixel, image.width())?;
+            }
+        }
+        let code = |code: u16| f32::from(code) / f32::from(u16::MAX);
+        let codes = |color: &LinearRgb| color.to_srgb::<u16>().map(code);
+        Ok(Self {
+            size: image.size(),
+            n_channels: 3,
+            edges,
+            pixels: image.pixels().iter().flat_map(codes).collect(),
+        })
     }
 
     /// Any planes, each with the weight of its squared differences.
     ///
+    /// The planes are used as they are: heights from 0 to 1 with the weight 1 count as much as one channel of a color.
+    /// Inside, values are multiplied with the roots of the weights, so [`pixels`](Self::pixels) shows them so.
+    ///
     /// # Errors
     ///
-    /// Typed errors for no plane, different sizes, weights below zero and pixels that are not finite.
+    /// Typed errors for no plane, different sizes, weights that are not above zero and finite, and values that are not
+    /// finite or, weighted, beyond 10^12.
     pub fn from_planes(planes: &[(&Raster<f32>, f32)], edges: Edges) -> Result<Self, SynthError> {
-        let _ = (planes, edges);
-        todo!()
+        let Some((first, _)) = planes.first() else {
+            return Err(SynthError::new(SynthErrorKind::Count {
+                what: "planes of the exemplar",
+                count: 0,
+                needed: "at least 1",
+            }));
+        };
+        let n_channels = planes.len();
+        let mut pixels = vec![0.0; first.pixels().len() * n_channels];
+        for (channel, &(plane, weight)) in planes.iter().enumerate() {
+            first.check_same_size(plane.size())?;
+            let holds = weight > 0.0 && weight.is_finite();
+            SynthError::check(
+                holds,
+                "weight of a plane",
+                weight.into(),
+                "above 0 and finite",
+            )?;
+            let scale = weight.sqrt();
+            for (pixel, &value) in plane.pixels().iter().enumerate() {
+                let scaled = value * scale;
+                check_finite(scaled, pixel, plane.width())?;
+                let holds = scaled.abs() <= MAX_VALUE;
+                SynthError::check(
+                    holds,
+                    "weighted value of a pixel",
+                    scaled.into(),
+                    "from -1e12 to 1e12",
+                )?;
+                pixels[pixel * n_channels + channel] = scaled;
+            }
+        }
+        Ok(Self {
+            size: first.size(),
+            n_channels,
+            edges,
+            pixels,
+        })
     }
 
-    /// The pyramid with `n_levels` levels, this image the first.
+    /// The pyramid with `n_levels` levels, from 1 to 16, this image the first.
     ///
     /// # Errors
     ///
-    /// Typed errors for no level, and for a level without pixels.
+    /// [`SynthErrorKind::Range`] for another number of levels.
     pub fn pyramid(&self, n_levels: usize) -> Result<Pyramid, SynthError> {
-        let _ = n_levels;
-        todo!()
+        let holds = (1..=MAX_LEVELS).contains(&n_levels);
+        SynthError::check(holds, "number of levels", n_levels as f64, "from 1 to 16")?;
+        let levels = core::iter::successors(Some(self.clone()), |finer| Some(finer.halved()));
+        Ok(Pyramid {
+            levels: levels.take(n_levels).collect(),
+        })
     }
 
     /// Columns and rows.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
+    }
+
+    /// The number of values of a pixel.
+    #[must_use]
+    pub fn n_channels(&self) -> usize {
+        self.n_channels
+    }
+
+    /// What lies past the edges.
+    #[must_use]
+    pub fn edges(&self) -> Edges {
+        self.edges
+    }
+
+    /// The values that are compared: [`n_channels`](Self::n_channels) for each pixel, row by row from the top.
+    #[must_use]
+    pub fn pixels(&self) -> &[f32] {
+        &self.pixels
+    }
+
+    /// The pixels, and what lies past the edges; past a cut that is the mirrored image.
+    pub(crate) fn grid(&self) -> Grid<'_> {
+        let wrap = match self.edges {
+            Edges::Cut => Wrap::Mirror,
+            Edges::Wrap => Wrap::Repeat,
+        };
+        Grid {
+            values: &self.pixels,
+            size: self.size,
+            n_channels: self.n_channels,
+            wrap: [wrap; 2],
+        }
+    }
+
+    /// The next coarser level.
+    fn halved(&self) -> Self {
+        let [width, height] = self.size;
+        let half = self.size.map(|side| side.div_ceil(2));
+        let odd = self.size.iter().any(|side| side % 2 == 1);
+        let n = self.n_channels;
+        let [wrap_x, wrap_y] = self.grid().wrap;
+        let mut rows = Vec::with_capacity(half[0] as usize * height as usize * n);
+        for row in self.pixels.chunks_exact(width as usize * n) {
+            for at in 0..half[0] {
+                let taps = taps(at, width, wrap_x).map(|column| &row[column * n..][..n]);
+                blend(taps, &mut rows);
+            }
+        }
+        let row_len = half[0] as usize * n;
+        let mut pixels = Vec::with_capacity(row_len * half[1] as usize);
+        for at in 0..half[1] {
+            let taps = taps(at, height, wrap_y).map(|row| &rows[row * row_len..][..row_len]);
+            blend(taps, &mut pixels);
+        }
+        Self {
+            size: half,
+            n_channels: n,
+            edges: if odd { Edges::Cut } else { self.edges },
+            pixels,
+        }
     }
 }
 
@@ -76,3 +211,33 @@ impl Pyramid {
         &self.levels
     }
 }
+
+/// Refuses a value that is not finite, of the given pixel in an image of the given width.
+fn check_finite(value: f32, pixel: usize, width: u32) -> Result<(), SynthError> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    // A raster has at most 2^31 pixels.
+    let pixel = pixel as u32;
+    Err(SynthError::new(SynthErrorKind::NotFinite {
+        column: pixel % width,
+        row: pixel / width,
+        value,
+    }))
+}
+
+/// The five places that place `at` of the coarser level is the mean of.
+fn taps(at: u32, side: u32, wrap: Wrap) -> [usize; 5] {
+    let center = 2 * i64::from(at);
+    [-2, -1, 0, 1, 2].map(|step| wrap.index(center + step, side) as usize)
+}
+
+/// Appends the means with the weights 1-4-6-4-1 of five slices of one length.
+fn blend([a, b, c, d, e]: [&[f32]; 5], target: &mut Vec<f32>) {
+    for i in 0..c.len() {
+        target.push(((a[i] + e[i]) + 4.0 * (b[i] + d[i]) + 6.0 * c[i]) / 16.0);
+    }
+}
+
+#[cfg(test)]
+mod tests;

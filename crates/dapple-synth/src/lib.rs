@@ -2,26 +2,48 @@
 
 #![forbid(unsafe_code)]
 
+mod atlas;
+mod bake;
 mod candidates;
+mod cells;
 mod columns;
 mod directions;
+mod engine;
 mod error;
 mod exemplar;
+mod grid;
+mod ground;
+mod groups;
+mod likeness;
 mod links;
 mod matcher;
+mod mesh_ground;
 mod neighborhood;
+mod options;
 mod orientation;
 mod parents;
+mod plane;
 #[cfg(test)]
 mod shapes;
 mod solve;
+mod surface_texture;
 mod sweep;
+mod synthesizer;
+mod visit;
 
+pub use atlas::{Atlas, PADDING};
+pub use bake::bake;
 pub use candidates::{Candidates, CoarserCenter};
 pub use dapple_mesh as mesh;
+pub use engine::Progress;
 pub use error::{SynthError, SynthErrorKind};
 pub use exemplar::{Edges, Exemplar, Pyramid};
+pub use likeness::Likeness;
 pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
+pub use options::Options;
 pub use orientation::{Direction, Orientation};
+pub use plane::{PlaneTexture, synthesize_plane, synthesize_plane_with};
+pub use surface_texture::SurfaceTexture;
 pub use sweep::Sweep;
+pub use synthesizer::{Synthesizer, synthesize};

@@ -1,4 +1,24 @@
-//! The shapes of neighborhoods: which pixels around a pixel are compared (figure 4).
+//! The shapes of neighborhoods, and in which order they are used.
+//!
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297, figure 4 and section 5;
+//! the causal shape is from Li-Yi Wei and Marc Levoy, "Fast Texture Synthesis using Tree-structured Vector Quantization",
+//! SIGGRAPH 2000, DOI 10.1145/344779.345009.
+//!
+//! | the paper's | is | with side 7 |
+//! |---|---|---|
+//! | F(n, 0) | `Part::new(Shape::Full, n, Reads::Same)` | 48 pixels: all but the center, which is what is looked for |
+//! | H(n, 0) | `Part::new(Shape::Half, n, Reads::Same)` | 21 pixels: the three rows above |
+//! | F(n, 1) | `Part::new(Shape::Full, n, Reads::Coarser)` | 49 pixels: on the coarser level the center is known, too |
+//!
+//! Where the text is silent: H has no pixel of the center's own row, because half of that row is not colored yet
+//! ([`Shape::HalfWithRow`] is the other reading); half of 7, which the paper rounds to 3, is rounded to an odd number.
+//!
+//! Offsets are in pixels of the level that is read, to the right and down.
+
+use crate::error::{SynthError, SynthErrorKind};
+
+/// The largest weight of a part: no sum of squares can overflow.
+const MAX_WEIGHT: f32 = 1e6;
 
 /// Which part of a square of pixels belongs to a neighborhood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -34,7 +54,7 @@ pub struct Part {
     pub side: u32,
     /// Which level is read.
     pub reads: Reads,
-    /// The factor of its squared differences; by default 1.
+    /// The factor of its squared differences, above 0 and at most 10^6; by default 1.
     pub weight: f32,
 }
 
@@ -50,7 +70,24 @@ impl Part {
         }
     }
 
+    /// The same part with another weight.
+    #[must_use]
+    pub const fn with_weight(self, weight: f32) -> Self {
+        Self { weight, ..self }
+    }
+
     /// The offsets of its pixels from the center, to the right and down, row by row from the top.
+    ///
+    /// There are none for a side of 0.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_synth::{Part, Reads, Shape};
+    ///
+    /// let offsets = Part::new(Shape::Half, 3, Reads::Same).offsets();
+    /// assert_eq!(offsets, [[-1, -1], [0, -1], [1, -1]]);
+    /// ```
     #[must_use]
     pub fn offsets(&self) -> Vec<[i32; 2]> {
         let half = self.side as i32 / 2;
@@ -87,32 +124,306 @@ pub struct Pass {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Schedule {
-    /// The passes. Before the first one, its level is filled with random pixels of the exemplar.
+    /// The passes. Before the first visit of a level it is filled with random pixels of the exemplar. The last visit of
+    /// level 0 gives the result.
     pub passes: Vec<Pass>,
 }
 
 impl Schedule {
-    /// The passes of section 5.2: H(7,0) on the coarsest level, and F(7,1), then F(7,0) + F(3,1) on each finer one.
+    /// The passes of section 5.2: H(7, 0) on the coarsest level, and F(7, 1), then F(7, 0) + F(3, 1) on each finer one.
+    ///
+    /// The paper has three or four levels; with one there is only the first pass.
     #[must_use]
     pub fn paper(n_levels: usize) -> Self {
-        let part = |shape, side, reads| Part::new(shape, side, reads);
+        let coarsest = n_levels.saturating_sub(1);
         let mut passes = vec![Pass {
-            level: n_levels.saturating_sub(1),
-            parts: vec![part(Shape::Half, 7, Reads::Same)],
+            level: coarsest,
+            parts: vec![Part::new(Shape::Half, 7, Reads::Same)],
         }];
-        for level in (0..n_levels.saturating_sub(1)).rev() {
-            passes.push(Pass {
-                level,
-                parts: vec![part(Shape::Full, 7, Reads::Coarser)],
-            });
-            passes.push(Pass {
-                level,
-                parts: vec![
-                    part(Shape::Full, 7, Reads::Same),
-                    part(Shape::Full, 3, Reads::Coarser),
-                ],
-            });
+        for level in (0..coarsest).rev() {
+            let extrapolate = vec![Part::new(Shape::Full, 7, Reads::Coarser)];
+            let refine = vec![
+                Part::new(Shape::Full, 7, Reads::Same),
+                Part::new(Shape::Full, 3, Reads::Coarser),
+            ];
+            passes.extend([extrapolate, refine].map(|parts| Pass { level, parts }));
         }
         Self { passes }
+    }
+
+    /// The method without levels, whose pseudo-code is in section 5.1: one pass with one neighborhood.
+    #[must_use]
+    pub fn single_level(shape: Shape, side: u32) -> Self {
+        let parts = vec![Part::new(shape, side, Reads::Same)];
+        Self {
+            passes: vec![Pass { level: 0, parts }],
+        }
+    }
+
+    /// Refuses passes that cannot be run with `n_levels` levels.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Count`] for no pass, a pass without parts and no visit of level 0; [`SynthErrorKind::Range`] for a
+    /// level that is not there, a side that is not odd and from 3 to 15, and a weight that is not above 0 and at most
+    /// 10^6; [`SynthErrorKind::Unfilled`] for a pass that reads a coarser level that no pass before it visited.
+    pub fn check(&self, n_levels: usize) -> Result<(), SynthError> {
+        check_any(self.passes.len(), "passes")?;
+        let mut filled = vec![false; n_levels];
+        for (index, pass) in self.passes.iter().enumerate() {
+            pass.check(n_levels)?;
+            let reads_coarser = pass.parts.iter().any(|part| part.reads == Reads::Coarser);
+            let level = pass.level + 1;
+            if reads_coarser && !filled[level] {
+                return Err(SynthError::new(SynthErrorKind::Unfilled {
+                    pass: index,
+                    level,
+                }));
+            }
+            filled[pass.level] = true;
+        }
+        check_any(usize::from(filled[0]), "visits of level 0")
+    }
+}
+
+impl Pass {
+    /// Refuses parts and levels out of their ranges.
+    pub(crate) fn check(&self, n_levels: usize) -> Result<(), SynthError> {
+        check_any(self.parts.len(), "parts of a pass")?;
+        for part in &self.parts {
+            let side = part.side;
+            let holds = side % 2 == 1 && (3..=15).contains(&side);
+            SynthError::check(
+                holds,
+                "side of a neighborhood",
+                side.into(),
+                "odd and from 3 to 15",
+            )?;
+            let weight = part.weight;
+            let holds = weight > 0.0 && weight <= MAX_WEIGHT;
+            SynthError::check(
+                holds,
+                "weight of a part",
+                weight.into(),
+                "above 0 and at most 1e6",
+            )?;
+            let level = self.level.saturating_add(part.reads.step());
+            let what = "level that a pass reads";
+            SynthError::check(
+                level < n_levels,
+                what,
+                level as f64,
+                "below the number of levels",
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl Reads {
+    /// How much coarser the level is that is read.
+    pub(crate) const fn step(self) -> usize {
+        match self {
+            Self::Same => 0,
+            Self::Coarser => 1,
+        }
+    }
+}
+
+/// Refuses none of something.
+fn check_any(count: usize, what: &'static str) -> Result<(), SynthError> {
+    if count > 0 {
+        return Ok(());
+    }
+    let needed = "at least 1";
+    Err(SynthError::new(SynthErrorKind::Count {
+        what,
+        count,
+        needed,
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Part, Pass, Reads, Schedule, Shape};
+    use crate::SynthErrorKind;
+
+    const FULL: Part = Part::new(Shape::Full, 7, Reads::Same);
+    const COARSER: Part = Part::new(Shape::Full, 3, Reads::Coarser);
+
+    fn pass(level: usize, parts: &[Part]) -> Pass {
+        let parts = parts.to_vec();
+        Pass { level, parts }
+    }
+
+    fn refused(passes: &[Pass], n_levels: usize) -> SynthErrorKind {
+        let passes = passes.to_vec();
+        Schedule { passes }
+            .check(n_levels)
+            .unwrap_err()
+            .kind()
+            .clone()
+    }
+
+    /// The pixels of a part as a picture: `#` for those that are compared.
+    fn picture(shape: Shape, side: u32, reads: Reads) -> Vec<String> {
+        let half = side as i32 / 2;
+        let offsets = Part::new(shape, side, reads).offsets();
+        let pixel = |i, j| if offsets.contains(&[i, j]) { '#' } else { '.' };
+        let row = |j| (-half..=half).map(|i| pixel(i, j)).collect();
+        (-half..=half).map(row).collect()
+    }
+
+    #[test]
+    fn shapes_are_those_of_figure_4() {
+        let same = |shape| picture(shape, 5, Reads::Same);
+        assert_eq!(
+            same(Shape::Full),
+            ["#####", "#####", "##.##", "#####", "#####"],
+            "(a)"
+        );
+        assert_eq!(
+            same(Shape::Causal),
+            ["#####", "#####", "##...", ".....", "....."],
+            "(b)"
+        );
+        assert_eq!(
+            same(Shape::Half),
+            ["#####", "#####", ".....", ".....", "....."],
+            "(c)"
+        );
+        assert_eq!(
+            same(Shape::HalfWithRow),
+            ["#####", "#####", "##.##", ".....", "....."],
+            "(c) with its row"
+        );
+        assert_eq!(
+            picture(Shape::Full, 3, Reads::Coarser),
+            ["###"; 3],
+            "the coarser level"
+        );
+    }
+
+    #[test]
+    fn offsets_go_row_by_row_from_the_top() {
+        for shape in [Shape::Full, Shape::Half, Shape::HalfWithRow, Shape::Causal] {
+            let offsets = Part::new(shape, 15, Reads::Same).offsets();
+            assert!(offsets.is_sorted_by_key(|[i, j]| [*j, *i]), "{shape:?}");
+        }
+        let counts = [
+            (Shape::Full, 48),
+            (Shape::Half, 21),
+            (Shape::HalfWithRow, 27),
+            (Shape::Causal, 24),
+        ];
+        for (shape, count) in counts {
+            assert_eq!(
+                Part::new(shape, 7, Reads::Same).offsets().len(),
+                count,
+                "{shape:?}"
+            );
+        }
+        assert_eq!(
+            Part::new(Shape::Half, 0, Reads::Same).offsets(),
+            [[0; 2]; 0],
+            "no side"
+        );
+        assert_eq!(
+            Part::new(Shape::Half, 1, Reads::Same).offsets(),
+            [[0; 2]; 0],
+            "nothing above"
+        );
+    }
+
+    #[test]
+    fn the_schedule_of_the_paper_has_five_passes_with_three_levels() {
+        let passes = Schedule::paper(3).passes;
+        let levels: Vec<usize> = passes.iter().map(|pass| pass.level).collect();
+        assert_eq!(levels, [2, 1, 1, 0, 0], "levels");
+        assert_eq!(
+            passes[0].parts,
+            [Part::new(Shape::Half, 7, Reads::Same)],
+            "H(7, 0)"
+        );
+        for refine in [&passes[2], &passes[4]] {
+            assert_eq!(refine.parts, [FULL, COARSER], "F(7, 0) + F(3, 1)");
+        }
+        for extrapolate in [&passes[1], &passes[3]] {
+            assert_eq!(
+                extrapolate.parts,
+                [Part::new(Shape::Full, 7, Reads::Coarser)],
+                "F(7, 1)"
+            );
+        }
+    }
+
+    #[test]
+    fn schedules_of_the_crate_are_accepted() {
+        for n_levels in 1..=16 {
+            assert_eq!(
+                Schedule::paper(n_levels).check(n_levels),
+                Ok(()),
+                "{n_levels} levels"
+            );
+        }
+        assert_eq!(
+            Schedule::single_level(Shape::Causal, 15).check(1),
+            Ok(()),
+            "single level"
+        );
+    }
+
+    #[test]
+    fn schedules_that_read_unfilled_levels_are_refused() {
+        let [fine, coarse] = [pass(0, &[FULL, COARSER]), pass(1, &[FULL])];
+        let passes = vec![coarse.clone(), fine.clone()];
+        assert_eq!(Schedule { passes }.check(2), Ok(()), "coarse to fine");
+        let early = refused(&[fine, coarse], 2);
+        assert_eq!(
+            early,
+            SynthErrorKind::Unfilled { pass: 0, level: 1 },
+            "finer level first"
+        );
+        let unfinished = refused(&[pass(1, &[FULL])], 2);
+        assert!(
+            matches!(unfinished, SynthErrorKind::Count { count: 0, .. }),
+            "{unfinished:?}"
+        );
+    }
+
+    #[test]
+    fn parts_out_of_range_are_refused() {
+        for side in [0, 1, 4, 16, 17, u32::MAX] {
+            let kind = refused(&[pass(0, &[Part { side, ..FULL }])], 1);
+            assert!(matches!(kind, SynthErrorKind::Range { .. }), "side {side}");
+        }
+        for weight in [0.0, -1.0, 2e6, f32::NAN, f32::INFINITY] {
+            let kind = refused(&[pass(0, &[FULL.with_weight(weight)])], 1);
+            assert!(
+                matches!(kind, SynthErrorKind::Range { .. }),
+                "weight {weight}"
+            );
+        }
+        for (level, part) in [(1, FULL), (0, COARSER), (usize::MAX, COARSER)] {
+            let kind = refused(&[pass(level, &[part])], 1);
+            assert!(
+                matches!(kind, SynthErrorKind::Range { .. }),
+                "level {level}"
+            );
+        }
+        for passes in [&[][..], &[pass(0, &[])]] {
+            let kind = refused(passes, 1);
+            assert!(
+                matches!(kind, SynthErrorKind::Count { count: 0, .. }),
+                "{passes:?}"
+            );
+        }
+        assert!(
+            matches!(
+                refused(&[pass(0, &[FULL])], 0),
+                SynthErrorKind::Range { .. }
+            ),
+            "no level"
+        );
     }
 }

@@ -125,6 +125,7 @@ pub(crate) fn sites_on(mesh: Mesh, n_sites: usize, n_levels: usize) -> Hierarchy
         n_sites,
         n_levels,
         seed: Seed(5),
+        ..HierarchyOptions::default()
     };
     Hierarchy::new(&Surface::new(mesh).unwrap(), &options).unwrap()
 }

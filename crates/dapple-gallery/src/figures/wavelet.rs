@@ -19,6 +19,7 @@ mod soil;
 mod stone;
 
 use crate::Paper;
+use crate::draw::enlarged;
 use anyhow::Context;
 use dapple_pups::hash::Seed;
 use dapple_raster::{Raster, Wrap};
@@ -113,14 +114,6 @@ fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> 
          least detail, before {local}\n\
          contrast             {contrast}\n"
     ))
-}
-
-/// A square raster in another size, each pixel that of the nearest place: enlarged, every pixel becomes a square.
-fn enlarged<T: Copy>(raster: &Raster<T>, size: u32) -> anyhow::Result<Raster<T>> {
-    let nearest = |at: u32| (u64::from(at) * u64::from(raster.width()) / u64::from(size)) as u32;
-    Ok(Raster::from_fn([size; 2], |column, row| {
-        raster.row(nearest(row))[nearest(column) as usize]
-    })?)
 }
 
 /// A sheet `width` pixels wide with a tile at its upper left and, on the right, two by two copies of it.

@@ -397,7 +397,7 @@ proptest! {
     #[test]
     fn sweep_of_any_field_is_finite(seed: u64, n_sites in 1_usize..300, n_levels in 1_usize..5, anchor in 0_u32..300) {
         let surface = Surface::new(two_squares()).unwrap();
-        let options = HierarchyOptions { n_sites, n_levels, seed: Seed(seed) };
+        let options = HierarchyOptions { n_sites, n_levels, seed: Seed(seed), ..HierarchyOptions::default() };
         let hierarchy = Hierarchy::new(&surface, &options).unwrap();
         let orientation = Orientation::from_fn(&hierarchy, |at, _| DVec3::new(at.y - 0.5, 0.5 - at.x, 0.0));
         let sweep = Sweep::new(&hierarchy, &orientation, (anchor < n_sites as u32).then_some(SiteIdx(anchor))).unwrap();

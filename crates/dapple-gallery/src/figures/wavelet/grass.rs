@@ -1,6 +1,7 @@
 //! Short grass from above: many bent blades, drawn over each other, with dark roots and light tips.
 
-use super::patch::{Dice, Edges, Material, Patch, Spot, smooth_step};
+use super::patch::{Dice, Edges, Material, Patch, Spot};
+use crate::draw::smooth_step;
 use crate::figures::fractal::FractalNoise;
 use dapple_color::{ColorRamp, LinearRgb};
 use dapple_points::{hash::Seed, white_noise};

@@ -1,6 +1,7 @@
 //! Rounded lumps that lie over each other: pebbles, crumbs.
 
-use super::patch::{Dice, Patch, Spot, smooth_step};
+use super::patch::{Dice, Patch, Spot};
+use crate::draw::smooth_step;
 use crate::figures::fractal::FractalNoise;
 use dapple_color::LinearRgb;
 use dapple_points::{hash::Seed, poisson_disk};

@@ -200,9 +200,3 @@ impl Dice {
         }
     }
 }
-
-/// From 0 at `from` to 1 at `to`, smoothly.
-pub(super) fn smooth_step(from: f64, to: f64, value: f64) -> f64 {
-    let t = ((value - from) / (to - from)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}

@@ -2,7 +2,8 @@
 //!
 //! The stones are the Voronoi cells of a Poisson-disk set whose radius varies, seen through a warp.
 
-use super::patch::{Dice, Edges, Material, Patch, Spot, smooth_step};
+use super::patch::{Dice, Edges, Material, Patch, Spot};
+use crate::draw::smooth_step;
 use crate::figures::fractal::FractalNoise;
 use dapple_color::{ColorRamp, LinearRgb};
 use dapple_graph::{Graph, delaunay};

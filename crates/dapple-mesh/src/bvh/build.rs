@@ -4,7 +4,7 @@
 //! bins along each axis, expects the least work. Reference: Ingo Wald, "On fast Construction of SAH-based Bounding Volume
 //! Hierarchies", IEEE Symposium on Interactive Ray Tracing 2007, doi 10.1109/RT.2007.4342588.
 
-use super::bvh::Node;
+use super::tree::Node;
 use core::ops::Range;
 use glam::DVec3;
 

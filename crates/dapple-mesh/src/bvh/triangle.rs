@@ -1,4 +1,4 @@
-//! Rays and triangles.
+//! Rays and triangles, and the nearest point of a triangle.
 //!
 //! Reference: Sven Woop, Carsten Benthin and Ingo Wald, "Watertight Ray/Triangle Intersection", Journal of Computer
 //! Graphics Techniques 2(1), 2013. Space is sheared so that the ray is an axis, and the signs of three areas in the plane
@@ -6,7 +6,7 @@
 //! no ray gets between them. The distance is a mean of those of the corners, so it is never outside of the triangle's box
 //! by more than rounding.
 
-use crate::ray::Ray;
+use super::Ray;
 use glam::DVec3;
 
 /// The corners of a triangle.
@@ -81,4 +81,44 @@ impl Probe {
         let [x, y, z] = self.axes.map(|axis| point[axis] - self.origin[axis]);
         [x - self.shear[0] * z, y - self.shear[1] * z, z]
     }
+}
+
+/// The weights of the corners that give the point of a triangle nearest to a position.
+///
+/// Reference: Christer Ericson, "Real-Time Collision Detection", 2005, section 5.1.5: the corner, edge or inside whose Voronoi
+/// region holds the position. A triangle without an area counts as its longest edge or its corner.
+pub(crate) fn nearest_weights([a, b, c]: [DVec3; 3], position: DVec3) -> [f64; 3] {
+    let (ab, ac) = (b - a, c - a);
+    let from_a = position - a;
+    let (d1, d2) = (ab.dot(from_a), ac.dot(from_a));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let from_b = position - b;
+    let (d3, d4) = (ab.dot(from_b), ac.dot(from_b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return [0.0, 1.0, 0.0];
+    }
+    let of_c = d1 * d4 - d3 * d2;
+    if of_c <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let part = d1 / (d1 - d3);
+        return [1.0 - part, part, 0.0];
+    }
+    let from_c = position - c;
+    let (d5, d6) = (ab.dot(from_c), ac.dot(from_c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return [0.0, 0.0, 1.0];
+    }
+    let of_b = d5 * d2 - d1 * d6;
+    if of_b <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let part = d2 / (d2 - d6);
+        return [1.0 - part, 0.0, part];
+    }
+    let of_a = d3 * d6 - d5 * d4;
+    if of_a <= 0.0 && d4 >= d3 && d5 >= d6 {
+        let part = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return [0.0, 1.0 - part, part];
+    }
+    let whole = of_a + of_b + of_c;
+    [of_a / whole, of_b / whole, of_c / whole]
 }

@@ -1,11 +1,11 @@
-//! A hierarchy of boxes around triangles, for rays.
+//! A hierarchy of boxes around triangles, for rays and for nearest points.
 //!
 //! Boxes are kept in `f32`, rounded outward, with a margin of 1e-9 of the size of the mesh: far more than the rounding of
 //! a ray's distance to a triangle, so that the nearest triangle is, to the last bit, the one that a search through all
 //! triangles finds. `build` says how the boxes are chosen.
 
+use super::Ray;
 use super::build::{Bounds, Builder, STACK};
-use crate::ray::Ray;
 use core::ops::Range;
 use glam::DVec3;
 
@@ -22,13 +22,13 @@ pub(crate) struct Node {
 
 /// The tree, and the order in which its leaves hold the triangles.
 #[derive(Clone, Debug)]
-pub(crate) struct Bvh {
+pub(crate) struct Tree {
     nodes: Vec<Node>,
     order: Vec<u32>,
     middle: DVec3,
 }
 
-impl Bvh {
+impl Tree {
     /// The tree of the boxes of triangles, in the order of their indices.
     pub(crate) fn new(bounds: Vec<Bounds>) -> Self {
         let middle = bounds.iter().fold(Bounds::NONE, Bounds::and).middle();
@@ -99,6 +99,63 @@ impl Bvh {
             depth -= 1;
             (at, near) = stack[depth];
         }
+    }
+}
+
+impl Tree {
+    /// Visits the leaves whose boxes are nearer to a position than a squared distance, mostly the nearer before the farther.
+    ///
+    /// `leaf` gets the places of triangles in [`order`](Self::order), and gives the squared distance that still counts.
+    pub(crate) fn visit_near(
+        &self,
+        position: DVec3,
+        mut limit_sq: f64,
+        mut leaf: impl FnMut(Range<u32>) -> f64,
+    ) {
+        let Some(root) = self.nodes.first() else {
+            return;
+        };
+        let mut stack = [(0_u32, 0.0_f64); STACK];
+        let mut depth = 0;
+        let (mut at, mut near_sq) = (0, root.distance_sq(position));
+        loop {
+            if near_sq <= limit_sq {
+                let node = &self.nodes[at as usize];
+                if node.count > 0 {
+                    limit_sq = leaf(node.first..node.first + node.count);
+                } else {
+                    let [a, b] = [node.first, node.first + 1]
+                        .map(|child| (child, self.nodes[child as usize].distance_sq(position)));
+                    let [first, second] = if b.1 < a.1 { [b, a] } else { [a, b] };
+                    if second.1 <= limit_sq {
+                        stack[depth] = second;
+                        depth += 1;
+                    }
+                    (at, near_sq) = first;
+                    continue;
+                }
+            }
+            if depth == 0 {
+                return;
+            }
+            depth -= 1;
+            (at, near_sq) = stack[depth];
+        }
+    }
+}
+
+impl Node {
+    /// The squared distance of a position from the box; zero inside. The margin of the box is far more than its rounding.
+    #[inline]
+    fn distance_sq(&self, position: DVec3) -> f64 {
+        let mut sum = 0.0;
+        for axis in 0..3 {
+            let below = f64::from(self.low[axis]) - position[axis];
+            let above = position[axis] - f64::from(self.high[axis]);
+            let gap = below.max(above).max(0.0);
+            sum += gap * gap;
+        }
+        sum
     }
 }
 

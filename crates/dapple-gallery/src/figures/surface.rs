@@ -1,0 +1,26 @@
+//! The figures of "Texture Synthesis on Surfaces".
+
+mod bricks;
+mod checker;
+mod exemplar;
+mod fig_03;
+mod fig_04;
+mod fig_extra_exemplars;
+mod hooks;
+mod letter;
+mod puzzle;
+mod scales;
+mod stripes;
+mod suckers;
+mod text;
+mod wobble;
+
+use crate::Paper;
+
+/// The paper, with its figures in its own order.
+pub(super) const PAPER: Paper = Paper {
+    key: "surface",
+    title: "Texture Synthesis on Surfaces",
+    reference: "Greg Turk, Georgia Institute of Technology, SIGGRAPH 2001, doi 10.1145/383259.383297",
+    figures: &[fig_03::FIGURE, fig_04::FIGURE, fig_extra_exemplars::FIGURE],
+};

@@ -1,0 +1,64 @@
+//! The wiggly checker that many papers on texture synthesis have: a checkerboard whose lines are not quite straight.
+//!
+//! It repeats.
+
+use super::wobble::{Wave, wobble};
+use crate::draw::sampled;
+use dapple_color::LinearRgb;
+use dapple_raster::Raster;
+use glam::DVec2;
+
+/// Squares along a side: an even number, so that the board repeats.
+const N_SQUARES: f64 = 6.0;
+
+/// Samples along the side of a pixel.
+const N_SAMPLES: u32 = 8;
+
+/// How the upright lines sway.
+const ACROSS: [Wave; 3] = [
+    Wave {
+        periods: [1, 5],
+        height: 0.013,
+        phase: 0.1,
+    },
+    Wave {
+        periods: [-2, 8],
+        height: 0.010,
+        phase: 0.45,
+    },
+    Wave {
+        periods: [3, 2],
+        height: 0.010,
+        phase: 0.8,
+    },
+];
+
+/// How the level lines sway.
+const DOWN: [Wave; 3] = [
+    Wave {
+        periods: [5, -1],
+        height: 0.013,
+        phase: 0.3,
+    },
+    Wave {
+        periods: [7, 2],
+        height: 0.010,
+        phase: 0.9,
+    },
+    Wave {
+        periods: [-2, 3],
+        height: 0.010,
+        phase: 0.6,
+    },
+];
+
+/// The wiggly checker, `size` pixels wide and high.
+pub(super) fn checker(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
+    let [dark, light] = [LinearRgb::gray(0.004), LinearRgb::gray(0.92)];
+    Ok(sampled([size; 2], N_SAMPLES, |at| {
+        let sway = DVec2::new(wobble(&ACROSS, at), wobble(&DOWN, at));
+        let square = ((at + sway) * N_SQUARES).floor();
+        let odd = (square.x as i64 + square.y as i64) % 2 != 0;
+        if odd { light } else { dark }
+    })?)
+}

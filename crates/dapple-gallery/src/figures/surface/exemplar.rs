@@ -1,0 +1,91 @@
+//! The list of all exemplars: the images from which textures are synthesized, drawn by procedures.
+//!
+//! The paper's own images are not at hand; these are of the same character and of the same size. Features scale with
+//! the size; at 16 pixels they can still be told apart.
+
+use super::{bricks, checker, hooks, letter, puzzle, scales, stripes, suckers, text};
+use dapple_color::LinearRgb;
+use dapple_raster::Raster;
+
+/// An image to synthesize from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Exemplar {
+    /// What it shows.
+    pub(super) name: &'static str,
+    /// Its width and height where it is used, in pixels.
+    pub(super) side: u32,
+    /// Whether opposite sides fit.
+    pub(super) edges: Edges,
+    /// Draws it, with as many pixels along each side as it is told.
+    pub(super) draw: fn(size: u32) -> anyhow::Result<Raster<LinearRgb>>,
+}
+
+/// What meets where two copies of an exemplar lie side by side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Edges {
+    /// The image repeats exactly.
+    Repeating,
+    /// It does not.
+    Cropped,
+}
+
+/// The exemplars, the six of figure 5 first, in the order of table 1.
+pub(super) const EXEMPLARS: [Exemplar; 9] = [
+    Exemplar {
+        name: "wiggly checker",
+        side: 64,
+        edges: Edges::Repeating,
+        draw: checker::checker,
+    },
+    Exemplar {
+        name: "suckers",
+        side: 64,
+        edges: Edges::Repeating,
+        draw: suckers::suckers,
+    },
+    Exemplar {
+        name: "scales",
+        side: 128,
+        edges: Edges::Cropped,
+        draw: scales::scales,
+    },
+    Exemplar {
+        name: "woven hooks",
+        side: 64,
+        edges: Edges::Repeating,
+        draw: hooks::hooks,
+    },
+    Exemplar {
+        name: "text",
+        side: 256,
+        edges: Edges::Cropped,
+        draw: text::text,
+    },
+    Exemplar {
+        name: "puzzle pieces",
+        side: 64,
+        edges: Edges::Repeating,
+        draw: puzzle::puzzle,
+    },
+    Exemplar {
+        name: "color bricks",
+        side: 128,
+        edges: Edges::Repeating,
+        draw: bricks::bricks,
+    },
+    Exemplar {
+        name: "stripes",
+        side: 64,
+        edges: Edges::Repeating,
+        draw: stripes::stripes,
+    },
+    Exemplar {
+        name: "letter",
+        side: 64,
+        edges: Edges::Repeating,
+        draw: letter::letter,
+    },
+];
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,76 @@
+//! Relative distance along the vector field of vertices v and w.
+//!
+//! Both are projected onto their consensus orientation; Δ is what v is further downstream than w.
+
+use crate::draw::Canvas;
+use crate::figure::source;
+use crate::{Figure, Panel};
+use dapple_raster::Window;
+use glam::DVec2;
+
+pub(super) const FIGURE: Figure = Figure {
+    number: "3",
+    parameters: &[("consensus orientation", "(O(v) + O(w)) / 2, of length 1")],
+    source: source!(),
+    render,
+};
+
+/// A vertex: its position and its orientation, which need not have the length 1.
+const V: [DVec2; 2] = [DVec2::new(0.70, 0.22), DVec2::new(0.95, 0.10)];
+const W: [DVec2; 2] = [DVec2::new(0.26, 0.40), DVec2::new(0.85, 0.45)];
+
+/// Neighbors that only show that there is a mesh.
+const OTHERS: [DVec2; 4] = [
+    DVec2::new(0.40, 0.08),
+    DVec2::new(0.60, 0.57),
+    DVec2::new(0.04, 0.16),
+    DVec2::new(0.97, 0.44),
+];
+
+/// Where the line of the consensus orientation begins.
+const START: DVec2 = DVec2::new(0.10, 0.62);
+
+fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
+    let window = Window::unit([size; 2])?;
+    let pixel = f64::from(size) / 512.0;
+    let mut canvas = Canvas::new(&window, 1.0)?;
+
+    let [[v, v_field], [w, w_field]] = [V, W];
+    let consensus = (v_field.normalize() + w_field.normalize()).normalize();
+    let foot = |vertex: DVec2| START + (vertex - START).dot(consensus) * consensus;
+
+    let mesh = OTHERS.map(|other| [[v, other], [w, other]]);
+    canvas.lines(mesh.as_flattened(), 1.5 * pixel, 0.8);
+    canvas.lines(&[[v, w]], 3.0 * pixel, 0.0);
+    for [vertex, field] in [V, W] {
+        canvas.arrow([vertex, vertex + 0.16 * field], 2.0 * pixel, 0.55);
+        canvas.dashes([vertex, foot(vertex)], 9, 2.0 * pixel, 0.0);
+        canvas.disk(vertex, 8.0 * pixel, 0.0);
+    }
+    canvas.arrow([START, START + 0.86 * consensus], 3.0 * pixel, 0.0);
+    // Delta is measured below the line.
+    let below = 0.07 * consensus.perp();
+    let bracket = [foot(w), foot(v)].map(|end| end + below);
+    canvas.lines(&[bracket], 2.0 * pixel, 0.0);
+    for end in bracket {
+        canvas.lines(&[[end - 0.3 * below, end + 0.3 * below]], 2.0 * pixel, 0.0);
+    }
+    for (start, text) in [
+        (v + DVec2::new(-0.01, -0.05), "v"),
+        (w + DVec2::new(-0.08, -0.02), "w"),
+    ] {
+        canvas.text(start, 34.0 * pixel, text, 0.0);
+    }
+    let end = START + 0.86 * consensus;
+    with_subscript(&mut canvas, end + DVec2::new(-0.10, 0.12), pixel, "O");
+    let middle = bracket[0].midpoint(bracket[1]);
+    with_subscript(&mut canvas, middle + DVec2::new(-0.03, 0.11), pixel, "Δ");
+    Ok(vec![Panel::gray("", canvas.into_raster())])
+}
+
+/// Writes a letter that belongs to both vertices.
+fn with_subscript(canvas: &mut Canvas<f32>, start: DVec2, pixel: f64, letter: &str) {
+    canvas.text(start, 34.0 * pixel, letter, 0.0);
+    let below = start + DVec2::new(0.065, 0.02);
+    canvas.text(below, 22.0 * pixel, "vw", 0.0);
+}

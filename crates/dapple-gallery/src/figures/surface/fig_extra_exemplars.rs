@@ -1,0 +1,30 @@
+//! The exemplars: the images that the other figures' textures are synthesized from, with their pixels enlarged.
+//!
+//! They are drawn by procedures and stand in for the images of the paper.
+
+use super::exemplar::{EXEMPLARS, Edges};
+use crate::draw::enlarged;
+use crate::figure::source;
+use crate::{Figure, Panel};
+
+pub(super) const FIGURE: Figure = Figure {
+    number: "extra",
+    parameters: &[("sizes", "64² to 256², those of table 1")],
+    source: source!(),
+    render,
+};
+
+fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
+    let panel = |exemplar: &super::exemplar::Exemplar| {
+        // A small figure shows the same image with fewer pixels.
+        let side = exemplar.side.min(size);
+        let repeats = match exemplar.edges {
+            Edges::Repeating => "repeats",
+            Edges::Cropped => "does not repeat",
+        };
+        let image = enlarged(&(exemplar.draw)(side)?, size)?;
+        let label = format!("{}, {}², {repeats}", exemplar.name, exemplar.side);
+        Ok(Panel::color(label, image))
+    };
+    EXEMPLARS.iter().map(panel).collect()
+}

@@ -1,0 +1,48 @@
+//! Lines of English, in upright letters, cut out of a page.
+//!
+//! It does **not** repeat: words are cut off at the right, and the last line at the bottom. Mirrored it would show.
+
+use crate::draw::Canvas;
+use dapple_color::LinearRgb;
+use dapple_raster::{Raster, Window};
+use glam::DVec2;
+
+/// The text, line by line; lines are longer than the image is wide.
+const LINES: [&str; 13] = [
+    "of all the small things that a hand",
+    "may copy, a page of words is the one",
+    "Where a stripe bends, we see a stripe",
+    "but let one letter turn its back and",
+    "every reader stops. So paint the hide",
+    "with lines of type. Begin at the nose",
+    "and follow the grain of the coat down",
+    "the neck, along the belly, to the tail",
+    "No word has to be kept, only the look",
+    "of words, the quick rhythm of thin and",
+    "wide, of gap and stem, the way a dozen",
+    "rows run level and never quite meet or",
+    "drift apart. Then it is a good match",
+];
+
+/// How far the lines are shifted to the left, in widths of the image.
+const SHIFTS: [f64; 13] = [
+    0.03, -0.01, 0.05, 0.02, -0.02, 0.06, 0.01, 0.04, -0.01, 0.07, 0.03, 0.00, 0.05,
+];
+
+/// Lines along the height of the image.
+const N_LINES: f64 = 11.6;
+
+/// The height of capitals, in distances between lines.
+const CAPITAL: f64 = 0.56;
+
+/// Text, `size` pixels wide and high.
+pub(super) fn text(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
+    let [ink, paper] = [[22_u8, 20, 26], [238, 230, 212]].map(LinearRgb::from_srgb);
+    let mut canvas = Canvas::new(&Window::unit([size; 2])?, paper)?;
+    let height_px = CAPITAL / N_LINES * f64::from(size);
+    for (row, (line, shift)) in (0..).zip(LINES.iter().zip(SHIFTS)) {
+        let start = DVec2::new(-shift, (f64::from(row) + 0.75) / N_LINES);
+        canvas.text(start, height_px, line, ink);
+    }
+    Ok(canvas.into_raster())
+}

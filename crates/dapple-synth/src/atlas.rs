@@ -1,0 +1,150 @@
+//! Where the faces of a mesh are in a texture map (section 6).
+//!
+//! Reference: Marc Soucy, Guy Godin and Marc Rioux, "A texture-mapping approach for the compression of colored 3D
+//! triangulations", The Visual Computer 12(10), 1996: every face is mapped to a right triangle of its own, two of which share a
+//! square tile. Here tiles are all of one size, or of sizes that follow the areas of the faces; or the map is the caller's.
+//!
+//! Texel (x, y) has its center at `(x + 0.5, y + 0.5)`; row 0 is the top, and uv go from 0 to 1, v down.
+
+mod own_uvs;
+mod tiles;
+
+use crate::{SynthError, SynthErrorKind};
+use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
+use dapple_raster::Raster;
+use glam::DVec2;
+
+/// A texture map's layout: which face each texel shows, and where the corners of faces are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Atlas {
+    faces: Raster<u32>,
+    /// The corners of every face, in texels; NaN for a face without a place.
+    corners: Vec<[DVec2; 3]>,
+}
+
+/// The texels around a face that continue it, so that reading between texels does not mix in other faces.
+///
+/// 1 is enough for bilinear reading of the finest level; every coarser level of a mipmap doubles it.
+pub const PADDING: u32 = 1;
+
+/// No face.
+const NONE: u32 = u32::MAX;
+
+impl Atlas {
+    /// Right triangles of one size, two in a square tile, as in the paper. `side` is that of the square map in texels.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Range`] if a tile would have fewer texels than [`padding`](PADDING) needs, saying the side that is
+    /// needed, or if the map is larger than 2^14.
+    pub fn uniform(surface: &Surface, side: u32) -> Result<Self, SynthError> {
+        tiles::uniform(surface, side)
+    }
+
+    /// Right triangles in tiles whose sides are powers of two and follow the areas of the faces, so that texels are of
+    /// about one size on the surface.
+    ///
+    /// # Errors
+    ///
+    /// As [`uniform`](Self::uniform).
+    pub fn by_area(surface: &Surface, side: u32) -> Result<Self, SynthError> {
+        tiles::by_area(surface, side)
+    }
+
+    /// The caller's own layout: uv of the three corners of every face, v down. Whole turns are taken off, so that a face may
+    /// lie in any unit square, but not across two of them; what lies outside is not shown.
+    ///
+    /// Where faces overlap, the one with the lower index is shown. `padding` texels around what is covered are filled, too.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Count`] for another number of faces, and as [`uniform`](Self::uniform).
+    pub fn from_uvs(
+        surface: &Surface,
+        uvs: &[[DVec2; 3]],
+        size: [u32; 2],
+        padding: u32,
+    ) -> Result<Self, SynthError> {
+        own_uvs::from_uvs(surface, uvs, size, padding)
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.faces.size()
+    }
+
+    /// The uv of the corners of every face, from 0 to 1, v down; NaN for a face without a place.
+    #[must_use]
+    pub fn uvs(&self) -> Vec<[DVec2; 3]> {
+        let size = self.faces.size().map(f64::from);
+        let uv = |corner: DVec2| corner / DVec2::from(size);
+        self.corners.iter().map(|face| face.map(uv)).collect()
+    }
+
+    /// The part of the texels that show a face, padding included: 0 to 1.
+    #[must_use]
+    pub fn coverage(&self) -> f64 {
+        let covered = self.faces.pixels().iter().filter(|face| **face != NONE);
+        covered.count() as f64 / self.faces.pixels().len() as f64
+    }
+
+    /// The face of a texel.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such texel.
+    #[must_use]
+    pub fn face(&self, [column, row]: [u32; 2]) -> Option<FaceIdx> {
+        let face = self.faces.row(row)[column as usize];
+        (face != NONE).then_some(FaceIdx(face))
+    }
+
+    /// Where the center of a texel is on the surface: on its face, or, in the padding, on the face that continues it.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such texel.
+    #[must_use]
+    pub fn point(&self, surface: &Surface, texel: [u32; 2]) -> Option<SurfacePoint> {
+        let face = self.face(texel)?;
+        let corners = self.corners[face.index()];
+        let center = DVec2::new(f64::from(texel[0]) + 0.5, f64::from(texel[1]) + 0.5);
+        let weights = weights(corners, center);
+        let point = surface.point(face, weights);
+        if weights.iter().all(|&weight| weight >= 0.0) {
+            return Some(point);
+        }
+        // The path from the middle of the face unfolds what is across its edges.
+        let middle = surface.point(face, [1.0 / 3.0; 3]);
+        let path = point.flat - middle.flat;
+        let length = path.length();
+        Some(surface.walk(middle, path / length, length).point)
+    }
+}
+
+/// The weights of three corners that give a position.
+fn weights([a, b, c]: [DVec2; 3], at: DVec2) -> [f64; 3] {
+    let area = (b - a).perp_dot(c - a);
+    let of_b = (at - a).perp_dot(c - a) / area;
+    let of_c = (b - a).perp_dot(at - a) / area;
+    [1.0 - of_b - of_c, of_b, of_c]
+}
+
+/// Refuses sides that a map cannot have.
+fn check_side(side: u32) -> Result<(), SynthError> {
+    if (1..=MAP_MAX).contains(&side) {
+        return Ok(());
+    }
+    Err(SynthError::new(SynthErrorKind::Range {
+        what: "side of the texture map",
+        value: side.into(),
+        range: "from 1 to 16384",
+    }))
+}
+
+/// The largest side of a map.
+const MAP_MAX: u32 = 1 << 14;
+
+#[cfg(test)]
+mod tests;

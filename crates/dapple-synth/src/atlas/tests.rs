@@ -1,0 +1,163 @@
+//! Layouts on small meshes.
+
+use super::{Atlas, PADDING, weights};
+use crate::SynthErrorKind;
+use dapple_mesh::{FaceIdx, Mesh, Surface};
+use glam::{DVec2, DVec3};
+
+/// A box of three different sides, twelve faces.
+fn cuboid() -> Surface {
+    let positions: Vec<DVec3> = (0..8)
+        .map(|corner| {
+            let bit = |at: u32| f64::from((corner >> at) & 1);
+            DVec3::new(bit(0), 2.0 * bit(1), 5.0 * bit(2))
+        })
+        .collect();
+    let quads = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let faces: Vec<[u32; 3]> = quads
+        .iter()
+        .flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]])
+        .collect();
+    Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
+}
+
+/// Every texel that bilinear reading inside of a face touches shows that face.
+fn assert_padded(atlas: &Atlas) {
+    for (face, corners) in (0..).map(FaceIdx).zip(&atlas.corners) {
+        for step_b in 0..=20 {
+            for step_c in 0..=20 - step_b {
+                let [b, c] = [step_b, step_c].map(|step| f64::from(step) / 20.0);
+                let at = corners[0] + (corners[1] - corners[0]) * b + (corners[2] - corners[0]) * c;
+                let low = (at - 0.5 + 1e-9).floor();
+                for near in [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE] {
+                    let texel = low + near;
+                    // A texel that is read with no weight does not count.
+                    let read = (at - 0.5 - texel).abs().max_element() < 1.0 - 1e-6;
+                    if read {
+                        let texel = [texel.x as u32, texel.y as u32];
+                        assert_eq!(atlas.face(texel), Some(face), "{texel:?} beside {at}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn tiles_keep_their_faces_apart() {
+    for side in [32, 64, 100] {
+        assert_padded(&Atlas::uniform(&cuboid(), side).unwrap());
+        assert_padded(&Atlas::by_area(&cuboid(), side).unwrap());
+    }
+}
+
+#[test]
+fn uniform_tiles_are_right_triangles_of_one_size_with_the_longest_edge_across() {
+    let surface = cuboid();
+    let atlas = Atlas::uniform(&surface, 64).unwrap();
+    for (face, corners) in (0..).map(FaceIdx).zip(&atlas.corners) {
+        let lengths = |[a, b, c]: [f64; 3]| (a.max(b).max(c), a.min(b).min(c));
+        let [a, b, c] = *corners;
+        let (long, short) = lengths([a.distance(b), b.distance(c), c.distance(a)]);
+        // Twelve faces in six tiles, three across: 21 texels each, of which the frame takes 4 PADDING + 1.
+        assert_eq!(short, f64::from(21 - 4 * PADDING - 1), "legs of {face:?}");
+        assert!(
+            (long - short * 2.0_f64.sqrt()).abs() < 1e-9,
+            "not right: {face:?}"
+        );
+        let [pa, pb, pc] = surface.mesh().corners(face);
+        let sides = [pa.distance(pb), pb.distance(pc), pc.distance(pa)];
+        let texels = [a.distance(b), b.distance(c), c.distance(a)];
+        let longest = |sides: [f64; 3]| (0..3).max_by(|&i, &j| sides[i].total_cmp(&sides[j]));
+        assert_eq!(longest(sides), longest(texels), "the long edge of {face:?}");
+    }
+}
+
+#[test]
+fn tiles_by_area_give_larger_faces_more_texels() {
+    let surface = cuboid();
+    let atlas = Atlas::by_area(&surface, 128).unwrap();
+    let leg = |face: u32| {
+        let [a, b, c] = atlas.corners[face as usize];
+        a.distance(b).min(b.distance(c)).min(c.distance(a))
+    };
+    // The faces of 1 x 2 come first, those of 2 x 5 last.
+    assert!(leg(11) >= 1.9 * leg(0), "{} beside {}", leg(11), leg(0));
+}
+
+#[test]
+fn texels_inside_of_a_face_are_on_it_and_those_in_the_padding_beside_it() {
+    let surface = cuboid();
+    for atlas in [
+        Atlas::uniform(&surface, 64).unwrap(),
+        Atlas::by_area(&surface, 64).unwrap(),
+    ] {
+        for row in 0..64 {
+            for column in 0..64 {
+                let Some(face) = atlas.face([column, row]) else {
+                    assert_eq!(atlas.point(&surface, [column, row]), None, "free texel");
+                    continue;
+                };
+                let point = atlas.point(&surface, [column, row]).unwrap();
+                let center = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
+                let inside = weights(atlas.corners[face.index()], center)
+                    .iter()
+                    .all(|&w| w >= 0.0);
+                if inside {
+                    assert_eq!(point.face, face, "inside");
+                }
+                let weights = surface.weights(point);
+                // The walk ends on a face, up to rounding.
+                assert!(weights.iter().all(|&w| w > -1e-9), "outside: {weights:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn own_layout_shows_each_face_where_its_uv_are() {
+    let positions = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+    let mesh = Mesh::new(positions, &[[0, 1, 2], [0, 2, 3]]).unwrap();
+    let surface = Surface::new(mesh).unwrap();
+    let uv = |x: f64, y: f64| DVec2::new(x, y);
+    // The lower face lies one unit further, which is the same place.
+    let uvs = [
+        [uv(0.25, 0.25), uv(0.75, 0.25), uv(0.75, 0.75)],
+        [uv(1.25, 0.25), uv(1.75, 0.75), uv(1.25, 0.75)],
+    ];
+    let atlas = Atlas::from_uvs(&surface, &uvs, [16, 16], 1).unwrap();
+    assert_eq!(atlas.face([10, 5]), Some(FaceIdx(0)), "upper right half");
+    assert_eq!(atlas.face([5, 10]), Some(FaceIdx(1)), "lower left half");
+    assert_eq!(atlas.face([3, 8]), Some(FaceIdx(1)), "padding");
+    assert_eq!(atlas.face([2, 8]), None, "beyond the padding");
+    let point = atlas.point(&surface, [9, 6]).unwrap();
+    let at = surface.position(point);
+    assert!(
+        at.distance(DVec3::new(5.5 / 8.0, 2.5 / 8.0, 0.0)) < 1e-12,
+        "{at}"
+    );
+}
+
+#[test]
+fn bad_layouts_are_refused() {
+    let surface = cuboid();
+    for side in [0, 1, 17, 1 << 15] {
+        assert!(Atlas::uniform(&surface, side).is_err(), "uniform {side}");
+        assert!(Atlas::by_area(&surface, side).is_err(), "by area {side}");
+    }
+    let error = Atlas::from_uvs(&surface, &[], [8, 8], 1).unwrap_err();
+    assert!(
+        matches!(error.kind(), SynthErrorKind::Count { count: 0, .. }),
+        "{error}"
+    );
+    let nowhere = [[DVec2::NAN; 3]; 12];
+    let atlas = Atlas::from_uvs(&surface, &nowhere, [8, 8], 1).unwrap();
+    assert_eq!(atlas.coverage(), 0.0, "uv that are not finite show nothing");
+}

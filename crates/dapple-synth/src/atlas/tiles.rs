@@ -1,0 +1,156 @@
+//! Square tiles of two right triangles.
+
+use super::{Atlas, NONE, PADDING, check_side};
+use crate::{SynthError, SynthErrorKind};
+use dapple_mesh::{FaceIdx, Surface};
+use dapple_raster::Raster;
+use glam::DVec2;
+
+/// What a tile's side has more than the legs of its triangles: padding at both ends of the legs, and twice between the long
+/// sides, where it is counted along an axis; and half a texel at both ends.
+const FRAME: u32 = 4 * PADDING + 1;
+/// The least side of a tile: its triangles have legs of one texel.
+const TILE_MIN: u32 = FRAME + 1;
+
+/// A tile of two faces, or one.
+struct Tile {
+    first: [u32; 2],
+    side: u32,
+    faces: [Option<u32>; 2],
+}
+
+pub(super) fn uniform(surface: &Surface, side: u32) -> Result<Atlas, SynthError> {
+    check_side(side)?;
+    let n_faces = surface.mesh().faces().len() as u32;
+    let n_tiles = n_faces.div_ceil(2);
+    let root = n_tiles.isqrt();
+    let across = if root * root < n_tiles {
+        root + 1
+    } else {
+        root
+    };
+    let tile = side / across;
+    if tile < TILE_MIN {
+        return Err(too_small(side));
+    }
+    let tiles = (0..n_tiles).map(|number| Tile {
+        first: [number % across * tile, number / across * tile],
+        side: tile,
+        faces: [2 * number, 2 * number + 1].map(|face| (face < n_faces).then_some(face)),
+    });
+    fill(surface, side, tiles)
+}
+
+pub(super) fn by_area(surface: &Surface, side: u32) -> Result<Atlas, SynthError> {
+    check_side(side)?;
+    // The legs of a right triangle as large as each face, and the faces from the largest to the smallest.
+    let n_faces = surface.mesh().faces().len() as u32;
+    let leg = |face: u32| (2.0 * surface.face_area(FaceIdx(face))).sqrt();
+    let mut faces: Vec<(f64, u32)> = (0..n_faces).map(|face| (leg(face), face)).collect();
+    faces.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    // The largest scale whose tiles fit, by bisection: at zero all tiles are the smallest ones.
+    let (mut low, mut high) = (0.0, f64::from(side) / faces[0].0);
+    pack(&faces, low, side).ok_or_else(|| too_small(side))?;
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if pack(&faces, middle, side).is_some() {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let tiles = pack(&faces, low, side).ok_or_else(|| too_small(side))?;
+    fill(surface, side, tiles.into_iter())
+}
+
+/// Packs tiles of faces with the given legs, the longest first, in shelves; nothing if they do not fit.
+fn pack(faces: &[(f64, u32)], scale: f64, side: u32) -> Option<Vec<Tile>> {
+    let mut tiles = Vec::with_capacity(faces.len().div_ceil(2));
+    let (mut at, mut shelf) = ([0, 0], 0);
+    for pair in faces.chunks(2) {
+        let wanted = pair[0].0 * scale + f64::from(FRAME);
+        let mut tile = TILE_MIN.next_power_of_two();
+        while f64::from(tile) < wanted {
+            tile *= 2;
+        }
+        if at[0] + tile > side {
+            at = [0, at[1] + shelf];
+        }
+        if at[0] == 0 {
+            shelf = tile;
+        }
+        if tile > side || at[1] + tile > side {
+            return None;
+        }
+        tiles.push(Tile {
+            first: at,
+            side: tile,
+            faces: [Some(pair[0].1), pair.get(1).map(|face| face.1)],
+        });
+        at[0] += tile;
+    }
+    Some(tiles)
+}
+
+/// Writes the tiles of a map.
+fn fill(
+    surface: &Surface,
+    side: u32,
+    tiles: impl Iterator<Item = Tile>,
+) -> Result<Atlas, SynthError> {
+    let mut faces = Raster::filled([side; 2], NONE)?;
+    let mut corners = vec![[DVec2::NAN; 3]; surface.mesh().faces().len()];
+    for tile in tiles {
+        let legs = f64::from(tile.side - FRAME);
+        let padding = f64::from(PADDING) + 0.5;
+        let origin = DVec2::new(f64::from(tile.first[0]), f64::from(tile.first[1]));
+        for (half, face) in tile.faces.into_iter().enumerate() {
+            let Some(face) = face else { continue };
+            // The first triangle has its right angle at the tile's first corner, the second at the last one.
+            let (corner, way) = match half {
+                0 => (origin + padding, 1.0),
+                _ => (origin + f64::from(tile.side) - padding, -1.0),
+            };
+            let ends = [DVec2::ZERO, DVec2::X * legs, DVec2::Y * legs];
+            let first = opposite_longest(surface, FaceIdx(face));
+            for (at, end) in ends.into_iter().enumerate() {
+                corners[face as usize][(first + at) % 3] = corner + end * way;
+            }
+        }
+        let side = tile.side;
+        for y in 0..side {
+            let row = faces.width() as usize * (tile.first[1] + y) as usize;
+            let row = &mut faces.pixels_mut()[row + tile.first[0] as usize..][..side as usize];
+            for (x, face) in (0..).zip(row) {
+                let half = usize::from(x + y + 1 >= side);
+                *face = tile.faces[half].unwrap_or(NONE);
+            }
+        }
+    }
+    Ok(Atlas { faces, corners })
+}
+
+/// The corner across from the longest edge, where the right angle distorts least; of equal ones the first.
+fn opposite_longest(surface: &Surface, face: FaceIdx) -> usize {
+    let [a, b, c] = surface.mesh().corners(face);
+    let lengths = [
+        b.distance_squared(c),
+        c.distance_squared(a),
+        a.distance_squared(b),
+    ];
+    let mut longest = 0;
+    for corner in 1..3 {
+        if lengths[corner] > lengths[longest] {
+            longest = corner;
+        }
+    }
+    longest
+}
+
+fn too_small(side: u32) -> SynthError {
+    SynthError::new(SynthErrorKind::Range {
+        what: "side of the texture map",
+        value: side.into(),
+        range: "large enough for a tile of 6 texels for every two faces",
+    })
+}

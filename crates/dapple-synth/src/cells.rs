@@ -1,0 +1,89 @@
+//! Cells of a cubic grid, and which of them are near each other: what is needed to read many balls of one radius.
+
+use core::ops::Range;
+use glam::DVec3;
+
+/// The cells that hold some sites, in the order of x, then y, then z.
+#[derive(Clone, Debug)]
+pub(crate) struct Cells {
+    of_site: Vec<u32>,
+    /// Where the ranges of each cell begin in `near`.
+    offsets: Vec<u32>,
+    near: Vec<Range<u32>>,
+}
+
+impl Cells {
+    /// The cells of some positions. Two cells are near if positions in them may be nearer than `reach`.
+    pub(crate) fn new(positions: &[DVec3], side: f64, reach: f64) -> Self {
+        let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let cell_of = |position: &DVec3| {
+            ((*position - low) / side)
+                .to_array()
+                .map(|part| part.min(f64::from(i32::MAX / 2)) as i32)
+        };
+        let mut keyed: Vec<([i32; 3], u32)> = positions.iter().map(cell_of).zip(0..).collect();
+        keyed.sort_unstable();
+        let mut cells: Vec<[i32; 3]> = Vec::new();
+        let mut of_site = vec![0; positions.len()];
+        for (cell, site) in keyed {
+            if cells.last() != Some(&cell) {
+                cells.push(cell);
+            }
+            of_site[site as usize] = cells.len() as u32 - 1;
+        }
+        let (mut offsets, mut near) = (vec![0], Vec::new());
+        for cell in &cells {
+            add_near(&cells, *cell, reach / side, &mut near);
+            offsets.push(near.len() as u32);
+        }
+        Self {
+            of_site,
+            offsets,
+            near,
+        }
+    }
+
+    /// The number of cells.
+    pub(crate) fn n_cells(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// The cell of a site.
+    #[inline]
+    pub(crate) fn of_site(&self, site: u32) -> usize {
+        self.of_site[site as usize] as usize
+    }
+
+    /// The cells near a cell, itself among them, as ranges of their numbers.
+    #[inline]
+    pub(crate) fn near(&self, cell: usize) -> &[Range<u32>] {
+        &self.near[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]
+    }
+}
+
+/// Adds the ranges of the cells that are nearer than `reach` sides of a cell.
+fn add_near(cells: &[[i32; 3]], [x, y, z]: [i32; 3], reach: f64, near: &mut Vec<Range<u32>>) {
+    let number = |cell: [i32; 3]| cells.partition_point(|other| *other < cell) as u32;
+    let gap_sq = |step: i32| {
+        let gap = f64::from((step.abs() - 1).max(0));
+        gap * gap
+    };
+    let steps = reach.ceil() as i32;
+    let first = near.len();
+    for dx in -steps..=steps {
+        for dy in -steps..=steps {
+            let rest = reach * reach - gap_sq(dx) - gap_sq(dy);
+            if rest <= 0.0 {
+                continue;
+            }
+            // Cells along z follow each other; the gap is one less than the number of steps.
+            let steps = rest.sqrt().ceil() as i32;
+            let [from, until] = [z - steps, z + steps + 1].map(|z| number([x + dx, y + dy, z]));
+            match near[first..].last_mut() {
+                Some(last) if last.end == from => last.end = until,
+                _ if from < until => near.push(from..until),
+                _ => {}
+            }
+        }
+    }
+}

@@ -1,0 +1,303 @@
+//! The directions in which the rows differ most, and rows and queries seen along them.
+//!
+//! The directions are the first principal components of a sample of the rows: the eigenvectors of the covariance with the
+//! largest eigenvalues, by orthogonal iteration with a Rayleigh-Ritz step (Golub and Van Loan, Matrix Computations, 4th
+//! edition, sections 8.2 and 8.5), all in `f64` and in a fixed order.
+//!
+//! Nothing of the search relies on how good they are: any matrix gives the same nearest row, if its norm is known. It is
+//! measured, for the matrix as it is stored, in [`Basis::norm_sq`].
+
+use super::parallel::par_map;
+use dapple_hash::{Seed, hash1, unit_f64};
+use dapple_raster::simd;
+use fearless_simd::{dispatch, f32x16, prelude::*};
+
+/// Directions that are rotated together: the lanes of a register.
+pub(crate) const LANES: usize = 16;
+
+/// The most directions: more hold almost nothing of the variance of neighborhoods, and cost as much as the first ones.
+const MOST: usize = 64;
+
+/// The most rows whose covariance is taken. Enough for the directions, which need not be exact.
+const SAMPLE: usize = 4096;
+
+/// Steps of orthogonal iteration: the spectrum of neighborhoods falls quickly.
+const STEPS: usize = 6;
+
+/// Where the iteration starts.
+const START: Seed = Seed(2001);
+
+/// The part of its squared length that a vector keeps at least, if it does not depend on others.
+const DEPENDENT: f64 = 1e-20;
+
+/// Sums that a rotation adds up separately, so that an addition need not wait for the one before.
+const SUMS: usize = 4;
+
+/// Directions, the one with the largest variance first.
+#[derive(Clone, Debug)]
+pub(crate) struct Basis {
+    /// What is subtracted from rows and queries.
+    mean: Vec<f32>,
+    /// For each group of [`LANES`] directions, for each value of a row, the factors: the matrix W, transposed in groups.
+    groups: Vec<[f32; LANES]>,
+    /// An upper bound of the square of the spectral norm of W.
+    pub(crate) norm_sq: f64,
+}
+
+impl Basis {
+    /// The directions of rows of `dims` finite numbers.
+    pub(crate) fn new(dims: usize, rows: &[f32]) -> Self {
+        let mean = mean(dims, rows);
+        let sample = centered_sample(dims, rows, &mean);
+        let n_directions = MOST.min(dims).next_multiple_of(LANES);
+        let directions = if sample.is_empty() {
+            vec![0.0; dims * n_directions]
+        } else {
+            principal(dims, n_directions, &covariance(dims, &sample))
+        };
+        let mut groups = vec![[0.0; LANES]; dims * n_directions / LANES];
+        for (direction, factors) in directions.chunks_exact(dims).enumerate() {
+            let group = &mut groups[direction / LANES * dims..][..dims];
+            for (lanes, &factor) in group.iter_mut().zip(factors) {
+                lanes[direction % LANES] = factor as f32;
+            }
+        }
+        let norm_sq = norm_sq(dims, &groups);
+        Self {
+            mean,
+            groups,
+            norm_sq,
+        }
+    }
+
+    /// The number of directions, a multiple of [`LANES`]. Some of them may be zero.
+    pub(crate) fn n_directions(&self) -> usize {
+        self.groups.len() / self.mean.len() * LANES
+    }
+
+    /// Subtracts the mean, in `f32`.
+    #[inline(always)]
+    pub(crate) fn center(&self, values: &[f32], centered: &mut Vec<f32>) {
+        centered.clear();
+        centered.extend(
+            values
+                .iter()
+                .zip(&self.mean)
+                .map(|(value, mean)| value - mean),
+        );
+    }
+
+    /// The coordinates of something centered along the directions: a group of them for each element of `rotated`.
+    ///
+    /// Each is a sum of `dims` products, whose terms are rounded at most [`Self::roundings`] times.
+    #[inline(always)]
+    pub(crate) fn rotate<S: Simd>(&self, simd: S, centered: &[f32], rotated: &mut [[f32; LANES]]) {
+        for (rotated, factors) in rotated
+            .iter_mut()
+            .zip(self.groups.chunks_exact(self.mean.len()))
+        {
+            *rotated = rotate_group(simd, centered, factors).into();
+        }
+    }
+
+    /// How often at most a term of [`Self::rotate`] is rounded: with the mean taken off, multiplied, and added up.
+    pub(crate) fn roundings(&self) -> usize {
+        2 + self.mean.len().div_ceil(SUMS) + 2
+    }
+}
+
+/// Sums of products, [`SUMS`] for each lane, which are added at the end.
+#[inline(always)]
+fn rotate_group<S: Simd>(simd: S, values: &[f32], factors: &[[f32; LANES]]) -> f32x16<S> {
+    let mut sums = [f32x16::splat(simd, 0.0); SUMS];
+    let (values_4, values) = values.as_chunks::<SUMS>();
+    let (factors_4, factors) = factors.as_chunks::<SUMS>();
+    for (values, factors) in values_4.iter().zip(factors_4) {
+        for i in 0..SUMS {
+            sums[i] += f32x16::simd_from(simd, factors[i]) * values[i];
+        }
+    }
+    for ((sum, &value), &factors) in sums.iter_mut().zip(values).zip(factors) {
+        *sum += f32x16::simd_from(simd, factors) * value;
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+/// The mean of the rows, rounded: any point would do.
+fn mean(dims: usize, rows: &[f32]) -> Vec<f32> {
+    let mut sums = vec![0.0_f64; dims];
+    for row in rows.chunks_exact(dims) {
+        for (sum, &value) in sums.iter_mut().zip(row) {
+            *sum += f64::from(value);
+        }
+    }
+    let n_rows = (rows.len() / dims).max(1) as f64;
+    sums.iter().map(|sum| (sum / n_rows) as f32).collect()
+}
+
+/// Rows at even steps, less the mean, divided by the largest magnitude so that no square is out of range. Empty if all is zero.
+fn centered_sample(dims: usize, rows: &[f32], mean: &[f32]) -> Vec<f64> {
+    let step = (rows.len() / dims).div_ceil(SAMPLE).max(1);
+    let mut sample = Vec::new();
+    for row in rows.chunks_exact(dims).step_by(step) {
+        sample.extend(
+            row.iter()
+                .zip(mean)
+                .map(|(&value, &mean)| f64::from(value) - f64::from(mean)),
+        );
+    }
+    let largest = sample
+        .iter()
+        .fold(0.0_f64, |max, value| max.max(value.abs()));
+    if largest == 0.0 {
+        return Vec::new();
+    }
+    for value in &mut sample {
+        *value /= largest;
+    }
+    sample
+}
+
+/// Sums of products of the values of rows: a symmetric matrix.
+fn covariance(dims: usize, sample: &[f64]) -> Vec<f64> {
+    let level = simd::level();
+    let lines = par_map(dims, |line| {
+        let mut sums = vec![0.0; dims - line];
+        dispatch!(level, _simd => add_products(dims, line, sample, &mut sums));
+        sums
+    });
+    let mut matrix = vec![0.0; dims * dims];
+    for (line, sums) in lines.iter().enumerate() {
+        for (column, &sum) in (line..).zip(sums) {
+            matrix[line * dims + column] = sum;
+            matrix[column * dims + line] = sum;
+        }
+    }
+    matrix
+}
+
+/// Adds the products of value `line` of each row and of all from it on.
+#[inline(always)]
+fn add_products(dims: usize, line: usize, sample: &[f64], sums: &mut [f64]) {
+    for row in sample.chunks_exact(dims) {
+        let factor = row[line];
+        for (sum, value) in sums.iter_mut().zip(&row[line..]) {
+            *sum += factor * value;
+        }
+    }
+}
+
+/// The unit eigenvectors with the largest eigenvalues, one after the other; zeros where there are no more.
+fn principal(dims: usize, n_directions: usize, matrix: &[f64]) -> Vec<f64> {
+    let mut directions: Vec<f64> = (0..(dims * n_directions) as i64)
+        .map(|i| unit_f64(hash1(START, [i], 0)) - 0.5)
+        .collect();
+    for _ in 0..STEPS {
+        directions = times(dims, &directions, matrix);
+        orthonormalize(dims, &mut directions);
+    }
+    let images = times(dims, &directions, matrix);
+    let mut small: Vec<f64> = Vec::with_capacity(n_directions * n_directions);
+    for direction in directions.chunks_exact(dims) {
+        small.extend(images.chunks_exact(dims).map(|image| dot(direction, image)));
+    }
+    let (values, vectors) = super::jacobi::eigen(n_directions, small);
+    let mut order: Vec<usize> = (0..n_directions).collect();
+    order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+    let mut sorted = Vec::with_capacity(directions.len());
+    for i in order {
+        let mut sum = vec![0.0; dims];
+        for (&factor, direction) in vectors[i * n_directions..][..n_directions]
+            .iter()
+            .zip(directions.chunks_exact(dims))
+        {
+            for (sum, value) in sum.iter_mut().zip(direction) {
+                *sum += factor * value;
+            }
+        }
+        sorted.extend(sum);
+    }
+    sorted
+}
+
+/// An upper bound of the square of the spectral norm of W: the largest sum of magnitudes in a line of W times its transpose.
+///
+/// The products are exact in `f64`, and their sums are off by less than the factor that is added.
+fn norm_sq(dims: usize, groups: &[[f32; LANES]]) -> f64 {
+    let mut directions = Vec::with_capacity(groups.len() * LANES);
+    for group in groups.chunks_exact(dims) {
+        for lane in 0..LANES {
+            directions.extend(group.iter().map(|factors| f64::from(factors[lane])));
+        }
+    }
+    let mut largest = 0.0_f64;
+    for direction in directions.chunks_exact(dims) {
+        let products = directions
+            .chunks_exact(dims)
+            .map(|other| dot(direction, other).abs());
+        largest = largest.max(products.sum());
+    }
+    largest + 1e-9
+}
+
+/// Each direction times a symmetric matrix.
+fn times(dims: usize, directions: &[f64], matrix: &[f64]) -> Vec<f64> {
+    let level = simd::level();
+    let images = par_map(directions.len() / dims, |i| {
+        let mut image = vec![0.0; dims];
+        let direction = &directions[i * dims..][..dims];
+        dispatch!(level, _simd => add_lines(direction, matrix, &mut image));
+        image
+    });
+    images.concat()
+}
+
+/// Adds the lines of a matrix, each times a factor.
+#[inline(always)]
+fn add_lines(factors: &[f64], lines: &[f64], sums: &mut [f64]) {
+    for (&factor, line) in factors.iter().zip(lines.chunks_exact(sums.len())) {
+        for (sum, value) in sums.iter_mut().zip(line) {
+            *sum += factor * value;
+        }
+    }
+}
+
+/// Makes directions orthogonal to those before them, and unit; those that depend on them become zero (modified Gram-Schmidt).
+fn orthonormalize(dims: usize, directions: &mut [f64]) {
+    for i in 0..directions.len() / dims {
+        let (before, rest) = directions.split_at_mut(i * dims);
+        let direction = &mut rest[..dims];
+        let length_sq = dot(direction, direction);
+        for other in before.chunks_exact(dims) {
+            let along = dot(direction, other);
+            for (value, other) in direction.iter_mut().zip(other) {
+                *value -= along * other;
+            }
+        }
+        let left_sq = dot(direction, direction);
+        let factor = if left_sq > DEPENDENT * length_sq {
+            1.0 / left_sq.sqrt()
+        } else {
+            0.0
+        };
+        for value in direction {
+            *value *= factor;
+        }
+    }
+}
+
+/// The sum of products.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let (a_8, a) = a.as_chunks::<8>();
+    let (b_8, b) = b.as_chunks::<8>();
+    for (a, b) in a_8.iter().zip(b_8) {
+        for lane in 0..8 {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+        *sum += a * b;
+    }
+    sums.iter().sum()
+}

@@ -1,0 +1,60 @@
+//! The distance that defines which row is nearest.
+
+use fearless_simd::{f32x16, prelude::*};
+
+/// The number of sums that are added at the end.
+pub(crate) const LANES: usize = 16;
+
+/// The paper's D(M, N): the sum of squared differences in `f32`, summed in the one fixed order that defines which row is
+/// nearest.
+///
+/// Sixteen sums, each of every sixteenth term, are added in pairs. What one of the two has more than the other does not
+/// count.
+#[must_use]
+#[inline]
+pub fn distance_sq(a: &[f32], b: &[f32]) -> f32 {
+    let n = a.len().min(b.len());
+    let (a_16, a) = a[..n].as_chunks::<LANES>();
+    let (b_16, b) = b[..n].as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for (a, b) in a_16.iter().zip(b_16) {
+        for lane in 0..LANES {
+            sums[lane] += (a[lane] - b[lane]) * (a[lane] - b[lane]);
+        }
+    }
+    for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+        *sum += (a - b) * (a - b);
+    }
+    add_in_pairs(sums)
+}
+
+/// As [`distance_sq`], of numbers that zeros fill up to whole registers. A zero more in a sum changes no bit of it.
+#[inline(always)]
+pub(crate) fn distance_sq_padded<S: Simd>(simd: S, a: &[[f32; LANES]], b: &[[f32; LANES]]) -> f32 {
+    let mut sums = f32x16::splat(simd, 0.0);
+    for (&a, &b) in a.iter().zip(b) {
+        let difference = f32x16::simd_from(simd, a) - f32x16::simd_from(simd, b);
+        sums += difference * difference;
+    }
+    let (low, high) = sums.split();
+    let (low, high) = (low + high).split();
+    let sums: [f32; 4] = (low + high).into();
+    (sums[0] + sums[2]) + (sums[1] + sums[3])
+}
+
+/// How often at most a term of [`distance_sq`] is rounded: as a difference, twice in it, as a square, and added up.
+pub(crate) fn roundings(dims: usize) -> usize {
+    3 + dims.div_ceil(LANES) + 4
+}
+
+#[inline(always)]
+fn add_in_pairs(mut sums: [f32; LANES]) -> f32 {
+    let mut n = LANES / 2;
+    while n > 0 {
+        for lane in 0..n {
+            sums[lane] += sums[lane + n];
+        }
+        n /= 2;
+    }
+    sums[0]
+}

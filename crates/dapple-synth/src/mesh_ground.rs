@@ -1,0 +1,126 @@
+//! Sites on a surface: squares of samples are laid out by walking along O and P.
+//!
+//! A sample at the offset (i, j) is found by going i spacings along P, to the right, and from there j spacings along O, down,
+//! on the polygons of the surface; both directions are carried along. Its value is that of equation 1, with distances in
+//! space. The sites that count are those within reach of the square as it would be on a plane.
+
+mod interpolate;
+mod lattice;
+mod nearby;
+
+use crate::ground::{Ground, Samples, Square};
+use crate::groups::Groups;
+use crate::{Orientation, Sweep};
+use dapple_mesh::{Hierarchy, INTERPOLATION_RADIUS, SiteIdx, Surface};
+use dapple_raster::simd;
+use nearby::Neighborhoods;
+
+pub(crate) use interpolate::{Interpolation, interpolate};
+pub(crate) use lattice::Lattice;
+pub(crate) use nearby::Nearby;
+
+/// How much farther than on a plane sites may lie from a sample's site and still count, in spacings.
+const REACH_SPARE: f64 = 0.5;
+
+/// The sites of a hierarchy, with the directions of the texture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MeshGround<'a> {
+    pub(crate) surface: &'a Surface,
+    pub(crate) hierarchy: &'a Hierarchy,
+    pub(crate) orientation: &'a Orientation,
+    pub(crate) sweep: &'a Sweep,
+}
+
+/// The sites around those of a level, on the level itself and on the next coarser one.
+#[derive(Debug)]
+pub(crate) struct Prepared {
+    level: usize,
+    same: Option<Neighborhoods>,
+    coarser: Option<Neighborhoods>,
+}
+
+/// What reading a square works in.
+#[derive(Debug, Default)]
+pub(crate) struct MeshMemory {
+    nearby: Nearby,
+    lattice: Lattice,
+    interpolation: Interpolation,
+}
+
+impl MeshGround<'_> {
+    /// The sites around those of a level that squares on the level `reads` are made of.
+    fn neighborhoods(&self, level: usize, reads: usize, half: i32) -> Neighborhoods {
+        let spacings = core::f64::consts::SQRT_2 * f64::from(half) + INTERPOLATION_RADIUS;
+        let spacing = self.hierarchy.levels()[reads].spacing();
+        Neighborhoods::new(
+            self.hierarchy.sites(),
+            [level, reads].map(|level| self.n_sites(level)),
+            spacing,
+            (spacings + REACH_SPARE) * spacing,
+        )
+    }
+}
+
+impl Ground for MeshGround<'_> {
+    type Prepared = Prepared;
+    type Memory = MeshMemory;
+
+    fn n_sites(&self, level: usize) -> usize {
+        self.hierarchy.levels()[level].n_sites()
+    }
+
+    fn order(&self, level: usize) -> Vec<u32> {
+        let order = self.sweep.order(level);
+        order.into_iter().map(|SiteIdx(site)| site).collect()
+    }
+
+    fn prepare(&self, level: usize, same: Option<i32>, coarser: Option<i32>) -> Prepared {
+        Prepared {
+            level,
+            same: same.map(|half| self.neighborhoods(level, level, half)),
+            coarser: coarser.map(|half| self.neighborhoods(level, level + 1, half)),
+        }
+    }
+
+    fn groups(&self, level: usize, prepared: &Prepared) -> Groups {
+        let order = self.order(level);
+        match &prepared.same {
+            Some(around) => Groups::by_cells(&order, around.cells()),
+            None => Groups::one_by_one(order),
+        }
+    }
+
+    fn read(
+        &self,
+        square: Square,
+        prepared: &Prepared,
+        column: &[f32],
+        samples: &mut Samples,
+        memory: &mut MeshMemory,
+    ) {
+        let around = if square.reads == prepared.level {
+            &prepared.same
+        } else {
+            &prepared.coarser
+        };
+        let Some(around) = around else { return };
+        let at = square.site as usize;
+        let spacing = self.hierarchy.levels()[square.reads].spacing();
+        let point = self.hierarchy.sites().points()[at];
+        let orientation = self.orientation.vectors()[at];
+        around.collect(square.site, &mut memory.nearby);
+        let lattice = &mut memory.lattice;
+        lattice.lay(self.surface, point, orientation, &square, spacing);
+        interpolate(
+            simd::level(),
+            lattice,
+            &memory.nearby,
+            (spacing * INTERPOLATION_RADIUS) as f32,
+            (column, samples),
+            &mut memory.interpolation,
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,170 @@
+//! Where the samples of a square are on a surface.
+
+use crate::ground::Square;
+use dapple_mesh::{Surface, SurfacePoint, Walk};
+use glam::{DVec2, DVec3};
+
+/// The samples in a register.
+const LANES: usize = 8;
+
+/// Samples on a surface, in rows of at most eight.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Lattice {
+    /// The number of samples along a side.
+    pub(crate) side: usize,
+    /// The direction at the middle in which rows follow each other.
+    pub(crate) down: DVec3,
+    pub(crate) rows: Vec<Row>,
+}
+
+/// Samples side by side.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    /// The number of the row in the square, from the top.
+    pub(crate) at: usize,
+    pub(crate) first_column: usize,
+    /// How many lanes are used.
+    pub(crate) n_lanes: usize,
+    /// x, y and z relative to the middle of the square, and of the normals of the faces.
+    pub(crate) lanes: [[f32; LANES]; 6],
+}
+
+/// So far away that no site counts, and that squares stay finite.
+const NOWHERE: f32 = 1e18;
+
+impl Lattice {
+    /// Walks to all samples of a square around a point.
+    pub(crate) fn lay(
+        &mut self,
+        surface: &Surface,
+        middle: SurfacePoint,
+        orientation: DVec3,
+        square: &Square,
+        spacing: f64,
+    ) {
+        self.make_room(square);
+        let down = surface
+            .flatten(middle.face, orientation)
+            .normalize_or(DVec2::X);
+        self.down = surface.lift(middle.face, down);
+        let center = surface.position(middle);
+        let half = square.half;
+        let start = Walk {
+            point: middle,
+            direction: down,
+            left: 0.0,
+        };
+        self.lay_column(surface, &start, half as usize, square, (center, spacing));
+        for way in [1.0, -1.0] {
+            let mut walk = Walk {
+                direction: down.perp() * way,
+                ..start
+            };
+            for step in 1..=half {
+                walk = surface.walk(walk.point, walk.direction, spacing);
+                let column = Walk {
+                    direction: -walk.direction.perp() * way,
+                    ..walk
+                };
+                let at = half + step * way as i32;
+                self.lay_column(surface, &column, at as usize, square, (center, spacing));
+            }
+        }
+    }
+
+    /// Lines up points that somebody else chose, eight in a row, relative to `center`. Rows follow each other from the first
+    /// point to the last one.
+    pub(crate) fn line_up(&mut self, surface: &Surface, points: &[SurfacePoint], center: DVec3) {
+        self.side = points.len();
+        self.down = match points {
+            [first, .., last] => surface.position(*last) - surface.position(*first),
+            _ => DVec3::ZERO,
+        }
+        .normalize_or(DVec3::Z);
+        self.rows.clear();
+        for (number, points) in points.chunks(LANES).enumerate() {
+            self.rows.push(Row::new(0, number * LANES, points.len()));
+            for (lane, &point) in points.iter().enumerate() {
+                self.put(surface, point, 0, number * LANES + lane, center);
+            }
+        }
+    }
+
+    /// Has as many rows as the square needs, with their unused lanes nowhere.
+    fn make_room(&mut self, square: &Square) {
+        let side = square.side();
+        let n_rows = square.range().count();
+        let blocks = side.div_ceil(LANES);
+        if self.side == side && self.rows.len() == n_rows * blocks {
+            return;
+        }
+        self.side = side;
+        self.rows = (0..n_rows * blocks)
+            .map(|number| {
+                let first_column = number % blocks * LANES;
+                Row::new(
+                    number / blocks,
+                    first_column,
+                    LANES.min(side - first_column),
+                )
+            })
+            .collect();
+    }
+
+    /// Walks up and down from the middle of a column, where O is the direction of `start`.
+    fn lay_column(
+        &mut self,
+        surface: &Surface,
+        start: &Walk,
+        column: usize,
+        square: &Square,
+        (center, spacing): (DVec3, f64),
+    ) {
+        let half = square.half;
+        let last = *square.range().end();
+        if last >= 0 {
+            self.put(surface, start.point, half as usize, column, center);
+        }
+        for (way, n_steps) in [(-1, half), (1, last)] {
+            let (mut point, mut direction) = (start.point, start.direction * f64::from(way));
+            for step in 1..=n_steps {
+                let walk = surface.walk(point, direction, spacing);
+                (point, direction) = (walk.point, walk.direction);
+                self.put(surface, point, (half + way * step) as usize, column, center);
+            }
+        }
+    }
+
+    #[inline]
+    fn put(
+        &mut self,
+        surface: &Surface,
+        point: SurfacePoint,
+        row: usize,
+        column: usize,
+        center: DVec3,
+    ) {
+        let position = (surface.position(point) - center).as_vec3();
+        let normal = surface.face_normal(point.face).as_vec3();
+        let blocks = self.side.div_ceil(LANES);
+        let row = &mut self.rows[row * blocks + column / LANES];
+        let lane = column % LANES;
+        for part in 0..3 {
+            row.lanes[part][lane] = position[part];
+            row.lanes[3 + part][lane] = normal[part];
+        }
+    }
+}
+
+impl Row {
+    /// A row whose samples are nowhere yet.
+    fn new(at: usize, first_column: usize, n_lanes: usize) -> Self {
+        let (far, zero) = ([NOWHERE; LANES], [0.0; LANES]);
+        Self {
+            at,
+            first_column,
+            n_lanes,
+            lanes: [far, far, far, zero, zero, zero],
+        }
+    }
+}

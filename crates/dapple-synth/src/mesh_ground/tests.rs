@@ -1,0 +1,298 @@
+//! Squares on surfaces, beside samples that are walked to one by one and mixed from all sites.
+
+use super::{MeshGround, MeshMemory, interpolate};
+use crate::ground::{Ground, Rows, Samples, Square};
+use crate::{Orientation, Sweep};
+use dapple_hash::Seed;
+use dapple_mesh::{Hierarchy, HierarchyOptions, INTERPOLATION_RADIUS, Mesh, Surface};
+use dapple_raster::simd::for_every_level;
+use glam::{DVec2, DVec3};
+
+/// A torus as a grid of triangles, or a part of it with two borders.
+fn torus(n_around: u32, is_open: bool) -> Surface {
+    let n_tube = 12;
+    let place = |around: u32, tube: u32| {
+        let [a, t] = [(around, n_around), (tube, n_tube)]
+            .map(|(at, n)| core::f64::consts::TAU * f64::from(at) / f64::from(n));
+        let outward = 1.0 + 0.4 * libm::cos(t);
+        DVec3::new(
+            outward * libm::cos(a),
+            0.4 * libm::sin(t),
+            outward * libm::sin(a),
+        )
+    };
+    let positions = (0..n_around)
+        .flat_map(|around| (0..n_tube).map(move |tube| place(around, tube)))
+        .collect();
+    let mut faces = Vec::new();
+    for around in 0..n_around - u32::from(is_open) {
+        for tube in 0..n_tube {
+            let [next_around, next_tube] = [(around + 1) % n_around, (tube + 1) % n_tube];
+            let at = |around: u32, tube: u32| around * n_tube + tube;
+            let [a, b] = [at(around, tube), at(next_around, tube)];
+            let [c, d] = [at(next_around, next_tube), at(around, next_tube)];
+            faces.extend([[a, c, b], [a, d, c]]);
+        }
+    }
+    Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
+}
+
+struct Case {
+    surface: Surface,
+    hierarchy: Hierarchy,
+    orientation: Orientation,
+    sweep: Sweep,
+}
+
+impl Case {
+    fn new(surface: Surface, n_sites: usize) -> Self {
+        let options = HierarchyOptions {
+            n_sites,
+            n_levels: 2,
+            seed: Seed(5),
+            ..HierarchyOptions::default()
+        };
+        let hierarchy = Hierarchy::new(&surface, &options).unwrap();
+        let orientation = Orientation::new(&hierarchy, &[]).unwrap();
+        let sweep = Sweep::new(&hierarchy, &orientation, None).unwrap();
+        Self {
+            surface,
+            hierarchy,
+            orientation,
+            sweep,
+        }
+    }
+
+    fn ground(&self) -> MeshGround<'_> {
+        MeshGround {
+            surface: &self.surface,
+            hierarchy: &self.hierarchy,
+            orientation: &self.orientation,
+            sweep: &self.sweep,
+        }
+    }
+
+    /// Walks to one sample, i along P and j along O.
+    fn walk(&self, square: &Square, [i, j]: [i32; 2]) -> (DVec3, DVec3) {
+        let spacing = self.hierarchy.levels()[square.reads].spacing();
+        let at = square.site as usize;
+        let mut point = self.hierarchy.sites().points()[at];
+        let down = self.orientation.vectors()[at];
+        let mut right = self.surface.flatten(point.face, down).normalize().perp();
+        let mut go = |way: f64, turn: fn(DVec2) -> DVec2| {
+            let walk = self.surface.walk(point, turn(right) * way, spacing);
+            point = walk.point;
+            let direction = walk.direction * way;
+            right = if turn(DVec2::X) == DVec2::X {
+                direction
+            } else {
+                direction.perp()
+            };
+        };
+        for _ in 0..i.abs() {
+            go(f64::from(i.signum()), |right| right);
+        }
+        for _ in 0..j.abs() {
+            go(f64::from(j.signum()), |right| -right.perp());
+        }
+        let position = self.surface.position(point);
+        (position, self.surface.face_normal(point.face))
+    }
+
+    /// Equation 1 in `f64`, from all sites of the level.
+    fn mix(&self, level: usize, position: DVec3, normal: DVec3, column: &[f32]) -> Option<f64> {
+        let radius = self.hierarchy.levels()[level].spacing() * INTERPOLATION_RADIUS;
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for site in 0..self.hierarchy.levels()[level].n_sites() {
+            let x = self.hierarchy.sites().positions()[site].distance(position) / radius;
+            if x < 1.0 && self.hierarchy.sites().normals()[site].dot(normal) >= 0.0 {
+                let weight = (2.0 * x - 3.0) * x * x + 1.0;
+                sum += weight * f64::from(column[site]);
+                weights += weight;
+            }
+        }
+        (weights > 1e-3).then_some(sum / weights)
+    }
+}
+
+fn square(site: u32, reads: usize, half: i32) -> Square {
+    Square {
+        site,
+        level: 0,
+        reads,
+        half,
+        rows: Rows::All,
+    }
+}
+
+/// Values at sites that tell them apart.
+fn column(n: usize) -> Vec<f32> {
+    (0..n).map(|at| (at * 7919 % 101) as f32 / 101.0).collect()
+}
+
+#[test]
+fn squares_are_those_of_single_walks_and_of_all_sites() {
+    for is_open in [false, true] {
+        let case = Case::new(torus(40, is_open), 3000);
+        let (ground, column) = (case.ground(), column(3000));
+        let (mut samples, mut memory) = (Samples::default(), MeshMemory::default());
+        let mut n_compared = 0;
+        for (reads, half) in [(0, 3), (1, 3), (1, 1), (0, 5)] {
+            let prepared = ground.prepare(0, Some(half), Some(half));
+            for site in (0..3000).step_by(97) {
+                let square = square(site, reads, half);
+                samples.make_room(square.side(), 1);
+                ground.read(square, &prepared, &column, &mut samples, &mut memory);
+                for (sample, &value) in samples.values.iter().enumerate() {
+                    let [i, j] =
+                        [sample % square.side(), sample / square.side()].map(|at| at as i32 - half);
+                    let (position, normal) = case.walk(&square, [i, j]);
+                    if let Some(oracle) = case.mix(reads, position, normal, &column) {
+                        // Positions are rounded to f32: 1e-7 of the surface's size, which is 3e-6 of a radius here, times
+                        // the slope of a mean of few sites, which is at most some 50 values per radius.
+                        assert!(
+                            (f64::from(value) - oracle).abs() < 1e-3,
+                            "site {site}, sample {i} {j}: {value} beside {oracle}"
+                        );
+                        n_compared += 1;
+                    }
+                }
+            }
+        }
+        assert!(n_compared > 5000, "only {n_compared} samples were compared");
+    }
+}
+
+#[test]
+fn squares_have_the_same_bits_at_every_simd_level() {
+    let case = Case::new(torus(40, false), 2000);
+    let (ground, column) = (case.ground(), column(2000 * 3));
+    let prepared = ground.prepare(0, Some(3), None);
+    let mut all: Vec<Vec<Samples>> = Vec::new();
+    for_every_level(|level| {
+        let mut memory = MeshMemory::default();
+        let mut read = Vec::new();
+        for site in (0..2000).step_by(53) {
+            let mut samples = Samples::default();
+            samples.make_room(7, 3);
+            let square = square(site, 0, 3);
+            ground.read(square, &prepared, &column, &mut samples, &mut memory);
+            let radius = (case.hierarchy.levels()[0].spacing() * INTERPOLATION_RADIUS) as f32;
+            let again = (column.as_slice(), &mut samples);
+            interpolate(
+                level,
+                &memory.lattice,
+                &memory.nearby,
+                radius,
+                again,
+                &mut memory.interpolation,
+            );
+            read.push(samples);
+        }
+        all.push(read);
+    });
+    for other in &all[1..] {
+        assert_eq!(&all[0], other, "a level has other bits");
+    }
+}
+
+#[test]
+fn square_of_constant_values_is_constant() {
+    let case = Case::new(torus(30, true), 500);
+    let ground = case.ground();
+    let (mut samples, mut memory) = (Samples::default(), MeshMemory::default());
+    let prepared = ground.prepare(0, Some(7), Some(3));
+    for site in 0..500 {
+        let square = square(site, 0, 7);
+        samples.make_room(15, 1);
+        ground.read(square, &prepared, &[0.75; 500], &mut samples, &mut memory);
+        // A weighted mean of equal values is off by some roundings.
+        let off = samples
+            .values
+            .iter()
+            .map(|value| (value - 0.75).abs())
+            .fold(0.0, f32::max);
+        assert!(off < 1e-6, "site {site} is off by {off}");
+        assert_eq!(
+            samples.nearest[7 * 15 + 7],
+            site,
+            "a site is nearest to itself"
+        );
+    }
+}
+
+#[test]
+fn sites_of_one_group_do_not_read_each_other() {
+    let case = Case::new(torus(40, false), 4000);
+    let ground = case.ground();
+    let prepared = ground.prepare(0, Some(3), None);
+    let groups = ground.groups(0, &prepared);
+    let around = prepared.same.as_ref().unwrap();
+    let mut memory = MeshMemory::default();
+    let mut group_of = vec![usize::MAX; 4000];
+    for (number, group) in groups.iter().enumerate() {
+        for &site in group {
+            group_of[site as usize] = number;
+        }
+    }
+    let mut rank = vec![0; 4000];
+    for (at, site) in ground.order(0).into_iter().enumerate() {
+        rank[site as usize] = at;
+    }
+    assert!(!group_of.contains(&usize::MAX), "a site is missing");
+    for site in 0..4000_u32 {
+        around.collect(site, &mut memory.nearby);
+        for other in memory
+            .nearby
+            .records
+            .iter()
+            .map(|record| record.site as usize)
+        {
+            let site = site as usize;
+            if other != site {
+                assert_eq!(
+                    rank[site] < rank[other],
+                    group_of[site] < group_of[other],
+                    "{site} and {other} are out of order"
+                );
+                assert_ne!(
+                    group_of[site], group_of[other],
+                    "{site} and {other} are together"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn piece_without_a_coarse_site_reads_the_nearest_one() {
+    // A large triangle, and far away one so small that no site of the coarser level is on it.
+    let positions = [
+        [0.0, 0.0],
+        [10.0, 0.0],
+        [0.0, 10.0],
+        [50.0, 0.0],
+        [52.0, 0.0],
+        [50.0, 2.0],
+    ];
+    let positions = positions.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec();
+    let mesh = Mesh::new(positions, &[[0, 1, 2], [3, 4, 5]]).unwrap();
+    let case = Case::new(Surface::new(mesh).unwrap(), 60);
+    let ground = case.ground();
+    let prepared = ground.prepare(0, None, Some(1));
+    let (mut samples, mut memory) = (Samples::default(), MeshMemory::default());
+    for site in 0..60 {
+        samples.make_room(3, 1);
+        ground.read(
+            square(site, 1, 1),
+            &prepared,
+            &column(60),
+            &mut samples,
+            &mut memory,
+        );
+        assert!(
+            samples.nearest.iter().all(|&site| site < 15),
+            "not a site of level 1"
+        );
+    }
+}

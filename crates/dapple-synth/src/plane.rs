@@ -1,0 +1,235 @@
+//! Textures on a plane or on a torus: the passes of the surface, with pixels for sites.
+//!
+//! References: Li-Yi Wei and Marc Levoy, "Fast Texture Synthesis using Tree-structured Vector Quantization", SIGGRAPH 2000,
+//! DOI 10.1145/344779.345009, for the plane; Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI
+//! 10.1145/383259.383297, for the passes.
+//!
+//! A pixel of the texture is a site, its neighborhood lies in memory, and nothing is interpolated but the coarser level at
+//! half pixels. A level has half of the pixels of the next finer one along each axis, rounded up.
+//!
+//! The sweep goes row by row. Along rows that wrap that would be one long chain, each pixel waiting for the one before it
+//! all around the torus; there the finer levels, where every pixel has a color before the sweep begins to refine it, go in
+//! slanted lines instead, which change the texture no more than another seed and can be visited on all cores.
+
+use crate::candidates::halves;
+use crate::engine::{self, Progress};
+use crate::grid::{self, Grid};
+use crate::ground::{Ground, Samples, Square};
+use crate::groups::Groups;
+use crate::neighborhood::Reads;
+use crate::{CoarserCenter, Edges, Exemplar, Options, SynthError};
+use core::ops::ControlFlow;
+use dapple_raster::{Raster, Wrap};
+
+/// How many columns a slanted line goes to the left per row: one more than half of a neighborhood of side 7 reaches.
+const SLANT: u32 = 4;
+
+/// A texture in the plane: for every pixel the one of the exemplar that it is from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlaneTexture {
+    sources: Raster<[u32; 2]>,
+    exemplar_size: [u32; 2],
+}
+
+/// Makes a texture of `size` pixels that looks like an exemplar.
+///
+/// `edges` says for columns and rows whether the texture is to wrap: [`Edges::Wrap`] makes a tile.
+///
+/// # Errors
+///
+/// Typed errors for an exemplar that is too small, for options out of their ranges, for a size that a raster cannot have,
+/// and for a wrapping side that cannot be halved once per level but the last.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_raster::Raster;
+/// use dapple_synth::{Edges, Exemplar, Options, synthesize_plane};
+///
+/// let checker = Raster::from_fn([16, 16], |x, y| f32::from((x / 4 + y / 4) % 2 == 0))?;
+/// let exemplar = Exemplar::from_planes(&[(&checker, 1.0)], Edges::Wrap)?;
+/// let texture = synthesize_plane(&exemplar, [24, 20], [Edges::Wrap; 2], &Options::default())?;
+/// assert_eq!(texture.transfer(&checker)?.size(), [24, 20]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn synthesize_plane(
+    exemplar: &Exemplar,
+    size: [u32; 2],
+    edges: [Edges; 2],
+    options: &Options,
+) -> Result<PlaneTexture, SynthError> {
+    synthesize_plane_with(
+        exemplar,
+        size,
+        edges,
+        options,
+        |_| ControlFlow::Continue(()),
+    )
+}
+
+/// As [`synthesize_plane`], with a callback that hears of the progress and can stop it.
+///
+/// # Errors
+///
+/// As [`synthesize_plane`], and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if the callback breaks.
+pub fn synthesize_plane_with(
+    exemplar: &Exemplar,
+    size: [u32; 2],
+    edges: [Edges; 2],
+    options: &Options,
+    mut callback: impl FnMut(Progress) -> ControlFlow<()>,
+) -> Result<PlaneTexture, SynthError> {
+    let pyramid = exemplar.pyramid(options.n_levels)?;
+    let ground = PlaneGround::new(size, edges, options)?;
+    let mut levels = engine::run(&ground, &pyramid, options, &mut callback)?;
+    let width = exemplar.size[0];
+    let sources = levels.swap_remove(0).sources.into_iter();
+    let sources = sources
+        .map(|pixel| [pixel % width, pixel / width])
+        .collect();
+    Ok(PlaneTexture {
+        sources: Raster::from_vec(size, sources)?,
+        exemplar_size: exemplar.size,
+    })
+}
+
+impl PlaneTexture {
+    /// The column and row in the exemplar of the pixel that each pixel is from.
+    #[must_use]
+    pub fn sources(&self) -> &Raster<[u32; 2]> {
+        &self.sources
+    }
+
+    /// What a map of the exemplar's size has at the sources: the texture's colors, from the image of the exemplar, and
+    /// heights, normals and roughness that follow them.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Raster`](crate::SynthErrorKind::Raster) for a map of another size.
+    pub fn transfer<T: Copy>(&self, map: &Raster<T>) -> Result<Raster<T>, SynthError> {
+        map.check_same_size(self.exemplar_size)?;
+        Ok(self
+            .sources
+            .map(|&[column, row]| map.row(row)[column as usize]))
+    }
+}
+
+/// Pixels on several levels.
+#[derive(Clone, Debug)]
+struct PlaneGround {
+    /// The sizes of the levels, the finest first.
+    sizes: Vec<[u32; 2]>,
+    wrap: [Wrap; 2],
+    center: CoarserCenter,
+}
+
+impl PlaneGround {
+    fn new(size: [u32; 2], edges: [Edges; 2], options: &Options) -> Result<Self, SynthError> {
+        // A raster's own limits, without its memory.
+        Raster::filled(size, ())?;
+        let halvings = options.n_levels.saturating_sub(1).min(31) as u32;
+        for (side, edges) in size.into_iter().zip(edges) {
+            let holds = edges == Edges::Cut || side % (1 << halvings) == 0;
+            let range = "divisible by 2 once per level but the last";
+            SynthError::check(holds, "side of a wrapping texture", side.into(), range)?;
+        }
+        let halved = |size: &[u32; 2]| Some(size.map(|side| side.div_ceil(2)));
+        let sizes = core::iter::successors(Some(size), halved);
+        Ok(Self {
+            sizes: sizes.take(options.n_levels).collect(),
+            wrap: edges.map(|edges| match edges {
+                Edges::Cut => Wrap::Mirror,
+                Edges::Wrap => Wrap::Repeat,
+            }),
+            center: options.center,
+        })
+    }
+
+    /// The column and row of a site.
+    fn pixel(&self, level: usize, site: u32) -> [u32; 2] {
+        let width = self.sizes[level][0];
+        [site % width, site / width]
+    }
+}
+
+impl Ground for PlaneGround {
+    /// How far squares on the level itself reach.
+    type Prepared = i32;
+    type Memory = ();
+
+    fn n_sites(&self, level: usize) -> usize {
+        let [width, height] = self.sizes[level];
+        width as usize * height as usize
+    }
+
+    fn order(&self, level: usize) -> Vec<u32> {
+        let n_sites = self.n_sites(level) as u32;
+        if self.wrap[0] != Wrap::Repeat || level + 1 == self.sizes.len() {
+            return (0..n_sites).collect();
+        }
+        let line = |site| {
+            let [column, row] = self.pixel(level, site);
+            u64::from(column) + u64::from(SLANT) * u64::from(row)
+        };
+        let mut order: Vec<u32> = (0..n_sites).collect();
+        order.sort_by_key(|&site| line(site));
+        order
+    }
+
+    fn prepare(&self, _: usize, same: Option<i32>, _: Option<i32>) -> i32 {
+        same.unwrap_or(0)
+    }
+
+    fn groups(&self, level: usize, &half: &i32) -> Groups {
+        let order = self.order(level);
+        let size = self.sizes[level];
+        // One more than the group of a site; 0 for those that come later.
+        let mut next = vec![0_u32; order.len()];
+        let mut group_of = Vec::with_capacity(order.len());
+        for &site in &order {
+            let at = self.pixel(level, site).map(|at| 2 * i64::from(at));
+            let [columns, rows] = grid::square(at, half, size, self.wrap);
+            let side = 2 * half as usize + 1;
+            let mut group = 0;
+            for row in &rows[..side] {
+                let line = &next[row * size[0] as usize..][..size[0] as usize];
+                for &column in &columns[..side] {
+                    group = group.max(line[column]);
+                }
+            }
+            next[site as usize] = group + 1;
+            group_of.push(group);
+        }
+        Groups::by_number(&order, &group_of)
+    }
+
+    fn read(&self, square: Square, _: &i32, column: &[f32], samples: &mut Samples, (): &mut ()) {
+        let n_channels = samples.values.len() / samples.nearest.len().max(1);
+        let reads = if square.reads == square.level {
+            Reads::Same
+        } else {
+            Reads::Coarser
+        };
+        let at = halves(self.pixel(square.level, square.site), reads, self.center);
+        let size = self.sizes[square.reads];
+        let grid = Grid {
+            values: column,
+            size,
+            n_channels,
+            wrap: self.wrap,
+        };
+        grid.read(at, square.half, square.range(), &mut samples.values);
+        let [columns, rows] = grid::square(at, square.half, size, self.wrap);
+        for (row, nearest) in rows
+            .iter()
+            .zip(samples.nearest.chunks_exact_mut(square.side()))
+        {
+            for (&column, nearest) in columns.iter().zip(nearest) {
+                *nearest = *row as u32 * size[0] + column as u32;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

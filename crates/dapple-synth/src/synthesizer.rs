@@ -1,0 +1,151 @@
+//! The doors for surfaces: one call for all of it, and what can be used again.
+
+use crate::engine::{self, Progress};
+use crate::mesh_ground::MeshGround;
+use crate::{
+    Direction, Exemplar, Options, Orientation, SurfaceTexture, Sweep, SynthError, SynthErrorKind,
+};
+use core::ops::ControlFlow;
+use dapple_mesh::{Hierarchy, HierarchyOptions, Mesh, SiteIdx, Surface};
+
+/// A surface with its sites, their directions and their order: all that does not depend on the exemplar.
+#[derive(Clone, Debug)]
+pub struct Synthesizer {
+    surface: Surface,
+    hierarchy: Hierarchy,
+    orientation: Orientation,
+    sweep: Sweep,
+}
+
+/// Covers a mesh with a texture that looks like an exemplar: `directions` say which way its "down" runs.
+///
+/// # Errors
+///
+/// As [`Synthesizer::new`] and [`Synthesizer::synthesize`].
+pub fn synthesize(
+    mesh: Mesh,
+    exemplar: &Exemplar,
+    directions: &[Direction],
+    sites: &HierarchyOptions,
+    options: &Options,
+) -> Result<(Synthesizer, SurfaceTexture), SynthError> {
+    let synthesizer = Synthesizer::new(Surface::new(mesh)?, directions, sites)?;
+    let texture = synthesizer.synthesize(exemplar, options)?;
+    Ok((synthesizer, texture))
+}
+
+impl Synthesizer {
+    /// Scatters sites over a surface, interpolates the directions and measures the sweep distance.
+    ///
+    /// # Errors
+    ///
+    /// As [`Hierarchy::new`], [`Orientation::new`] and [`Sweep::new`].
+    pub fn new(
+        surface: Surface,
+        directions: &[Direction],
+        sites: &HierarchyOptions,
+    ) -> Result<Self, SynthError> {
+        let hierarchy = Hierarchy::new(&surface, sites)?;
+        let orientation = Orientation::new(&hierarchy, directions)?;
+        Self::from_parts(surface, hierarchy, orientation, None)
+    }
+
+    /// Uses sites and orientations that the caller made for this surface, and an anchor of the sweep if that is given.
+    ///
+    /// # Errors
+    ///
+    /// [`SynthErrorKind::Count`] if the columns do not belong together, and as [`Sweep::new`].
+    pub fn from_parts(
+        surface: Surface,
+        hierarchy: Hierarchy,
+        orientation: Orientation,
+        anchor: Option<SiteIdx>,
+    ) -> Result<Self, SynthError> {
+        let (count, n_sites) = (orientation.vectors().len(), hierarchy.sites().len());
+        if count != n_sites {
+            return Err(SynthError::new(SynthErrorKind::Count {
+                what: "orientations",
+                count,
+                needed: "as many as sites",
+            }));
+        }
+        let sweep = Sweep::new(&hierarchy, &orientation, anchor)?;
+        Ok(Self {
+            surface,
+            hierarchy,
+            orientation,
+            sweep,
+        })
+    }
+
+    /// Gives every site a color.
+    ///
+    /// # Errors
+    ///
+    /// Typed errors for an exemplar that is too small, for options out of their ranges, and for more levels than the sites
+    /// have.
+    pub fn synthesize(
+        &self,
+        exemplar: &Exemplar,
+        options: &Options,
+    ) -> Result<SurfaceTexture, SynthError> {
+        self.synthesize_with(exemplar, options, |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`synthesize`](Self::synthesize), with a callback that hears of the progress and can stop it.
+    ///
+    /// # Errors
+    ///
+    /// As [`synthesize`](Self::synthesize), and [`SynthErrorKind::Cancelled`] if the callback breaks.
+    pub fn synthesize_with(
+        &self,
+        exemplar: &Exemplar,
+        options: &Options,
+        mut callback: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<SurfaceTexture, SynthError> {
+        if options.n_levels > self.hierarchy.levels().len() {
+            return Err(SynthError::new(SynthErrorKind::Count {
+                what: "levels",
+                count: options.n_levels,
+                needed: "at most those of the sites",
+            }));
+        }
+        let pyramid = exemplar.pyramid(options.n_levels)?;
+        let ground = MeshGround {
+            surface: &self.surface,
+            hierarchy: &self.hierarchy,
+            orientation: &self.orientation,
+            sweep: &self.sweep,
+        };
+        let levels = engine::run(&ground, &pyramid, options, &mut callback)?;
+        Ok(SurfaceTexture {
+            levels,
+            sizes: pyramid.levels().iter().map(Exemplar::size).collect(),
+            n_channels: exemplar.n_channels,
+        })
+    }
+
+    /// The surface.
+    #[must_use]
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// The sites and their levels.
+    #[must_use]
+    pub fn hierarchy(&self) -> &Hierarchy {
+        &self.hierarchy
+    }
+
+    /// Which way the texture runs at every site.
+    #[must_use]
+    pub fn orientation(&self) -> &Orientation {
+        &self.orientation
+    }
+
+    /// How far downstream every site is.
+    #[must_use]
+    pub fn sweep(&self) -> &Sweep {
+        &self.sweep
+    }
+}
