@@ -33,6 +33,26 @@ pub(crate) fn update<T: Send>(column: &mut [T], change: impl Fn(usize, &mut T) +
     }
 }
 
+/// Changes every row of a column, given its number, and gathers what `change` returns.
+pub(crate) fn map<T: Send, U: Send>(
+    column: &mut [T],
+    change: impl Fn(usize, &mut T) -> U + Sync + Send,
+) -> Vec<U> {
+    #[cfg(feature = "rayon")]
+    return column
+        .par_iter_mut()
+        .with_min_len(BLOCK)
+        .enumerate()
+        .map(|(row, value)| change(row, value))
+        .collect();
+    #[cfg(not(feature = "rayon"))]
+    return column
+        .iter_mut()
+        .enumerate()
+        .map(|(row, value)| change(row, value))
+        .collect();
+}
+
 /// The sum of a number for every row, added within blocks and then block by block, whatever the number of cores.
 pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
     let block = |block: usize| {

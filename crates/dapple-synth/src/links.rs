@@ -5,7 +5,6 @@
 //! [`conjugate_gradients`](crate::solve::conjugate_gradients) solves.
 
 use crate::columns;
-use dapple_mesh::glam::DVec3;
 use dapple_mesh::{Hierarchy, SiteGraph, SiteIdx};
 
 /// Edges shorter than this part of the spacing weigh as if they were so long, so that no site outvotes all others.
@@ -33,25 +32,42 @@ impl<'a> Links<'a> {
         for site in 0..level.n_sites() {
             offsets[site + 1] = offsets[site] + graph.neighbors(SiteIdx(site as u32)).len() as u32;
         }
-        let mut weights = vec![0.0; offsets[level.n_sites()] as usize];
-        let mut rows: Vec<&mut [f64]> = Vec::with_capacity(level.n_sites());
-        let mut rest = weights.as_mut_slice();
-        for site in 0..level.n_sites() {
-            let (row, after) = rest.split_at_mut((offsets[site + 1] - offsets[site]) as usize);
+        let mut links = Self {
+            graph,
+            weights: vec![0.0; offsets[level.n_sites()] as usize],
+            sums: vec![0.0; level.n_sites()],
+            offsets,
+        };
+        links.reweigh(|site, neighbors, row| {
+            let at = positions[site];
+            for (weight, other) in row.iter_mut().zip(neighbors) {
+                *weight = 1.0 / at.distance(positions[other.index()]).max(least);
+            }
+        });
+        links
+    }
+
+    /// Changes the weights of every site, given its neighbors, and gathers what `change` returns for each.
+    ///
+    /// The weights must stay symmetric.
+    pub(crate) fn reweigh<T: Send>(
+        &mut self,
+        change: impl Fn(usize, &[SiteIdx], &mut [f64]) -> T + Sync + Send,
+    ) -> Vec<T> {
+        let n_sites = self.len();
+        let mut rows: Vec<&mut [f64]> = Vec::with_capacity(n_sites);
+        let mut rest = self.weights.as_mut_slice();
+        for ends in self.offsets.windows(2) {
+            let (row, after) = rest.split_at_mut((ends[1] - ends[0]) as usize);
             rows.push(row);
             rest = after;
         }
-        columns::update(&mut rows, |site, row| {
-            weigh(positions, graph, site, least, row);
+        let graph = self.graph;
+        let found = columns::map(&mut rows, |site, row| {
+            change(site, graph.neighbors(SiteIdx(site as u32)), row)
         });
-        let mut links = Self {
-            graph,
-            offsets,
-            weights,
-            sums: Vec::new(),
-        };
-        links.sums = columns::column(links.len(), |site| links.weights(site).iter().sum());
-        links
+        self.sums = columns::column(n_sites, |site| self.weights(site).iter().sum());
+        found
     }
 
     /// The number of sites.
@@ -140,10 +156,81 @@ pub(crate) fn components(graph: &SiteGraph) -> Vec<u32> {
     components
 }
 
-/// The weights of the edges of a site.
-fn weigh(positions: &[DVec3], graph: &SiteGraph, site: usize, least: f64, row: &mut [f64]) {
-    let at = positions[site];
-    for (weight, other) in row.iter_mut().zip(graph.neighbors(SiteIdx(site as u32))) {
-        *weight = 1.0 / at.distance(positions[other.index()]).max(least);
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::{sites_on, sphere, two_squares};
+
+    #[test]
+    fn weights_are_inverse_lengths_and_symmetric() {
+        let hierarchy = sites_on(sphere(), 300, 2);
+        for level in 0..2 {
+            let links = Links::new(&hierarchy, level);
+            assert_eq!(links.len(), hierarchy.levels()[level].n_sites());
+            for site in 0..links.len() {
+                let at = hierarchy.sites().positions()[site];
+                let mut sum = 0.0;
+                for (other, &weight) in links.neighbors(site).iter().zip(links.weights(site)) {
+                    let there = hierarchy.sites().positions()[other.index()];
+                    assert_eq!(weight, 1.0 / at.distance(there));
+                    let back = links
+                        .neighbors(other.index())
+                        .iter()
+                        .position(|end| end.index() == site);
+                    assert_eq!(
+                        links.weights(other.index())[back.unwrap()],
+                        weight,
+                        "from the other end"
+                    );
+                    sum += weight;
+                }
+                assert_eq!(links.sums()[site], sum);
+            }
+        }
+    }
+
+    #[test]
+    fn fill_goes_ring_by_ring_and_not_beyond_a_component() {
+        let hierarchy = sites_on(two_squares(), 400, 1);
+        let links = Links::new(&hierarchy, 0);
+        let components = components(hierarchy.levels()[0].graph());
+        let mut assigned = vec![false; 400];
+        let mut rings = vec![0_u32; 400];
+        assigned[7] = true;
+        links.fill(&mut assigned, &mut rings, |site, assigned, rings| {
+            let before = links.neighbors(site).iter().map(|other| other.index());
+            1 + before
+                .filter(|&other| assigned[other])
+                .map(|other| rings[other])
+                .min()
+                .unwrap()
+        });
+        for site in 0..400 {
+            assert_eq!(
+                assigned[site],
+                components[site] == components[7],
+                "site {site}"
+            );
+            for other in links.neighbors(site) {
+                assert!(
+                    rings[site].abs_diff(rings[other.index()]) <= 1,
+                    "neighbors are in rings side by side"
+                );
+            }
+            assert!(
+                rings[site] > 0 || site == 7 || !assigned[site],
+                "site {site} is in ring 0"
+            );
+        }
+    }
+
+    #[test]
+    fn components_are_numbered_by_their_lowest_sites() {
+        let edges = [[0, 3], [1, 5], [5, 2]].map(|ends: [u32; 2]| ends.map(SiteIdx));
+        assert_eq!(
+            components(&SiteGraph::from_edges(7, edges)),
+            [0, 1, 1, 0, 2, 1, 3]
+        );
+        assert!(components(&SiteGraph::default()).is_empty(), "no sites");
     }
 }

@@ -50,7 +50,7 @@ impl Parents {
 
     /// The sites and their weights, which are not negative and not all zero.
     #[inline]
-    pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
         let sites = self.sites[..self.count].iter().map(|site| site.index());
         sites.zip(self.weights[..self.count].iter().copied())
     }
@@ -79,6 +79,51 @@ impl Parents {
         }
         if sum < 1e-9 && self.count > 0 {
             self.weights[nearest.1] = 1.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::{sites_on, sphere};
+
+    #[test]
+    fn parents_are_the_coarser_sites_within_the_radius_and_two_edges() {
+        let hierarchy = sites_on(sphere(), 1000, 3);
+        let positions = hierarchy.sites().positions();
+        for level in 0..2 {
+            let graph = hierarchy.levels()[level].graph();
+            let coarser = &hierarchy.levels()[level + 1];
+            for site in coarser.n_sites()..hierarchy.levels()[level].n_sites() {
+                let parents = Parents::new(&hierarchy, level, SiteIdx(site as u32));
+                for other in 0..coarser.n_sites() {
+                    let near = graph.neighbors(SiteIdx(site as u32)).iter();
+                    let is_near = near.clone().any(|near| near.index() == other)
+                        || near
+                            .clone()
+                            .any(|&near| graph.neighbors(near).contains(&SiteIdx(other as u32)));
+                    let x = positions[site].distance(positions[other])
+                        / (coarser.spacing() * INTERPOLATION_RADIUS);
+                    let wanted = if is_near && x < 1.0 {
+                        2.0 * x * x * x - 3.0 * x * x + 1.0
+                    } else {
+                        0.0
+                    };
+                    let found: f64 = parents
+                        .iter()
+                        .filter(|&(parent, _)| parent == other)
+                        .map(|(_, weight)| weight)
+                        .sum();
+                    let is_nearest_alone = found == 1.0
+                        && parents.iter().filter(|&(_, weight)| weight > 0.0).count() == 1;
+                    // The order of the products differs.
+                    assert!(
+                        (found - wanted).abs() < 1e-12 || is_nearest_alone,
+                        "{site} {other}: {found} {wanted}"
+                    );
+                }
+            }
         }
     }
 }

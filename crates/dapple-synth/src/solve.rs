@@ -90,3 +90,99 @@ pub(crate) fn conjugate_gradients<T: Unknown>(
     }
     n_most
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain of springs: every value is the mean of its neighbors and a step of 1 ahead of the one before it.
+    struct Chain {
+        n_rows: usize,
+        tolerance: f64,
+    }
+
+    impl System<f64> for Chain {
+        fn row(&self, column: &[f64], row: usize) -> f64 {
+            let mut sum = 0.0;
+            for other in [row.wrapping_sub(1), row + 1] {
+                if other < self.n_rows {
+                    sum += column[row] - column[other];
+                }
+            }
+            sum
+        }
+
+        fn right(&self, row: usize) -> f64 {
+            f64::from(u8::from(row > 0)) - f64::from(u8::from(row + 1 < self.n_rows))
+        }
+
+        fn diagonal(&self, row: usize) -> f64 {
+            f64::from(u8::from(row > 0)) + f64::from(u8::from(row + 1 < self.n_rows))
+        }
+
+        fn is_near(&self, _value: f64, change: f64) -> bool {
+            change.abs() <= self.tolerance
+        }
+    }
+
+    #[test]
+    fn conjugate_gradients_count_up_a_chain() {
+        let chain = Chain {
+            n_rows: 100,
+            tolerance: 1e-12,
+        };
+        let mut column = vec![0.0; 100];
+        let steps = conjugate_gradients(&chain, &mut column, 1000);
+        // Without rounding it takes at most as many steps as rows.
+        assert!(steps <= 110, "{steps} steps");
+        for (row, value) in column.iter().enumerate() {
+            let wanted = column[0] + row as f64;
+            assert!(
+                (value - wanted).abs() < 1e-9,
+                "row {row}: {value} instead of {wanted}"
+            );
+        }
+        assert_eq!(
+            conjugate_gradients(&chain, &mut column, 1000),
+            0,
+            "it is solved"
+        );
+    }
+
+    #[test]
+    fn conjugate_gradients_end_at_the_limit_and_on_nothing() {
+        let chain = |n_rows, tolerance| Chain { n_rows, tolerance };
+        let mut column = vec![0.0; 100];
+        assert_eq!(conjugate_gradients(&chain(100, 1e-12), &mut column, 7), 7);
+        assert!(column.iter().all(|value| value.is_finite()), "{column:?}");
+        assert_eq!(conjugate_gradients(&chain(0, 0.0), &mut [], 9), 0);
+        let mut single = [3.5];
+        assert_eq!(conjugate_gradients(&chain(1, 0.0), &mut single, 9), 0);
+        assert_eq!(single, [3.5], "a row of zeros changes nothing");
+        let mut unreal = vec![f64::NAN; 5];
+        assert!(
+            conjugate_gradients(&chain(5, 0.0), &mut unreal, 9) < 9,
+            "NaN ends it"
+        );
+    }
+
+    #[test]
+    fn value_stability_conjugate_gradients() {
+        let chain = Chain {
+            n_rows: 5,
+            tolerance: 0.0,
+        };
+        let mut column = vec![0.0, 0.1, 0.2, 0.3, 0.0];
+        conjugate_gradients(&chain, &mut column, 2);
+        assert_eq!(
+            column,
+            [
+                -1.7550575482613726,
+                -0.7520979233907802,
+                0.010644905913159974,
+                1.140795323061933,
+                2.1563729370927467
+            ]
+        );
+    }
+}

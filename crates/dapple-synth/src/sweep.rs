@@ -10,13 +10,13 @@
 //!
 //! * the coarsest level is assigned breadth first and then solved, not repeated until it settles, as that takes as many
 //!   sweeps as the square of the number of sites across the surface;
-//! * interpolation adds how far the site is ahead of those it takes its value from, and 30 sweeps of equation 5 with
+//! * interpolation adds how far the site is ahead of those it takes its value from, and 20 sweeps of equation 5 with
 //!   0.2 for α and 0.8 for the sum of the β do the rest;
+//! * where the field turns around a point or runs around a tube, no distance increases along it everywhere. The best mean
+//!   would not increase at all there, so neighbors count less that disagree by about a spacing or more (Cauchy's weights):
+//!   all the error gathers in a tear, a line along which the order jumps, and the distance increases everywhere else;
 //! * every connected component of a level has an anchor of its own, and the order goes through one component after the
 //!   other.
-//!
-//! Where a field turns around a point or converges, no distance increases along it everywhere, and the result is the one
-//! with the least squared error; where it runs around a tube, the order has a tear along a line.
 //!
 //! Distances are in units of the mesh.
 

@@ -206,3 +206,82 @@ fn nearest_site(hierarchy: &Hierarchy, at: DVec3) -> Option<usize> {
     }
     (nearest.1 != u32::MAX).then_some(nearest.1 as usize)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::links::Links;
+    use crate::shapes::{sites_on, sphere};
+
+    #[test]
+    fn down_is_the_low_pass_of_the_whole_level() {
+        let hierarchy = sites_on(sphere(), 1200, 2);
+        let [finer, coarser] = [&hierarchy.levels()[0], &hierarchy.levels()[1]];
+        let normals = hierarchy.sites().normals();
+        let known = [17, 800].map(|site| Known {
+            site,
+            vector: tangent(DVec3::new(1.0, 0.5, 0.2), normals[site]).unwrap(),
+            weight: 1.0,
+        });
+        // Oracle: equation 3 on every site.
+        let links = Links::new(&hierarchy, 0);
+        let mut weights = vec![0.0; finer.n_sites()];
+        let mut vectors = vec![DVec3::ZERO; finer.n_sites()];
+        for known in known {
+            (weights[known.site], vectors[known.site]) = (1.0, known.vector);
+        }
+        for _ in 0..BLUR_STEPS {
+            let before = (weights.clone(), vectors.clone());
+            for site in (0..finer.n_sites()).filter(|&site| links.sums()[site] > 0.0) {
+                let (mut weight, mut vector) = (0.0, DVec3::ZERO);
+                for (other, part) in links.neighbors(site).iter().zip(links.weights(site)) {
+                    let part = part / links.sums()[site];
+                    weight += (before.0[other.index()] - before.0[site]) * part;
+                    vector += (before.1[other.index()] - before.1[site]) * part;
+                }
+                weights[site] += BLUR_STRENGTH * weight;
+                vectors[site] += BLUR_STRENGTH * vector;
+            }
+        }
+        let found = down(&hierarchy, [finer, coarser], &known);
+        let kept = |site: &usize| weights[*site] * THINNING >= LEAST_WEIGHT;
+        let wanted: Vec<usize> = (0..coarser.n_sites()).filter(kept).collect();
+        assert!(wanted.len() > 2, "the blur reaches some coarse sites");
+        assert_eq!(
+            found.iter().map(|known| known.site).collect::<Vec<_>>(),
+            wanted
+        );
+        for known in found {
+            // What is cut off beyond the eighth ring.
+            let off = known.weight - (weights[known.site] * THINNING).min(1.0);
+            assert!(off.abs() < 1e-6, "site {}: weight off by {off}", known.site);
+            let vector = tangent(vectors[known.site], normals[known.site]).unwrap();
+            assert!(
+                known.vector.distance(vector) < 1e-4,
+                "site {}: {vector}",
+                known.site
+            );
+        }
+    }
+
+    #[test]
+    fn nearest_site_is_that_of_a_search_through_all() {
+        let hierarchy = sites_on(sphere(), 500, 1);
+        let positions = hierarchy.sites().positions();
+        for i in 0..200 {
+            let part = f64::from(i % 20) * 0.15;
+            let at = DVec3::new(
+                f64::from(i % 7) - 3.0,
+                f64::from(i % 5) - 2.0,
+                f64::from(i % 3) - 1.0,
+            ) * part;
+            let distance = |site: &usize| (positions[*site].distance(at), *site);
+            let wanted = (0..500).min_by(|a, b| distance(a).partial_cmp(&distance(b)).unwrap());
+            assert_eq!(nearest_site(&hierarchy, at), wanted, "{at}");
+        }
+        assert!(
+            nearest_site(&hierarchy, DVec3::splat(1e200)).is_some(),
+            "however far"
+        );
+    }
+}

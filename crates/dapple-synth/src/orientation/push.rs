@@ -11,7 +11,7 @@ use glam::DVec3;
 
 /// The diffusion ends where averaging once more would turn no vector by more than this, in radians, ...
 const TOLERANCE: f64 = 1e-5;
-/// ... or after so many steps, which only a coarsest level of more than some 50 000 sites takes.
+/// ... or after so many steps, which bounds the time that a large coarsest level takes.
 const STEPS_MAX: usize = 500;
 /// Sweeps of equation 4 on every finer level, and the part of the average in each.
 const SWEEPS: usize = 4;
@@ -99,13 +99,15 @@ impl Field<'_> {
             .map(|&vector| vector != DVec3::ZERO)
             .collect();
         self.fill(&mut assigned, &mut vectors);
+        let mut before = vectors.clone();
         for _ in 0..SWEEPS {
-            vectors = columns::column(vectors.len(), |site| {
-                if assigned[site] {
-                    self.sweep(site, &vectors)
+            core::mem::swap(&mut before, &mut vectors);
+            columns::update(&mut vectors, |site, vector| {
+                *vector = if assigned[site] {
+                    self.sweep(site, &before)
                 } else {
                     DVec3::ZERO
-                }
+                };
             });
             mix(&mut vectors, known);
         }

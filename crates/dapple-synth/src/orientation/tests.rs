@@ -131,12 +131,11 @@ fn orientation_goes_through_the_directions_at_their_sites() {
     let hierarchy = sites_on(sphere(), 4000, 4);
     let directions: Vec<Direction> = (0..12)
         .map(|i| {
-            let turn =
-                DQuat::from_rotation_z(f64::from(i)) * DQuat::from_rotation_x(0.5 * f64::from(i));
-            toward(
-                turn * DVec3::X,
-                turn * DVec3::new(0.3, f64::from(i % 3) - 0.9, 1.0),
-            )
+            // A spiral of golden angles keeps them apart.
+            let z = (f64::from(2 * i) - 11.0) / 12.0;
+            let around = DQuat::from_rotation_z(2.4 * f64::from(i));
+            let at = around * DVec3::new((1.0 - z * z).sqrt(), 0.0, z);
+            toward(at, DVec3::new(0.3, f64::from(i % 3) - 0.9, 1.0))
         })
         .collect();
     let orientation = Orientation::new(&hierarchy, &directions).unwrap();
@@ -154,7 +153,7 @@ fn orientation_goes_through_the_directions_at_their_sites() {
             .neighbors(SiteIdx(site as u32))
         {
             let turn = orientation.vectors()[other.index()].dot(wanted);
-            assert!(turn > 0.9, "the field jumps beside a direction: {turn}");
+            assert!(turn > 0.85, "the field jumps beside a direction: {turn}");
         }
     }
 }
@@ -344,6 +343,28 @@ fn orientation_has_the_same_bits_on_any_number_of_threads() {
     };
     assert_eq!(on(1), on(2), "two threads");
     assert_eq!(on(1), on(7), "seven threads");
+}
+
+#[test]
+fn value_stability_tangents() {
+    let normal = DVec3::new(2.0, 3.0, 6.0) / 7.0;
+    let found = tangent(DVec3::new(1.0, -2.0, 0.5), normal).unwrap();
+    assert_eq!(
+        found.to_array(),
+        [
+            0.45513496321822344,
+            -0.8478004216810044,
+            0.27218855643442774
+        ]
+    );
+    assert_eq!(
+        axis_tangent(normal, normal).to_array(),
+        [
+            -0.06593406593406592,
+            0.9010989010989012,
+            -0.4285714285714286
+        ]
+    );
 }
 
 proptest! {

@@ -10,11 +10,14 @@ use glam::DVec3;
 
 /// The coarsest level is solved until equation 5 would change no distance by more than this part of the spacing, ...
 const TOLERANCE: f64 = 1e-6;
-/// ... or after so many steps, which only a coarsest level of more than some 50 000 sites takes.
+/// ... or after so many steps, which bounds the time that a large coarsest level takes.
 const STEPS_MAX: usize = 500;
 /// Sweeps of equation 5 on every finer level, and the sum of the β in it.
-const SWEEPS: usize = 30;
+const SWEEPS: usize = 20;
 const SWEEP_STRENGTH: f64 = 0.8;
+
+/// How often the coarsest level is solved, each time with the weights that the last result gives to the edges.
+const ROUNDS: usize = 3;
 
 /// Equation 5 on a level.
 pub(super) struct LevelSweep<'a> {
@@ -24,25 +27,24 @@ pub(super) struct LevelSweep<'a> {
     links: Links<'a>,
     /// For each site the sum of how far it is ahead of its neighbors, with their weights.
     ahead: Vec<f64>,
-    tolerance: f64,
+    /// The spacing of the level.
+    spacing: f64,
 }
 
 impl<'a> LevelSweep<'a> {
     pub(super) fn new(hierarchy: &'a Hierarchy, vectors: &'a [DVec3], level: usize) -> Self {
-        let mut sweep = Self {
+        Self {
             hierarchy,
             level,
             vectors,
             links: Links::new(hierarchy, level),
             ahead: Vec::new(),
-            tolerance: TOLERANCE * hierarchy.levels()[level].spacing(),
-        };
-        sweep.ahead = columns::column(sweep.links.len(), |site| sweep.sum_ahead(site));
-        sweep
+            spacing: hierarchy.levels()[level].spacing(),
+        }
     }
 
     /// The distances of the coarsest level.
-    pub(super) fn solve(&self, components: &[u32], anchor: Option<SiteIdx>) -> Vec<f64> {
+    pub(super) fn solve(mut self, components: &[u32], anchor: Option<SiteIdx>) -> Vec<f64> {
         let mut distances = vec![0.0; self.links.len()];
         let mut assigned = vec![false; self.links.len()];
         let anchored = anchor.map(|site| (site.index(), components[site.index()]));
@@ -53,7 +55,13 @@ impl<'a> LevelSweep<'a> {
             assigned[site] = true;
         }
         self.fill(&mut assigned, &mut distances);
-        conjugate_gradients(self, &mut distances, STEPS_MAX);
+        for round in 0..ROUNDS {
+            if round > 0 {
+                self.links = Links::new(self.hierarchy, self.level);
+            }
+            self.ease(&distances);
+            conjugate_gradients(&self, &mut distances, STEPS_MAX);
+        }
         distances
     }
 
@@ -61,7 +69,7 @@ impl<'a> LevelSweep<'a> {
     ///
     /// Where the coarser level is in more pieces than this one, only the piece of the lowest site is inherited, as the
     /// distances of the others have nothing in common with it.
-    pub(super) fn refine(&self, components: &[u32], coarser: &Distances) -> Vec<f64> {
+    pub(super) fn refine(mut self, components: &[u32], coarser: &Distances) -> Vec<f64> {
         let n_coarser = coarser.distances.len();
         let pieces: Vec<Option<u32>> = lowest_sites(components)
             .map(|(site, _)| coarser.components.get(site).copied())
@@ -86,8 +94,13 @@ impl<'a> LevelSweep<'a> {
             }
         }
         self.fill(&mut assigned, &mut distances);
+        self.ease(&distances);
+        let mut before = distances.clone();
         for _ in 0..SWEEPS {
-            distances = columns::column(distances.len(), |site| self.sweep(site, &distances));
+            core::mem::swap(&mut before, &mut distances);
+            columns::update(&mut distances, |site, distance| {
+                *distance = self.sweep(site, &before);
+            });
         }
         distances
     }
@@ -97,38 +110,79 @@ impl<'a> LevelSweep<'a> {
         &self,
         site: usize,
         coarser: &[f64],
-        inherits: impl Fn(usize) -> bool,
+        inherits: impl Fn(usize) -> bool + Copy,
     ) -> Option<f64> {
         let parents = Parents::new(self.hierarchy, self.level, SiteIdx(site as u32));
-        let (mut sum, mut weights) = (0.0, 0.0);
-        for (parent, weight) in parents.iter() {
-            if inherits(parent) {
-                sum += (coarser[parent] + self.step(site, parent)) * weight;
-                weights += weight;
-            }
-        }
-        (weights > 0.0).then(|| sum / weights)
+        let believers = parents.iter().filter(|&(parent, _)| inherits(parent));
+        self.consensus(site, believers, coarser)
     }
 
     /// Assigns the sites that are connected to assigned ones: equation 5, in which only assigned sites contribute.
     fn fill(&self, assigned: &mut [bool], distances: &mut [f64]) {
         self.links
             .fill(assigned, distances, |site, assigned, distances| {
-                let (mut sum, mut weights) = (0.0, 0.0);
-                for (other, weight) in self
-                    .links
-                    .neighbors(site)
-                    .iter()
-                    .zip(self.links.weights(site))
-                {
-                    let other = other.index();
-                    if assigned[other] {
-                        sum += (distances[other] + self.step(site, other)) * weight;
-                        weights += weight;
-                    }
-                }
-                sum / weights
+                let neighbors = self.links.neighbors(site).iter();
+                let weights = self.links.weights(site).iter().copied();
+                let believers = neighbors
+                    .map(|other| other.index())
+                    .zip(weights)
+                    .filter(|&(other, _)| assigned[other]);
+                self.consensus(site, believers, distances)
+                    .unwrap_or_default()
             });
+    }
+
+    /// The distance that others with weights believe that a site has: the mean, in which those count less that disagree
+    /// with the one of most weight.
+    #[inline]
+    fn consensus(
+        &self,
+        site: usize,
+        believers: impl Iterator<Item = (usize, f64)> + Clone,
+        distances: &[f64],
+    ) -> Option<f64> {
+        let (mut leader, mut most) = (site, 0.0);
+        for (other, weight) in believers.clone() {
+            if weight > most {
+                (leader, most) = (other, weight);
+            }
+        }
+        if leader == site {
+            return None;
+        }
+        let first = distances[leader] + self.step(site, leader);
+        let (mut sum, mut weights) = (0.0, most);
+        for (other, weight) in believers {
+            if other != leader {
+                let difference = distances[other] + self.step(site, other) - first;
+                let weight = weight * trust(difference, self.spacing);
+                sum += difference * weight;
+                weights += weight;
+            }
+        }
+        Some(first + sum / weights)
+    }
+
+    /// Lowers the weights of edges whose ends disagree, and sums up how far sites are ahead of their neighbors.
+    fn ease(&mut self, distances: &[f64]) {
+        let (sites, vectors) = (self.hierarchy.sites(), self.vectors);
+        let (positions, normals) = (sites.positions(), sites.normals());
+        let spacing = self.spacing;
+        self.ahead = self.links.reweigh(|site, neighbors, weights| {
+            let (at, vector, normal) = (positions[site], vectors[site], normals[site]);
+            let mut sum = 0.0;
+            for (weight, other) in weights.iter_mut().zip(neighbors) {
+                let other = other.index();
+                let step = step(
+                    at - positions[other],
+                    vector + vectors[other],
+                    normal + normals[other],
+                );
+                *weight *= trust(distances[site] - distances[other] - step, spacing);
+                sum += step * *weight;
+            }
+            sum
+        });
     }
 
     /// Equation 5.
@@ -157,19 +211,6 @@ impl<'a> LevelSweep<'a> {
         sum
     }
 
-    fn sum_ahead(&self, site: usize) -> f64 {
-        let mut sum = 0.0;
-        for (other, weight) in self
-            .links
-            .neighbors(site)
-            .iter()
-            .zip(self.links.weights(site))
-        {
-            sum += self.step(site, other.index()) * *weight;
-        }
-        sum
-    }
-
     /// The paper's Δ: how much further along the field a site is than another one. 0 where their orientations cancel.
     #[inline]
     fn step(&self, site: usize, other: usize) -> f64 {
@@ -183,6 +224,13 @@ impl<'a> LevelSweep<'a> {
             normals[site] + normals[other],
         )
     }
+}
+
+/// How much an opinion counts that is off by `difference`: Cauchy's weights, of which half is left at a spacing.
+#[inline]
+fn trust(difference: f64, spacing: f64) -> f64 {
+    let x = difference / spacing;
+    1.0 / (1.0 + x * x)
 }
 
 /// The part of `way` along the direction of `sum` in the plane across `normal`; 0 where that direction has no length.
@@ -231,6 +279,6 @@ impl System<f64> for LevelSweep<'_> {
     }
 
     fn is_near(&self, _value: f64, change: f64) -> bool {
-        change.abs() <= self.tolerance
+        change.abs() <= TOLERANCE * self.spacing
     }
 }
