@@ -1,7 +1,7 @@
 //! The list of all exemplars: the images from which textures are synthesized, drawn by procedures.
 //!
 //! The paper's own images are not at hand; these are of the same character and of the same size. Features scale with
-//! the size; at 16 pixels they can still be told apart.
+//! the size; at 16 pixels all but the text can still be told apart.
 
 use super::{bricks, checker, hooks, letter, puzzle, scales, stripes, suckers, text};
 use dapple_color::LinearRgb;

@@ -52,7 +52,9 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     canvas.lines(&[[v, w]], 3.0 * pixel, 0.0);
     for [vertex, field] in [V, W] {
         canvas.arrow([vertex, vertex + 0.16 * field], 2.0 * pixel, 0.55);
-        canvas.dashes([vertex, foot(vertex)], 9, 2.0 * pixel, 0.0);
+        let drop = [vertex, foot(vertex)];
+        let n_dashes = (24.0 * drop[0].distance(drop[1])) as u32;
+        canvas.dashes(drop, n_dashes, 2.0 * pixel, 0.0);
         canvas.disk(vertex, 8.0 * pixel, 0.0);
     }
     let end = START + 0.86 * consensus;

@@ -31,9 +31,17 @@ const N_LINES: u32 = 6;
 /// Samples along the side of a pixel.
 const N_SAMPLES: u32 = 4;
 
+/// One hook.
+struct Wire {
+    /// The middle of the wire as short lines: straight between the corners of its path, round about them.
+    lines: Vec<[DVec3; 2]>,
+    /// What it covers, along and across its strand.
+    bounds: [DVec2; 2],
+}
+
 /// Woven hooks, `size` pixels wide and high.
 pub(super) fn hooks(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
-    let wire = wire();
+    let wire = Wire::new();
     let metal = ColorRamp::from_hex(&["#3a1c08", "#a8641c", "#e9b44c", "#fff0c0"])?;
     let ground = LinearRgb::from_srgb([24_u8, 20, 40]);
     Ok(sampled([size; 2], N_SAMPLES, |at| {
@@ -44,34 +52,45 @@ pub(super) fn hooks(size: u32) -> anyhow::Result<Raster<LinearRgb>> {
     })?)
 }
 
-/// The middle of a wire as short lines: straight between its corners and round about them.
-fn wire() -> Vec<[DVec3; 2]> {
-    let corners = PATH.map(DVec3::from);
-    let mut points = vec![corners[0]];
-    for bend in corners.windows(3) {
-        let [from, to] = [bend[0].midpoint(bend[1]), bend[1].midpoint(bend[2])];
-        points.extend((0..=N_LINES).map(|index| {
-            let t = f64::from(index) / f64::from(N_LINES);
-            from.lerp(bend[1], t).lerp(bend[1].lerp(to, t), t)
-        }));
+impl Wire {
+    fn new() -> Self {
+        let corners = PATH.map(DVec3::from);
+        let mut points = vec![corners[0]];
+        for bend in corners.windows(3) {
+            let [from, to] = [bend[0].midpoint(bend[1]), bend[1].midpoint(bend[2])];
+            points.extend((0..=N_LINES).map(|index| {
+                let t = f64::from(index) / f64::from(N_LINES);
+                from.lerp(bend[1], t).lerp(bend[1].lerp(to, t), t)
+            }));
+        }
+        points.push(corners[corners.len() - 1]);
+        let flat = points.iter().map(|point| point.truncate());
+        let low = flat.clone().fold(DVec2::INFINITY, DVec2::min);
+        let high = flat.fold(DVec2::NEG_INFINITY, DVec2::max);
+        Self {
+            lines: points.windows(2).map(|ends| [ends[0], ends[1]]).collect(),
+            bounds: [low - DVec2::splat(WIRE), high + DVec2::splat(WIRE)],
+        }
     }
-    points.push(corners[corners.len() - 1]);
-    points.windows(2).map(|ends| [ends[0], ends[1]]).collect()
 }
 
 /// The normal of what lies highest at a position of the lattice; none between the wires.
-fn highest(wire: &[[DVec3; 2]], at: DVec2) -> Option<DVec3> {
+fn highest(wire: &Wire, at: DVec2) -> Option<DVec3> {
     let mut top = (f64::NEG_INFINITY, None);
     let cell = at.floor();
     for y in -2..=1 {
         for x in -1..=2 {
             let hook = at - cell - DVec2::new(f64::from(x), f64::from(y));
             let along = DVec2::new(hook.x + hook.y, hook.y - hook.x);
-            for line in wire {
-                if let Some((height, normal)) = surface(*line, along) {
-                    if height > top.0 {
-                        top = (height, Some(normal));
-                    }
+            let [low, high] = wire.bounds;
+            if along.cmplt(low).any() || along.cmpgt(high).any() {
+                continue;
+            }
+            for line in &wire.lines {
+                if let Some((height, normal)) = surface(*line, along)
+                    && height > top.0
+                {
+                    top = (height, Some(normal));
                 }
             }
         }

@@ -7,7 +7,7 @@ use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 
 /// Dark stripes, and light ones between them.
-const N_STRIPES: f64 = 8.0;
+const N_STRIPES: f64 = 7.0;
 
 /// Samples along the side of a pixel.
 const N_SAMPLES: u32 = 8;

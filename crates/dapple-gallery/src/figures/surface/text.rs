@@ -9,20 +9,20 @@ use glam::DVec2;
 
 /// The text, line by line; lines are longer than the image is wide.
 const LINES: [&str; 14] = [
-    "of all the small things that a hand",
-    "may copy, a page of words is the one",
-    "Where a stripe bends, we see a stripe",
+    "of all the small things that a hand may",
+    "copy, a page of words is the one that",
+    "Where a stripe bends, we see a stripe,",
     "but let one letter turn its back and",
-    "every reader stops. So paint the hide",
-    "with lines of type. Begin at the nose",
-    "and follow the grain of the coat down",
-    "the neck, along the belly, to the tail",
+    "every reader stops. So paint the hide with",
+    "lines of type. Begin at the nose, and so",
+    "follow the grain of the coat down along",
+    "the neck, over the belly, to the tail.",
     "No word has to be kept, only the look",
     "of words, the quick rhythm of thin and",
     "wide, of gap and stem, the way a dozen",
-    "rows run level and never quite meet or",
-    "drift apart. Then it is a good match",
-    "for a page, and so for any other skin",
+    "rows run level and never quite meet or part",
+    "or drift. Then it is a good match, good",
+    "for a page, and so for any other skin of",
 ];
 
 /// How far the lines are shifted to the left, in widths of the image.
