@@ -7,7 +7,7 @@
 use crate::evenness::hexagonal_spacing;
 use crate::near::{CHUNK, Near, Places};
 use crate::parallel::par_map;
-use crate::{SiteGrid, SiteIdx, Surface, SurfacePoint};
+use crate::{SiteIdx, Surface, SurfacePoint};
 use glam::DVec2;
 
 /// Points further apart than so many spacings have no edge.
@@ -150,25 +150,15 @@ impl Star {
 
 /// Removes the later ones of edges whose middles are nearer to each other than `clash` on the same sheet.
 fn remove_clashes(surface: &Surface, edges: &mut Vec<Edge>, clash: f64) {
-    let positions: Vec<_> = edges
-        .iter()
-        .map(|edge| surface.position(edge.middle))
-        .collect();
-    let grid = SiteGrid::new(&positions, 2.0 * clash);
+    let middles: Vec<SurfacePoint> = edges.iter().map(|edge| edge.middle).collect();
+    let places = Places::new(surface, &middles);
+    let near = Near::new(&places, 0, clash, 0.0);
     let mut kept = vec![true; edges.len()];
     for edge in 0..edges.len() {
-        let mut clashes = false;
-        grid.visit(positions[edge], clash, |other| {
-            let other = other.index();
-            if other < edge
-                && kept[other]
-                && positions[edge].distance_squared(positions[other]) < clash * clash
-            {
-                let [a, b] = [edge, other].map(|edge| surface.normal(edges[edge].middle));
-                clashes |= a.dot(b) >= 0.0;
-            }
-        });
-        kept[edge] = !clashes;
+        let others = near.chunk(edge / CHUNK).row(edge % CHUNK);
+        kept[edge] = !others
+            .iter()
+            .any(|other| other.index() < edge && kept[other.index()]);
     }
     let mut kept = kept.into_iter();
     edges.retain(|_| kept.next() == Some(true));

@@ -56,7 +56,7 @@ impl Near {
             let first = first + chunk * CHUNK;
             let mut rows = Rows {
                 starts: vec![0],
-                others: Vec::with_capacity(20 * CHUNK),
+                others: Vec::new(),
             };
             for site in first..n_sites.min(first + CHUNK) {
                 rows.add(places, &grid, site, [reach, facing]);

@@ -9,6 +9,8 @@
 //! each other are mostly near each other in memory.
 
 use crate::between::{Edge, edges};
+use crate::near::Places;
+use crate::parallel::par_sort;
 use crate::repel::repel;
 use crate::scatter::Scatter;
 use crate::share::Pieces;
@@ -91,11 +93,8 @@ fn grow(
         let missing = &mut missing[piece_of(point)];
         *missing = missing.saturating_sub(1);
     }
-    let mut edges = edges(surface, points);
-    // Long edges have the most room in their middle. The sort is stable, so equal ones stay in order.
-    edges.sort_by(|a, b| b.length.total_cmp(&a.length));
     let mut split = vec![Vec::new(); missing.len()];
-    for edge in edges {
+    for edge in longest_first(edges(surface, points)) {
         split[piece_of(edge.middle)].push(edge);
     }
     for (piece, (missing, edges)) in missing.into_iter().zip(&split).enumerate() {
@@ -108,6 +107,20 @@ fn grow(
                 .extend((0..left as u64).filter_map(|number| scatter.point(surface, seed, number)));
         }
     }
+}
+
+/// Sorts edges, for long ones have the most room in their middle.
+fn longest_first(edges: Vec<Edge>) -> Vec<Edge> {
+    // The bits of positive numbers are in the order of the numbers.
+    let mut keyed: Vec<(u64, u32)> = (0..)
+        .zip(&edges)
+        .map(|(number, edge)| (!edge.length.to_bits(), number))
+        .collect();
+    par_sort(&mut keyed);
+    keyed
+        .iter()
+        .map(|&(_, number)| edges[number as usize])
+        .collect()
 }
 
 /// Adds `missing` points on edges, the longest of which come first: one in the middle, or two on the first edges if there are
@@ -140,10 +153,7 @@ fn relax(
 
 /// Sorts points along Morton's curve through their bounding box.
 fn sort(surface: &Surface, points: &mut [SurfacePoint]) {
-    let positions: Vec<DVec3> = points
-        .iter()
-        .map(|&point| surface.position(point))
-        .collect();
+    let positions = Places::new(surface, points).positions;
     let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = positions
         .iter()
@@ -156,7 +166,7 @@ fn sort(surface: &Surface, points: &mut [SurfacePoint]) {
         .map(|(number, &position)| (morton((position - low) * scale), number))
         .collect();
     // Equal keys are told apart by the numbers, so the order is one.
-    keyed.sort_unstable();
+    par_sort(&mut keyed);
     let sorted: Vec<SurfacePoint> = keyed
         .iter()
         .map(|&(_, number)| points[number as usize])
