@@ -163,3 +163,6 @@ fn remove_clashes(surface: &Surface, edges: &mut Vec<Edge>, clash: f64) {
     let mut kept = kept.into_iter();
     edges.retain(|_| kept.next() == Some(true));
 }
+
+#[cfg(test)]
+mod tests;

@@ -87,3 +87,6 @@ fn nearest(sites: &Sites, grid: &SiteGrid, site: SiteIdx, spacing: f64) -> f64 {
     }
     4.0 * spacing
 }
+
+#[cfg(test)]
+mod tests;

@@ -284,3 +284,6 @@ fn place(brick: u32, cell: [u32; 3]) -> u32 {
     let [x, y, z] = cell.map(|part| part & ((1 << BRICK_BITS) - 1));
     ((brick << BRICK_BITS | z) << BRICK_BITS | y) << BRICK_BITS | x
 }
+
+#[cfg(test)]
+mod tests;

@@ -22,6 +22,8 @@ mod scatter;
 mod share;
 mod sites;
 mod surface;
+#[cfg(test)]
+mod test_shapes;
 mod unstick;
 mod walk;
 

@@ -188,3 +188,6 @@ fn spread(bits: u64) -> u64 {
     bits = (bits | bits << 4) & 0x10C3_0C30_C30C_30C3;
     (bits | bits << 2) & 0x1249_2492_4924_9249
 }
+
+#[cfg(test)]
+mod tests;

@@ -196,3 +196,6 @@ fn slide(surface: &Surface, from: SurfacePoint, rest: DVec2) -> SurfacePoint {
         None => from,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -69,3 +69,6 @@ impl Scatter {
         Some(surface.point(face, weights))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -142,3 +142,6 @@ impl Crowd {
         Some((site, point))
     }
 }
+
+#[cfg(test)]
+mod tests;
