@@ -73,13 +73,17 @@ impl SiteGrid {
         }
     }
 
-    /// Calls `visit` with every site in the cells that a ball meets: all sites in the ball, and some around it.
+    /// Calls `visit` with every site in the cells that a ball meets: all sites in the ball, and some around it. A ball
+    /// with a negative radius has none.
     ///
     /// The order is that of the bricks, then of the cells in a brick, x first and z last both times, then of the sites in
     /// a cell: it depends on the positions and the side only.
     #[inline]
     pub fn visit(&self, center: DVec3, radius: f64, mut visit: impl FnMut(SiteIdx)) {
         let (low, high) = (self.cell(center - radius), self.cell(center + radius));
+        if (0..3).any(|axis| low[axis] > high[axis]) {
+            return;
+        }
         let (first, last) = (low.map(brick_of), high.map(brick_of));
         let spans = [0, 1, 2].map(|axis| u64::from(last[axis] - first[axis]) + 1);
         if spans[0] * spans[1] * spans[2] > self.bricks.len() as u64 {
