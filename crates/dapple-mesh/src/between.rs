@@ -1,8 +1,9 @@
 //! New points between those of an even set, which make it four times as dense and almost as even.
 //!
-//! A triangulation has about three edges for each point, so with the middles of its edges there are four times as many points, and
-//! a hexagonal lattice becomes a hexagonal lattice. The edges are those of Delaunay's triangulation in the plane of a point's face: two
-//! points have one if some circle through both has no other point inside. (An own choice; Turk starts with random points.)
+//! A triangulation has about three edges for each point, so with the middles of its edges there are four times as many
+//! points, and a hexagonal lattice becomes a hexagonal lattice. The edges are those of Delaunay's triangulation in the
+//! plane of a point's face: two points have one if some circle through both has no other point inside. This is our own
+//! choice: Turk starts with random points.
 
 use crate::evenness::hexagonal_spacing;
 use crate::near::{CHUNK, Near, Places};
@@ -12,7 +13,8 @@ use glam::DVec2;
 
 /// Points further apart than so many spacings have no edge.
 const REACH: f64 = 2.2;
-/// The center of an empty circle is at most so many spacings from the middle of the edge, so that no long edges lie along borders.
+/// The center of an empty circle is at most so many spacings from the middle of the edge, so that no long edges lie
+/// along borders.
 const CENTER_REACH: f64 = 1.2;
 /// Middles nearer to each other than so many spacings are of crossing edges: only one of them is kept.
 const CLASH: f64 = 0.3;

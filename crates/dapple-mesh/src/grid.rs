@@ -1,8 +1,8 @@
 //! Which sites are near a position: cells of a cubic grid, in bricks of which only those with sites are kept.
 //!
-//! A surface meets few of the cells of its bounding box. Bricks of 8x8x8 cells are found by an open-addressed table; the
-//! cells of a brick are laid out densely, so that a row of cells is one run of sites, and a ball of the size of a cell
-//! needs about two searches in the table. Sites are sorted into their cells by counting.
+//! A surface meets few of the cells of its bounding box. Bricks of 8x8x8 cells are found by an open-addressed table;
+//! the cells of a brick are laid out densely, so that a row of cells is one run of sites, and a ball of the size of a
+//! cell needs about two searches in the table. Sites are sorted into their cells by counting.
 
 use crate::SiteIdx;
 use glam::DVec3;
@@ -50,8 +50,8 @@ impl SiteGrid {
     /// Sorts positions into cells of the given side; the sites are numbered in the order of `positions`.
     ///
     /// The side is in units of the positions. It is widened where it is so small that more than 2^21 cells would lie
-    /// along an axis or most bricks of cells would hold very few sites. Takes time in proportion to the number of sites, which must
-    /// be below 2^32; a position that is not finite lands in some cell.
+    /// along an axis or most bricks of cells would hold very few sites. Takes time in proportion to the number of
+    /// sites, which must be below 2^32; a position that is not finite lands in some cell.
     #[must_use]
     pub fn new(positions: &[DVec3], side: f64) -> Self {
         let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
@@ -76,8 +76,8 @@ impl SiteGrid {
     /// Calls `visit` with every site in the cells that a ball meets: all sites in the ball, and some around it. A ball
     /// with a negative radius has none.
     ///
-    /// The order is that of the bricks, then of the cells in a brick, x first and z last both times, then of the sites in
-    /// a cell: it depends on the positions and the side only.
+    /// The order is that of the bricks, then of the cells in a brick, x first and z last both times, then of the sites
+    /// in a cell: it depends on the positions and the side only.
     #[inline]
     pub fn visit(&self, center: DVec3, radius: f64, mut visit: impl FnMut(SiteIdx)) {
         let (low, high) = (self.cell(center - radius), self.cell(center + radius));

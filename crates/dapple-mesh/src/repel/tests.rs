@@ -32,9 +32,9 @@ fn push_equals_that_of_all_pairs() {
         for site in n_fixed..1500 {
             let free = site - n_fixed;
             let row = crowd.near.chunk(free / CHUNK).row(free % CHUNK);
-            let flat = surface.flat(points[site].face);
-            let pushed = push(flat, &crowd.positions, site, row, radius);
-            let pushed = surface.flatten(points[site].face, pushed);
+            let face = sites.points()[site].face;
+            let pushed = push(surface.flat(face), &crowd.positions, site, row, radius);
+            let pushed = surface.flatten(face, pushed);
             let naive = naive_push(&surface, &sites, site, radius);
             // The order of the sum differs, and random points nearly meet, which makes large terms.
             let scale = naive.length().max(radius) * 1e-9;
