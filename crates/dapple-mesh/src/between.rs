@@ -54,7 +54,7 @@ pub(crate) fn edges(surface: &Surface, points: &[SurfacePoint]) -> Vec<Edge> {
         }
         edges
     });
-    let mut edges = chunks.concat();
+    let mut edges = chunks.into_iter().flatten().collect();
     remove_clashes(surface, &mut edges, CLASH * spacing);
     edges
 }

@@ -39,8 +39,8 @@ const BITS: u32 = 21;
 const BRICK_BITS: u32 = 3;
 /// The cells of a brick.
 const BRICK_CELLS: usize = 1 << (3 * BRICK_BITS);
-/// Below so many sites in a brick on average, cells are widened: it bounds the memory to 256 bytes for each site.
-const SITES_PER_BRICK: usize = 8;
+/// Below so many sites in a brick on average, cells are widened: it bounds the memory to 64 bytes for each site.
+const SITES_PER_BRICK: usize = 32;
 /// So many bricks are always granted.
 const BRICKS_LEAST: usize = 64;
 /// With so many bricks their cells can still be numbered in 32 bits.

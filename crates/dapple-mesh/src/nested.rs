@@ -127,12 +127,14 @@ impl Nest<'_> {
             *missing = missing.saturating_sub(1);
         }
         let mut split = vec![Vec::new(); missing.len()];
-        for edge in longest_first(&edges(surface, &self.points)) {
-            split[piece_of(edge.middle)].push(edge);
+        let edges = edges(surface, &self.points);
+        for edge in longest_first(&edges) {
+            split[piece_of(edges[edge as usize].middle)].push(edge);
         }
-        for (piece, (missing, edges)) in missing.into_iter().zip(&split).enumerate() {
-            split_edges(surface, edges, missing, &mut self.points);
-            let left = missing.saturating_sub(2 * edges.len()) as u64;
+        for (piece, (missing, split)) in missing.into_iter().zip(split).enumerate() {
+            let left = missing.saturating_sub(2 * split.len()) as u64;
+            let split = split.iter().map(|&edge| &edges[edge as usize]);
+            split_edges(surface, split, missing, &mut self.points);
             if left > 0 {
                 let scatter = Scatter::new(surface, pieces.faces[piece].clone());
                 let seed = seed.child("piece", piece as u64);
@@ -153,31 +155,31 @@ impl Nest<'_> {
     }
 }
 
-/// Sorts edges, for long ones have the most room in their middle.
-fn longest_first(edges: &[Edge]) -> Vec<Edge> {
+/// The numbers of edges, sorted by length, for long ones have the most room in their middle.
+fn longest_first(edges: &[Edge]) -> Vec<u32> {
     // The bits of positive numbers are in the order of the numbers.
     let mut keyed: Vec<(u64, u32)> = (0..)
         .zip(edges)
         .map(|(number, edge)| (!edge.length.to_bits(), number))
         .collect();
     par_sort(&mut keyed);
-    keyed
-        .iter()
-        .map(|&(_, number)| edges[number as usize])
-        .collect()
+    keyed.into_iter().map(|(_, number)| number).collect()
 }
 
 /// Adds `missing` points on edges, the longest of which come first: one in the middle, or two on the first edges if
 /// there are too few.
-fn split_edges(surface: &Surface, edges: &[Edge], missing: usize, points: &mut Vec<SurfacePoint>) {
+fn split_edges<'a>(
+    surface: &Surface,
+    mut edges: impl ExactSizeIterator<Item = &'a Edge>,
+    missing: usize,
+    points: &mut Vec<SurfacePoint>,
+) {
     let n_thirds = missing.saturating_sub(edges.len()).min(edges.len());
-    for edge in &edges[..n_thirds] {
+    for edge in edges.by_ref().take(n_thirds) {
         points.extend(edge.thirds(surface));
     }
-    let n_halves = missing
-        .saturating_sub(2 * n_thirds)
-        .min(edges.len() - n_thirds);
-    points.extend(edges[n_thirds..][..n_halves].iter().map(|edge| edge.middle));
+    let n_halves = missing.saturating_sub(2 * n_thirds);
+    points.extend(edges.take(n_halves).map(|edge| edge.middle));
 }
 
 /// Sorts points along Morton's curve through their bounding box.

@@ -1,5 +1,5 @@
-//! Work on all cores, where the feature `rayon` is on; every piece is made on its own, so that the bits do not depend on
-//! how many there are.
+//! Work on all cores where the feature `rayon` is on. Every piece is made on its own, so that the bits do not depend
+//! on how many cores there are.
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
