@@ -69,7 +69,8 @@ pub fn repel(surface: &Surface, points: &mut [SurfacePoint], n_fixed: usize, ite
         let cooling = iteration as f64 / iterations as f64;
         let gain = GAIN_FIRST + (GAIN_LAST - GAIN_FIRST) * cooling;
         let n_limited = crowd.step(points, gain);
-        if n_limited > (points.len() - n_fixed) / LIMITED_MOST {
+        let is_last = iteration + 1 == iterations;
+        if !is_last && n_limited > (points.len() - n_fixed) / LIMITED_MOST {
             crowd = Crowd::new(surface, points, n_fixed, radius);
         }
     }
