@@ -1,18 +1,20 @@
 //! New points between those of an even set, which make it four times as dense and almost as even.
 //!
-//! A triangulation has about three edges for each point, so with the middles of its edges there are four times as many points, and
-//! a hexagonal lattice becomes a hexagonal lattice. The edges are those of Delaunay's triangulation in the plane of a point's face: two
-//! points have one if some circle through both has no other point inside. (An own choice; Turk starts with random points.)
+//! A triangulation has about three edges for each point, so with the middles of its edges there are four times as many
+//! points, and a hexagonal lattice becomes a hexagonal lattice. The edges are those of Delaunay's triangulation in the
+//! plane of a point's face: two points have one if some circle through both has no other point inside. This is our own
+//! choice: Turk starts with random points.
 
 use crate::evenness::hexagonal_spacing;
 use crate::near::{CHUNK, Near, Places};
 use crate::parallel::par_map;
-use crate::{SiteGrid, SiteIdx, Surface, SurfacePoint};
+use crate::{SiteIdx, Surface, SurfacePoint};
 use glam::DVec2;
 
 /// Points further apart than so many spacings have no edge.
 const REACH: f64 = 2.2;
-/// The center of an empty circle is at most so many spacings from the middle of the edge, so that no long edges lie along borders.
+/// The center of an empty circle is at most so many spacings from the middle of the edge, so that no long edges lie
+/// along borders.
 const CENTER_REACH: f64 = 1.2;
 /// Middles nearer to each other than so many spacings are of crossing edges: only one of them is kept.
 const CLASH: f64 = 0.3;
@@ -52,7 +54,7 @@ pub(crate) fn edges(surface: &Surface, points: &[SurfacePoint]) -> Vec<Edge> {
         }
         edges
     });
-    let mut edges = chunks.concat();
+    let mut edges = chunks.into_iter().flatten().collect();
     remove_clashes(surface, &mut edges, CLASH * spacing);
     edges
 }
@@ -150,26 +152,19 @@ impl Star {
 
 /// Removes the later ones of edges whose middles are nearer to each other than `clash` on the same sheet.
 fn remove_clashes(surface: &Surface, edges: &mut Vec<Edge>, clash: f64) {
-    let positions: Vec<_> = edges
-        .iter()
-        .map(|edge| surface.position(edge.middle))
-        .collect();
-    let grid = SiteGrid::new(&positions, 2.0 * clash);
+    let middles: Vec<SurfacePoint> = edges.iter().map(|edge| edge.middle).collect();
+    let places = Places::new(surface, &middles);
+    let near = Near::new(&places, 0, clash, 0.0);
     let mut kept = vec![true; edges.len()];
     for edge in 0..edges.len() {
-        let mut clashes = false;
-        grid.visit(positions[edge], clash, |other| {
-            let other = other.index();
-            if other < edge
-                && kept[other]
-                && positions[edge].distance_squared(positions[other]) < clash * clash
-            {
-                let [a, b] = [edge, other].map(|edge| surface.normal(edges[edge].middle));
-                clashes |= a.dot(b) >= 0.0;
-            }
-        });
-        kept[edge] = !clashes;
+        let others = near.chunk(edge / CHUNK).row(edge % CHUNK);
+        kept[edge] = !others
+            .iter()
+            .any(|other| other.index() < edge && kept[other.index()]);
     }
     let mut kept = kept.into_iter();
     edges.retain(|_| kept.next() == Some(true));
 }
+
+#[cfg(test)]
+mod tests;

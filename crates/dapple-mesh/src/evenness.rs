@@ -3,8 +3,8 @@
 use crate::parallel::par_map;
 use crate::{SiteGrid, SiteIdx, Sites, Surface};
 
-/// How far from their nearest neighbors points are, in units of the distance that a hexagonal lattice with as many points
-/// on the same area would have.
+/// How far from their nearest neighbors points are, in units of the distance that a hexagonal lattice with as many
+/// points on the same area would have.
 ///
 /// Random points have a mean of 0.465 and a minimum near zero; in a hexagonal lattice both are 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,8 @@ pub fn hexagonal_spacing(area: f64, n: usize) -> f64 {
 /// Measures how even the first `n` sites are.
 ///
 /// A neighbor whose normal is more than a right angle from a site's own is on another sheet and does not count. A site
-/// without a neighbor within four hexagonal distances counts as if it had one there. Without sites both numbers are zero.
+/// without a neighbor within four hexagonal distances counts as if it had one there. Without sites both numbers are
+/// zero.
 ///
 /// # Examples
 ///
@@ -87,3 +88,6 @@ fn nearest(sites: &Sites, grid: &SiteGrid, site: SiteIdx, spacing: f64) -> f64 {
     }
     4.0 * spacing
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,8 +1,8 @@
 //! Which sites are near a position: cells of a cubic grid, in bricks of which only those with sites are kept.
 //!
-//! A surface meets few of the cells of its bounding box. Bricks of 8x8x8 cells are found by an open-addressed table; the
-//! cells of a brick are laid out densely, so that a row of cells is one run of sites, and a ball of the size of a cell
-//! needs about two searches in the table. Sites are sorted into their cells by counting.
+//! A surface meets few of the cells of its bounding box. Bricks of 8x8x8 cells are found by an open-addressed table;
+//! the cells of a brick are laid out densely, so that a row of cells is one run of sites, and a ball of the size of a
+//! cell needs about two searches in the table. Sites are sorted into their cells by counting.
 
 use crate::SiteIdx;
 use glam::DVec3;
@@ -39,8 +39,8 @@ const BITS: u32 = 21;
 const BRICK_BITS: u32 = 3;
 /// The cells of a brick.
 const BRICK_CELLS: usize = 1 << (3 * BRICK_BITS);
-/// Below so many sites in a brick on average, cells are widened: it bounds the memory to 256 bytes for each site.
-const SITES_PER_BRICK: usize = 8;
+/// Below so many sites in a brick on average, cells are widened: it bounds the memory to 64 bytes for each site.
+const SITES_PER_BRICK: usize = 32;
 /// So many bricks are always granted.
 const BRICKS_LEAST: usize = 64;
 /// With so many bricks their cells can still be numbered in 32 bits.
@@ -50,8 +50,8 @@ impl SiteGrid {
     /// Sorts positions into cells of the given side; the sites are numbered in the order of `positions`.
     ///
     /// The side is in units of the positions. It is widened where it is so small that more than 2^21 cells would lie
-    /// along an axis or most bricks of cells would hold very few sites. Takes time in proportion to the number of sites, which must
-    /// be below 2^32; a position that is not finite lands in some cell.
+    /// along an axis or most bricks of cells would hold very few sites. Takes time in proportion to the number of
+    /// sites, which must be below 2^32; a position that is not finite lands in some cell.
     #[must_use]
     pub fn new(positions: &[DVec3], side: f64) -> Self {
         let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
@@ -73,13 +73,17 @@ impl SiteGrid {
         }
     }
 
-    /// Calls `visit` with every site in the cells that a ball meets: all sites in the ball, and some around it.
+    /// Calls `visit` with every site in the cells that a ball meets: all sites in the ball, and some around it. A ball
+    /// with a negative radius has none.
     ///
-    /// The order is that of the bricks, then of the cells in a brick, x first and z last both times, then of the sites in
-    /// a cell: it depends on the positions and the side only.
+    /// The order is that of the bricks, then of the cells in a brick, x first and z last both times, then of the sites
+    /// in a cell: it depends on the positions and the side only.
     #[inline]
     pub fn visit(&self, center: DVec3, radius: f64, mut visit: impl FnMut(SiteIdx)) {
         let (low, high) = (self.cell(center - radius), self.cell(center + radius));
+        if (0..3).any(|axis| low[axis] > high[axis]) {
+            return;
+        }
         let (first, last) = (low.map(brick_of), high.map(brick_of));
         let spans = [0, 1, 2].map(|axis| u64::from(last[axis] - first[axis]) + 1);
         if spans[0] * spans[1] * spans[2] > self.bricks.len() as u64 {
@@ -284,3 +288,6 @@ fn place(brick: u32, cell: [u32; 3]) -> u32 {
     let [x, y, z] = cell.map(|part| part & ((1 << BRICK_BITS) - 1));
     ((brick << BRICK_BITS | z) << BRICK_BITS | y) << BRICK_BITS | x
 }
+
+#[cfg(test)]
+mod tests;

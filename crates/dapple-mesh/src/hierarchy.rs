@@ -7,8 +7,10 @@ use crate::{
 };
 use dapple_hash::Seed;
 
-/// The most sites: about 120 GB of them and of their lists of neighbors.
+/// The most sites.
 const SITES_MAX: usize = 1 << 28;
+/// The memory for a site and its lists of neighbors while sites repel each other, as measured.
+const BYTES_PER_SITE: usize = 220;
 /// The most levels; even of the most sites, the coarsest of 15 has only one.
 const LEVELS_MAX: usize = 16;
 /// The most iterations, so that a mistaken number does not take forever.
@@ -59,6 +61,11 @@ impl HierarchyOptions {
             return refuse("iterations", self.iterations, "at most 10000");
         }
         let coarser = |&count: &usize| Some(count.div_ceil(4));
+        // Asked for and given back at once, so that too many sites are an error and no abort.
+        let bytes = self.n_sites.saturating_mul(BYTES_PER_SITE);
+        if Vec::<u8>::new().try_reserve_exact(bytes).is_err() {
+            return refuse("sites", self.n_sites, "as few as fit into the memory");
+        }
         Ok(core::iter::successors(Some(self.n_sites), coarser)
             .take(self.n_levels)
             .collect())
@@ -86,7 +93,8 @@ impl Hierarchy {
     ///
     /// # Errors
     ///
-    /// [`MeshErrorKind::Count`] unless there are 1 to 2^28 sites, 1 to 16 levels and at most 10,000 iterations.
+    /// [`MeshErrorKind::Count`] unless there are 1 to 2^28 sites, which fit into the memory, 1 to 16 levels and at most
+    /// 10,000 iterations.
     pub fn new(surface: &Surface, options: &HierarchyOptions) -> Result<Self, MeshError> {
         let counts = options.counts()?;
         let ascending: Vec<usize> = counts.iter().rev().copied().collect();

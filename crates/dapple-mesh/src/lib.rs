@@ -37,6 +37,7 @@ mod test_meshes;
 mod testing;
 mod triangle;
 mod triangles;
+mod test_shapes;
 mod unstick;
 mod walk;
 

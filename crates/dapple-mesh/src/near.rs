@@ -6,8 +6,8 @@ use glam::DVec3;
 
 /// Sites whose lists are made and kept together.
 pub(crate) const CHUNK: usize = 1024;
-/// The most neighbors that a list holds, the nearest ones; on a sheet of even points there are about twenty within reach, and
-/// a heap of sheets must not fill the memory.
+/// The most neighbors that a list holds, the nearest ones. On a sheet of even points there are about twenty within
+/// reach, and a heap of sheets must not fill the memory.
 const CROWD_MAX: usize = 48;
 
 /// Where points are in space, and which way they face.
@@ -32,15 +32,10 @@ pub(crate) struct Rows {
 
 impl Places {
     pub(crate) fn new(surface: &Surface, points: &[SurfacePoint]) -> Self {
-        let chunk = |chunk: usize| {
-            let first = chunk * CHUNK;
-            let points = &points[first..points.len().min(first + CHUNK)];
-            let place = |&point| (surface.position(point), surface.normal(point));
-            points.iter().map(place).collect::<Vec<_>>()
-        };
-        let chunks = par_map(points.len().div_ceil(CHUNK), chunk);
-        let (positions, normals) = chunks.into_iter().flatten().unzip();
-        Self { positions, normals }
+        Self {
+            positions: par_map(points.len(), |at| surface.position(points[at])),
+            normals: par_map(points.len(), |at| surface.normal(points[at])),
+        }
     }
 }
 
@@ -48,7 +43,8 @@ impl Near {
     /// Lists the neighbors of all sites from `first` on: those nearer than `reach` whose normals have a product with
     /// the site's own of at least `facing`.
     ///
-    /// Their order is that of [`SiteGrid::visit`]; where there are more than [`CROWD_MAX`], the nearest ones come, nearest first.
+    /// Their order is that of [`SiteGrid::visit`]; where there are more than [`CROWD_MAX`], the nearest ones come,
+    /// nearest first.
     pub(crate) fn new(places: &Places, first: usize, reach: f64, facing: f64) -> Self {
         let grid = SiteGrid::new(&places.positions, reach);
         let n_sites = places.positions.len();
@@ -56,7 +52,7 @@ impl Near {
             let first = first + chunk * CHUNK;
             let mut rows = Rows {
                 starts: vec![0],
-                others: Vec::with_capacity(20 * CHUNK),
+                others: Vec::new(),
             };
             for site in first..n_sites.min(first + CHUNK) {
                 rows.add(places, &grid, site, [reach, facing]);

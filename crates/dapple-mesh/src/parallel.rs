@@ -1,4 +1,5 @@
-//! Work on all cores, where the feature `rayon` is on; every piece is made on its own, so that the bits do not depend on how many there are.
+//! Work on all cores where the feature `rayon` is on. Every piece is made on its own, so that the bits do not depend
+//! on how many cores there are.
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
@@ -9,6 +10,14 @@ pub(crate) fn par_map<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync) -
     return (0..count).into_par_iter().map(&make).collect();
     #[cfg(not(feature = "rayon"))]
     return (0..count).map(make).collect();
+}
+
+/// Sorts values of which no two are equal, so that there is one order only.
+pub(crate) fn par_sort<T: Ord + Send>(values: &mut [T]) {
+    #[cfg(feature = "rayon")]
+    values.par_sort_unstable();
+    #[cfg(not(feature = "rayon"))]
+    values.sort_unstable();
 }
 
 /// Calls `change` with each chunk of so many values, the last one perhaps shorter, and its number.

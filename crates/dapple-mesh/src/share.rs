@@ -107,3 +107,6 @@ impl PartialOrd for Claim {
         Some(self.cmp(other))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,9 +1,9 @@
 //! Points that are stuck between fixed ones are moved to where there is room.
 //!
-//! Where the fixed points leave room for one new point and there are two, no push gets the second one out. There are a few such
-//! places on any curved surface. They are found by the distance to the nearest neighbor, and the point goes to the emptiest of
-//! some random places: Mitchell's best candidate (Don P. Mitchell, "Spectrally Optimal Sampling for Distribution Ray Tracing",
-//! SIGGRAPH 1991, doi 10.1145/122718.122736).
+//! Where the fixed points leave room for one new point and there are two, no push gets the second one out. There are a
+//! few such places on any curved surface. They are found by the distance to the nearest neighbor, and the point goes to
+//! the emptiest of some random places: Mitchell's best candidate (Don P. Mitchell, "Spectrally Optimal Sampling for
+//! Distribution Ray Tracing", SIGGRAPH 1991, doi 10.1145/122718.122736).
 
 use crate::evenness::hexagonal_spacing;
 use crate::near::{CHUNK, Places};
@@ -142,3 +142,6 @@ impl Crowd {
         Some((site, point))
     }
 }
+
+#[cfg(test)]
+mod tests;
