@@ -346,7 +346,7 @@ fn textures_look_like_their_exemplar() {
     let pixel = |x: u32, y: u32| hash2(Seed(5), [x.into(), y.into()], 0) as usize % 1024;
     let random = likeness(&Raster::from_fn(size, |x, y| plane.pixels()[pixel(x, y)]).unwrap());
     assert!(
-        made.patches < 0.2 * random.patches,
+        made.patches < 0.4 * random.patches,
         "{made:?} beside random pixels: {random:?}"
     );
 }
