@@ -42,24 +42,16 @@ impl Grid<'_> {
             let target = &mut target[row * side * n..][..side * n];
             let above = &self.values[lines[row] * row_len..][..row_len];
             let below = &self.values[lines[row + odd_y] * row_len..][..row_len];
-            if contiguous {
-                let [above, below] =
-                    [above, below].map(|line| &line[first * n..][..(side + odd_x) * n]);
-                if odd_x + odd_y == 0 {
-                    target.copy_from_slice(above);
-                } else {
-                    mean(above, below, odd_x * n, target);
-                }
+            if !contiguous {
+                gather(above, below, &columns, odd_x, n, target);
+                continue;
+            }
+            let [above, below] =
+                [above, below].map(|line| &line[first * n..][..(side + odd_x) * n]);
+            if odd_x + odd_y == 0 {
+                target.copy_from_slice(above);
             } else {
-                for (i, target) in target.chunks_exact_mut(n).enumerate() {
-                    let [left, right] = [columns[i] * n, columns[i + odd_x] * n];
-                    for channel in 0..n {
-                        let at = |line: &[f32], pixel: usize| line[pixel + channel];
-                        let sum = (at(above, left) + at(above, right))
-                            + (at(below, left) + at(below, right));
-                        target[channel] = 0.25 * sum;
-                    }
-                }
+                mean(above, below, odd_x * n, target);
             }
         }
     }
@@ -99,6 +91,24 @@ fn mean(above: &[f32], below: &[f32], step: usize, target: &mut [f32]) {
     let [c, d] = [&below[..len], &below[step..][..len]];
     for i in 0..len {
         target[i] = 0.25 * ((a[i] + b[i]) + (c[i] + d[i]));
+    }
+}
+
+/// The same for pixels that are not side by side: those of columns, and of columns `step` places further on.
+fn gather(
+    above: &[f32],
+    below: &[f32],
+    columns: &[usize],
+    step: usize,
+    n: usize,
+    target: &mut [f32],
+) {
+    for (i, target) in target.chunks_exact_mut(n).enumerate() {
+        let [left, right] = [columns[i] * n, columns[i + step] * n];
+        for (channel, target) in target.iter_mut().enumerate() {
+            let [left, right] = [left + channel, right + channel];
+            *target = 0.25 * ((above[left] + above[right]) + (below[left] + below[right]));
+        }
     }
 }
 
