@@ -5,7 +5,7 @@ use super::stage::lit;
 use super::subject::TORI;
 use crate::figure::source;
 use crate::{Figure, Panel};
-use dapple_color::{ColorError, LinearRgb, Ramp};
+use dapple_color::{ColorError, ColorRamp, LinearRgb};
 use dapple_preview::Surface as Point;
 use dapple_synth::Synthesizer;
 use dapple_synth::mesh::Surface;
@@ -103,8 +103,8 @@ fn is_field(synthesizer: &Synthesizer, position: DVec3) -> bool {
 }
 
 /// The colors of a cycle, which ends as it begins.
-fn cycle() -> Result<Ramp, ColorError> {
-    Ramp::from_hex(&[
+fn cycle() -> Result<ColorRamp, ColorError> {
+    ColorRamp::from_hex(&[
         "#1b2a6b", "#2f9bd0", "#f4f0c8", "#e8743b", "#7a1b4b", "#1b2a6b",
     ])
 }
