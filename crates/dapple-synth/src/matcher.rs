@@ -94,7 +94,7 @@ impl Matcher {
         Self {
             dims,
             rows: PaddedRows::new(dims, rows),
-            tree: tree.map(|tree| { let margin = Margin::new(dims, &tree.basis, tree.longest); (tree, margin) }),
+            tree: tree.map(|tree| { let margin = Margin::new(dims, &tree.basis, tree.longest, tree.unit); (tree, margin) }),
         }
     }
 

@@ -53,11 +53,15 @@ pub(crate) struct Margin {
     sum_underflow: f64,
     /// The length of the longest centered row.
     longest: f64,
+    /// 0.51 sqrt(k) units.
+    quantization: f64,
+    /// 1 / unit^2.
+    per_unit_sq: f64,
 }
 
 impl Margin {
     /// The bound for rows of `dims` numbers, of which the longest one centered is no longer than `longest`.
-    pub(crate) fn new(dims: usize, basis: &Basis, longest: f64) -> Self {
+    pub(crate) fn new(dims: usize, basis: &Basis, longest: f64, unit: f32) -> Self {
         let k = basis.n_directions() as f64;
         let norm = basis.norm_sq.sqrt();
         Self {
@@ -69,12 +73,14 @@ impl Margin {
             sum_factor: (1.0 + 1.01 * (k + 3.0) * U) * (1.0 + 1.0 / f64::from(1 << 20)),
             sum_underflow: 2.0 * k * V,
             longest,
+            quantization: 0.51 * k.sqrt() * f64::from(unit),
+            per_unit_sq: 1.0 / (f64::from(unit) * f64::from(unit)),
         }
     }
 
     /// E for a centered query of at most this length.
     pub(crate) fn rotation_error(&self, length: f64) -> f64 {
-        self.rotation * (length + self.longest) + self.underflow
+        self.rotation * (length + self.longest) + self.underflow + self.quantization
     }
 
     /// The largest P that a row may have whose distance D is at most `distance_sq`; infinity for infinity.
@@ -82,7 +88,7 @@ impl Margin {
     pub(crate) fn threshold(&self, distance_sq: f32, rotation_error: f64) -> f32 {
         let distance_sq = (f64::from(distance_sq) + self.distance_underflow) * self.distance_factor;
         let distance = self.norm * distance_sq.sqrt() + rotation_error;
-        round_up(distance * distance * self.sum_factor + self.sum_underflow)
+        round_up(distance * distance * self.sum_factor * self.per_unit_sq + self.sum_underflow)
     }
 }
 

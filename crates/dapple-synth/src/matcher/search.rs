@@ -5,7 +5,7 @@ use super::distance::distance_sq_padded;
 use super::margin::Margin;
 use super::tree::{BOX_DIRECTIONS, Boxes, Tree};
 use super::{Match, MatcherMemory, PaddedRows};
-use fearless_simd::{f32x16, prelude::*};
+use fearless_simd::{f32x8, f32x16, i16x16, prelude::*};
 
 /// After how many directions the rows of a leaf are looked at again.
 const STEP: usize = 8;
@@ -38,7 +38,11 @@ pub(crate) fn search<S: Simd>(
 ) -> Option<Match> {
     let n_directions = tree.basis.n_directions();
     memory.rotated.resize(n_directions / LANES, [0.0; LANES]);
-    tree.basis.rotate(simd, &memory.centered, &mut memory.rotated);
+    tree.basis
+        .rotate(simd, &memory.centered, &mut memory.rotated);
+    for coordinate in memory.rotated.as_flattened_mut() {
+        *coordinate *= 1.0 / tree.unit;
+    }
     let rotation_error = margin.rotation_error(memory.length);
     let mut search = Search {
         simd,
@@ -146,10 +150,12 @@ impl<S: Simd> Search<'_, S> {
     }
 
     #[inline(always)]
-    fn add_squares(&self, sum: f32x16<S>, z: &[f32], values: &[[f32; LANES]]) -> f32x16<S> {
+    fn add_squares(&self, sum: f32x16<S>, z: &[f32], values: &[[i16; LANES]]) -> f32x16<S> {
         let mut sums = [sum, f32x16::splat(self.simd, 0.0)];
         for i in 0..STEP {
-            let difference = f32x16::simd_from(self.simd, values[i]) - z[i];
+            let (low, high) = i16x16::simd_from(self.simd, values[i]).widen();
+            let value = f32x8::float_from(low).combine(f32x8::float_from(high));
+            let difference = value - z[i];
             sums[i % 2] += difference * difference;
         }
         sums[0] + sums[1]

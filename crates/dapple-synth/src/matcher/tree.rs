@@ -14,6 +14,12 @@ use fearless_simd::dispatch;
 /// Directions along which rows are halved and have boxes: those in which they differ most.
 pub(crate) const BOX_DIRECTIONS: usize = 8;
 
+/// The least unit of coordinates: 2^-100.
+const LEAST_UNIT: f32 = f32::from_bits((127 - 100) << 23);
+
+/// The largest coordinate in units.
+const LARGEST_COORDINATE: f32 = 32767.0;
+
 /// Rows that are rotated by one thread at a time.
 const CHUNK: usize = 1024;
 
@@ -32,10 +38,12 @@ pub(crate) struct Tree {
     pub(crate) longest: f64,
     /// The row in each lane of each leaf. The lanes that are left over in the last leaf repeat its last row.
     pub(crate) rows: Vec<[u32; LANES]>,
-    /// For each leaf its coordinates along the first [`BOX_DIRECTIONS`] directions.
-    pub(crate) heads: Vec<[[f32; LANES]; BOX_DIRECTIONS]>,
-    /// For each leaf its coordinates along all other directions.
-    pub(crate) tails: Vec<[f32; LANES]>,
+    /// The length of which coordinates are whole multiples: a power of two.
+    pub(crate) unit: f32,
+    /// For each leaf its coordinates along the first [`BOX_DIRECTIONS`] directions, in units.
+    pub(crate) heads: Vec<[[i16; LANES]; BOX_DIRECTIONS]>,
+    /// For each leaf its coordinates along all other directions, in units.
+    pub(crate) tails: Vec<[i16; LANES]>,
     /// Boxes around the rows of sixteen leaves each.
     pub(crate) leaves: Vec<Boxes>,
     /// Boxes around the leaves of sixteen of those each.
@@ -52,10 +60,12 @@ impl Tree {
         }
         let mut indices: Vec<u32> = (0..(all.len() / dims) as u32).collect();
         let n_directions = basis.n_directions();
+        let unit = unit(&rotated);
         sort(&mut indices, &rotated, n_directions);
         let mut tree = Self {
             basis,
             longest,
+            unit,
             rows: Vec::new(),
             heads: Vec::new(),
             tails: Vec::new(),
@@ -65,7 +75,7 @@ impl Tree {
         for leaf in indices.chunks(LANES) {
             let rows = std::array::from_fn(|lane| leaf[lane.min(leaf.len() - 1)]);
             let coordinates = |direction: usize| {
-                rows.map(|row| rotated[row as usize * n_directions + direction])
+                rows.map(|row| in_units(rotated[row as usize * n_directions + direction], unit))
             };
             tree.rows.push(rows);
             tree.heads.push(std::array::from_fn(coordinates));
@@ -103,6 +113,21 @@ fn rotate(dims: usize, all: &[f32], basis: &Basis) -> (Vec<f32>, f64) {
     let longest = rotated.iter().fold(0.0_f64, |max, (_, length)| max.max(*length));
     let rotated: Vec<f32> = rotated.iter().flat_map(|(rotated, _)| rotated.as_flattened()).copied().collect();
     (rotated, longest)
+}
+
+/// The least power of two, in a range that does not overflow, in which all coordinates fit 16 bits.
+fn unit(rotated: &[f32]) -> f32 {
+    let largest = rotated.iter().fold(0.0_f32, |max, value| max.max(value.abs()));
+    let mut unit = LEAST_UNIT;
+    while largest > unit * LARGEST_COORDINATE {
+        unit *= 2.0;
+    }
+    unit
+}
+
+/// The nearest multiple of a unit.
+fn in_units(value: f32, unit: f32) -> i16 {
+    (value / unit).round_ties_even() as i16
 }
 
 /// Halves rows, and the halves again, down to leaves. All leaves but the last one are full, and sixteen of them that are
@@ -143,7 +168,8 @@ const NOTHING: Box = [
     [f32::NEG_INFINITY; BOX_DIRECTIONS],
 ];
 
-fn around_rows(head: &[[f32; LANES]; BOX_DIRECTIONS]) -> Box {
+fn around_rows(head: &[[i16; LANES]; BOX_DIRECTIONS]) -> Box {
+    let head = head.map(|values| values.map(f32::from));
     [head.map(least), head.map(largest)]
 }
 
