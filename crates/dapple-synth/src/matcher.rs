@@ -25,7 +25,7 @@ use fearless_simd::{Level, dispatch, prelude::*};
 use lattice::Lattice;
 use margin::Margin;
 use search::Search;
-use tree::{Pairs, Placed, Tree};
+use tree::{Pairs, Placed, STEP, Tree};
 
 pub use distance::distance_sq;
 
@@ -61,7 +61,7 @@ pub struct MatcherMemory {
     centered: Vec<f32>,
     rotated: Vec<[f32; LANES]>,
     coordinates: Vec<i16>,
-    placed: Vec<Pairs>,
+    placed: Vec<[Pairs; STEP]>,
     order: Vec<u64>,
 }
 
@@ -210,14 +210,17 @@ impl Index {
         }
         let n_directions = self.basis.n_directions();
         memory.rotated.resize(n_directions / LANES, [0.0; LANES]);
-        self.basis.rotate(simd, &memory.centered, &mut memory.rotated);
+        self.basis
+            .rotate(simd, &memory.centered, &mut memory.rotated);
         memory.coordinates.resize(n_directions, 0);
         self.lattice
             .place(memory.rotated.as_flattened(), &mut memory.coordinates);
         memory.placed.clear();
-        let (pairs, _) = memory.coordinates.as_chunks::<2>();
-        let lanes = pairs.iter().map(|pair| std::array::from_fn(|i| pair[i % 2]));
-        memory.placed.extend(lanes);
+        let (steps, _) = memory.coordinates.as_chunks::<{ 2 * STEP }>();
+        for step in steps {
+            let lanes = |pair: usize| std::array::from_fn(|i| step[2 * pair + i % 2]);
+            memory.placed.push(std::array::from_fn(lanes));
+        }
         Some(self.margin.error(length))
     }
 }

@@ -19,10 +19,13 @@ pub(crate) const LANES: usize = 16;
 const MOST: usize = 64;
 
 /// The most rows whose covariance is taken. Enough for the directions, which need not be exact.
-const SAMPLE: usize = 4096;
+const SAMPLE: usize = 2048;
+
+/// Lines of the covariance that are summed together: they stay in the cache.
+const BAND: usize = 8;
 
 /// Steps of orthogonal iteration: the spectrum of neighborhoods falls quickly.
-const STEPS: usize = 6;
+const STEPS: usize = 4;
 
 /// Where the iteration starts.
 const START: Seed = Seed(2001);
@@ -79,7 +82,12 @@ impl Basis {
     #[inline(always)]
     pub(crate) fn center(&self, values: &[f32], centered: &mut Vec<f32>) {
         centered.clear();
-        centered.extend(values.iter().zip(&self.mean).map(|(value, mean)| value - mean));
+        centered.extend(
+            values
+                .iter()
+                .zip(&self.mean)
+                .map(|(value, mean)| value - mean),
+        );
     }
 
     /// The coordinates of something centered along the directions: a group of them for each element of `rotated`.
@@ -141,7 +149,9 @@ fn centered_sample(dims: usize, rows: &[f32], mean: &[f32]) -> Vec<f64> {
                 .map(|(&value, &mean)| f64::from(value) - f64::from(mean)),
         );
     }
-    let largest = sample.iter().fold(0.0_f64, |max, value| max.max(value.abs()));
+    let largest = sample
+        .iter()
+        .fold(0.0_f64, |max, value| max.max(value.abs()));
     if largest == 0.0 {
         return Vec::new();
     }
@@ -154,28 +164,29 @@ fn centered_sample(dims: usize, rows: &[f32], mean: &[f32]) -> Vec<f64> {
 /// Sums of products of the values of rows: a symmetric matrix.
 fn covariance(dims: usize, sample: &[f64]) -> Vec<f64> {
     let level = simd::level();
-    let lines = par_map(dims, |line| {
-        let mut sums = vec![0.0; dims - line];
-        dispatch!(level, _simd => add_products(dims, line, sample, &mut sums));
+    let bands = par_map(dims.div_ceil(BAND), |band| {
+        let mut sums = vec![0.0; BAND.min(dims - band * BAND) * dims];
+        dispatch!(level, _simd => add_products(dims, band * BAND, sample, &mut sums));
         sums
     });
-    let mut matrix = vec![0.0; dims * dims];
-    for (line, sums) in lines.iter().enumerate() {
-        for (column, &sum) in (line..).zip(sums) {
-            matrix[line * dims + column] = sum;
-            matrix[column * dims + line] = sum;
+    let mut matrix = bands.concat();
+    for line in 0..dims {
+        for column in 0..line {
+            matrix[line * dims + column] = matrix[column * dims + line];
         }
     }
     matrix
 }
 
-/// Adds the products of value `line` of each row and of all from it on.
+/// Adds the products of some values of each row, from `first` on, and of all from `first` on: lines of the matrix.
 #[inline(always)]
-fn add_products(dims: usize, line: usize, sample: &[f64], sums: &mut [f64]) {
+fn add_products(dims: usize, first: usize, sample: &[f64], sums: &mut [f64]) {
     for row in sample.chunks_exact(dims) {
-        let factor = row[line];
-        for (sum, value) in sums.iter_mut().zip(&row[line..]) {
-            *sum += factor * value;
+        let row = &row[first..];
+        for (&factor, sums) in row.iter().zip(sums.chunks_exact_mut(dims)) {
+            for (sum, value) in sums[first..].iter_mut().zip(row) {
+                *sum += factor * value;
+            }
         }
     }
 }
@@ -225,7 +236,9 @@ fn norm_sq(dims: usize, groups: &[[f32; LANES]]) -> f64 {
     }
     let mut largest = 0.0_f64;
     for direction in directions.chunks_exact(dims) {
-        let products = directions.chunks_exact(dims).map(|other| dot(direction, other).abs());
+        let products = directions
+            .chunks_exact(dims)
+            .map(|other| dot(direction, other).abs());
         largest = largest.max(products.sum());
     }
     largest + 1e-9

@@ -2,12 +2,9 @@
 
 use super::basis::LANES;
 use super::margin::Margin;
-use super::tree::{BOX_PAIRS, Boxes, Pairs, Tree};
+use super::tree::{Boxes, Pairs, STEP, Tree};
 use super::{Match, PaddedRows};
 use fearless_simd::{i16x32, i32x16, prelude::*};
-
-/// After how many pairs of directions the rows of a leaf are looked at again.
-const STEP: usize = 4;
 
 /// A search on its way.
 pub(crate) struct Search<'a, S> {
@@ -18,7 +15,7 @@ pub(crate) struct Search<'a, S> {
     /// The query, filled up with zeros.
     pub(crate) query: &'a [[f32; LANES]],
     /// The query along the directions, each pair of coordinates sixteen times.
-    pub(crate) placed: &'a [Pairs],
+    pub(crate) placed: &'a [[Pairs; STEP]],
     /// [`Margin::error`] of the query.
     pub(crate) error: f64,
     /// The nearest row so far.
@@ -68,7 +65,7 @@ impl<S: Simd> Search<'_, S> {
     #[inline(always)]
     fn visit_group(&mut self, group: usize) {
         let first = group * LANES;
-        let n = (self.tree.heads.len() - first).min(LANES);
+        let n = (self.tree.rows.len() - first).min(LANES);
         let mut all = (1_u64 << n) - 1;
         let sums = self.box_sums(&self.tree.leaves[group]);
         if self.best.is_none() {
@@ -88,24 +85,19 @@ impl<S: Simd> Search<'_, S> {
     /// not predict it.
     #[inline(always)]
     fn visit_leaves(&mut self, first: usize, mut near: u64) {
-        let (head, tail) = self.placed.split_at(BOX_PAIRS);
         let mut leaves = [0_usize; LANES];
         let mut sums = [[0_i32; LANES]; LANES];
         let mut n = 0;
         while near != 0 {
-            let leaf = first + near.trailing_zeros() as usize;
+            leaves[n] = first + near.trailing_zeros() as usize;
             near &= near - 1;
-            let sum = self.add_squares([0; LANES], head, &self.tree.heads[leaf]);
-            leaves[n] = leaf;
-            sums[n] = sum.into();
-            n += usize::from(sum.simd_le(self.threshold).any_true());
+            n += 1;
         }
-        for (step, placed) in tail.chunks_exact(STEP).enumerate() {
+        for (placed, pairs) in self.placed.iter().zip(&self.tree.steps) {
             let mut n_near = 0;
             for i in 0..n {
                 let leaf = leaves[i];
-                let pairs = &self.tree.tails[leaf * tail.len() + step * STEP..][..STEP];
-                let sum = self.add_squares(sums[i], placed, pairs);
+                let sum = self.add_squares(sums[i], placed, &pairs[leaf]);
                 leaves[n_near] = leaf;
                 sums[n_near] = sum.into();
                 n_near += usize::from(sum.simd_le(self.threshold).any_true());
@@ -135,7 +127,12 @@ impl<S: Simd> Search<'_, S> {
 
     /// Adds the squares of the differences of the query and sixteen rows along [`STEP`] pairs of directions.
     #[inline(always)]
-    fn add_squares(&self, sums: [i32; LANES], placed: &[Pairs], pairs: &[Pairs]) -> i32x16<S> {
+    fn add_squares(
+        &self,
+        sums: [i32; LANES],
+        placed: &[Pairs; STEP],
+        pairs: &[Pairs; STEP],
+    ) -> i32x16<S> {
         let mut sums = i32x16::simd_from(self.simd, sums);
         for i in 0..STEP {
             let placed = i16x32::simd_from(self.simd, placed[i]);
@@ -149,8 +146,8 @@ impl<S: Simd> Search<'_, S> {
     #[inline(always)]
     fn box_sums(&self, boxes: &Boxes) -> i32x16<S> {
         let mut sums = i32x16::splat(self.simd, 0);
-        for i in 0..BOX_PAIRS {
-            let placed = i16x32::simd_from(self.simd, self.placed[i]);
+        for i in 0..STEP {
+            let placed = i16x32::simd_from(self.simd, self.placed[0][i]);
             let below = i16x32::simd_from(self.simd, boxes.low[i]) - placed;
             let above = placed - i16x32::simd_from(self.simd, boxes.high[i]);
             let outside = below.max(above).max(0);

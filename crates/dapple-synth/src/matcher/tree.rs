@@ -15,11 +15,11 @@ use super::parallel::par_map;
 use dapple_raster::simd;
 use fearless_simd::dispatch;
 
-/// Directions along which rows are halved and have boxes: those in which they differ most.
-pub(crate) const BOX_DIRECTIONS: usize = 8;
+/// Pairs of directions after which the rows of a leaf are looked at again.
+pub(crate) const STEP: usize = 4;
 
-/// Pairs of them.
-pub(crate) const BOX_PAIRS: usize = BOX_DIRECTIONS / 2;
+/// Directions along which rows are halved and have boxes: those of the first step, in which they differ most.
+const BOX_DIRECTIONS: usize = 2 * STEP;
 
 /// The coordinates of sixteen rows along two directions: both of the first row, both of the second, and so on.
 pub(crate) type Pairs = [i16; 2 * LANES];
@@ -30,8 +30,8 @@ const CHUNK: usize = 512;
 /// Boxes of sixteen things: the least and the largest coordinates.
 #[derive(Clone, Debug)]
 pub(crate) struct Boxes {
-    pub(crate) low: [Pairs; BOX_PAIRS],
-    pub(crate) high: [Pairs; BOX_PAIRS],
+    pub(crate) low: [Pairs; STEP],
+    pub(crate) high: [Pairs; STEP],
 }
 
 /// The rows along the directions of a basis, in leaves.
@@ -39,10 +39,9 @@ pub(crate) struct Boxes {
 pub(crate) struct Tree {
     /// The row in each lane of each leaf. The lanes that are left over in the last leaf repeat its last row.
     pub(crate) rows: Vec<[u32; LANES]>,
-    /// For each leaf its coordinates along the first [`BOX_DIRECTIONS`] directions.
-    pub(crate) heads: Vec<[Pairs; BOX_PAIRS]>,
-    /// For each leaf its coordinates along all other directions.
-    pub(crate) tails: Vec<Pairs>,
+    /// The coordinates of each leaf along the first eight directions, along the next eight, and so on. What is looked at
+    /// after one another lies close together.
+    pub(crate) steps: Vec<Vec<[Pairs; STEP]>>,
     /// Boxes around the rows of sixteen leaves each.
     pub(crate) leaves: Vec<Boxes>,
     /// Boxes around the leaves of sixteen of those each.
@@ -104,27 +103,24 @@ impl Tree {
         let n_rows = placed.coordinates.len() / placed.n_directions;
         let mut order: Vec<u32> = (0..n_rows as u32).collect();
         sort(&mut order, placed);
-        let mut tree = Self {
-            rows: Vec::with_capacity(n_rows.div_ceil(LANES)),
-            heads: Vec::with_capacity(n_rows.div_ceil(LANES)),
-            tails: Vec::with_capacity(n_rows.div_ceil(LANES) * (placed.n_directions / 2 - BOX_PAIRS)),
-            leaves: Vec::new(),
-            groups: Vec::new(),
-        };
-        let mut boxes = Vec::with_capacity(n_rows.div_ceil(LANES));
-        for leaf in order.chunks(LANES) {
-            let rows = std::array::from_fn(|lane| leaf[lane.min(leaf.len() - 1)]);
-            let lanes = rows.map(|row| placed.row(row));
-            tree.rows.push(rows);
-            tree.heads.push(std::array::from_fn(|pair| pairs(&lanes, pair)));
-            tree.tails
-                .extend((BOX_PAIRS..placed.n_directions / 2).map(|pair| pairs(&lanes, pair)));
-            boxes.push(around_rows(&lanes));
+        let leaf = |leaf: &[u32]| std::array::from_fn(|lane| leaf[lane.min(leaf.len() - 1)]);
+        let rows: Vec<[u32; LANES]> = order.chunks(LANES).map(leaf).collect();
+        let steps = par_map(placed.n_directions / (2 * STEP), |step| {
+            let coordinates = |leaf: &[u32; LANES]| {
+                let lanes = leaf.map(|row| &placed.row(row)[2 * STEP * step..][..2 * STEP]);
+                std::array::from_fn(|pair| pairs(&lanes, pair))
+            };
+            rows.iter().map(coordinates).collect()
+        });
+        let around = |leaf: &[u32; LANES]| around_rows(&leaf.map(|row| placed.row(row)));
+        let boxes: Vec<Box> = rows.iter().map(around).collect();
+        let boxes_16: Vec<Box> = boxes.chunks(LANES).map(around_boxes).collect();
+        Self {
+            rows,
+            steps,
+            leaves: boxes.chunks(LANES).map(side_by_side).collect(),
+            groups: boxes_16.chunks(LANES).map(side_by_side).collect(),
         }
-        tree.leaves = boxes.chunks(LANES).map(side_by_side).collect();
-        let boxes: Vec<_> = boxes.chunks(LANES).map(around_boxes).collect();
-        tree.groups = boxes.chunks(LANES).map(side_by_side).collect();
-        tree
     }
 }
 
