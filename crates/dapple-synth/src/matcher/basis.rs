@@ -50,8 +50,10 @@ pub(crate) struct Basis {
 impl Basis {
     /// The directions of rows of `dims` finite numbers.
     pub(crate) fn new(dims: usize, rows: &[f32]) -> Self {
-        let mean = mean(dims, rows);
-        let sample = centered_sample(dims, rows, &mean);
+        let step = (rows.len() / dims).div_ceil(SAMPLE).max(1);
+        let sample: Vec<&[f32]> = rows.chunks_exact(dims).step_by(step).collect();
+        let mean = mean(dims, &sample);
+        let sample = centered(&sample, &mean);
         let n_directions = MOST.min(dims).next_multiple_of(LANES);
         let directions = if sample.is_empty() {
             vec![0.0; dims * n_directions]
@@ -126,39 +128,35 @@ fn rotate_group<S: Simd>(simd: S, values: &[f32], factors: &[[f32; LANES]]) -> f
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The mean of the rows, rounded: any point would do.
-fn mean(dims: usize, rows: &[f32]) -> Vec<f32> {
+/// The mean of some rows, rounded: any point would do.
+fn mean(dims: usize, rows: &[&[f32]]) -> Vec<f32> {
     let mut sums = vec![0.0_f64; dims];
-    for row in rows.chunks_exact(dims) {
-        for (sum, &value) in sums.iter_mut().zip(row) {
+    for row in rows {
+        for (sum, &value) in sums.iter_mut().zip(*row) {
             *sum += f64::from(value);
         }
     }
-    let n_rows = (rows.len() / dims).max(1) as f64;
+    let n_rows = rows.len() as f64;
     sums.iter().map(|sum| (sum / n_rows) as f32).collect()
 }
 
-/// Rows at even steps, less the mean, divided by the largest magnitude so that no square is out of range. Empty if all is zero.
-fn centered_sample(dims: usize, rows: &[f32], mean: &[f32]) -> Vec<f64> {
-    let step = (rows.len() / dims).div_ceil(SAMPLE).max(1);
-    let mut sample = Vec::new();
-    for row in rows.chunks_exact(dims).step_by(step) {
-        sample.extend(
-            row.iter()
-                .zip(mean)
-                .map(|(&value, &mean)| f64::from(value) - f64::from(mean)),
-        );
-    }
-    let largest = sample
+/// Rows less the mean, divided by the largest magnitude so that no square is out of range. Empty if all is zero.
+fn centered(rows: &[&[f32]], mean: &[f32]) -> Vec<f64> {
+    let less_mean = |row: &&[f32]| -> Vec<f64> {
+        let pairs = row.iter().zip(mean);
+        pairs.map(|(&a, &b)| f64::from(a) - f64::from(b)).collect()
+    };
+    let mut values: Vec<f64> = rows.iter().flat_map(less_mean).collect();
+    let largest = values
         .iter()
         .fold(0.0_f64, |max, value| max.max(value.abs()));
     if largest == 0.0 {
         return Vec::new();
     }
-    for value in &mut sample {
+    for value in &mut values {
         *value /= largest;
     }
-    sample
+    values
 }
 
 /// Sums of products of the values of rows: a symmetric matrix.

@@ -23,14 +23,14 @@ const ERROR: f64 = 0.51;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lattice {
     radius: f64,
-    per_unit: f32,
+    per_unit: f64,
 }
 
 impl Lattice {
     /// The ball for points of which the longest and the root mean square of all are known.
     pub(crate) fn new(longest: f64, spread: f64) -> Self {
         let radius = longest.min(SPREADS * spread);
-        let per_unit = (RADIUS / radius).min(FINEST) as f32;
+        let per_unit = (RADIUS / radius).min(FINEST);
         Self { radius, per_unit }
     }
 
@@ -39,13 +39,14 @@ impl Lattice {
     pub(crate) fn place(&self, point: &[f32], placed: &mut [i16]) {
         let length = margin::length(point);
         let shorter = if length > self.radius {
-            (self.radius / length) as f32
+            self.radius / length
         } else {
             1.0
         };
+        let factor = shorter * self.per_unit;
         for (placed, &coordinate) in placed.iter_mut().zip(point) {
             // The number cast is positive, so that it is rounded down.
-            *placed = ((coordinate * shorter * self.per_unit + 32_768.5) as i32 - 32_768) as i16;
+            *placed = ((f64::from(coordinate) * factor + 32_768.5) as i32 - 32_768) as i16;
         }
     }
 
@@ -56,6 +57,6 @@ impl Lattice {
 
     /// How many units a length of 1 has.
     pub(crate) fn per_unit(&self) -> f64 {
-        f64::from(self.per_unit)
+        self.per_unit
     }
 }

@@ -9,8 +9,8 @@
 //! 1. A term of D is rounded at most `a` times ([`distance::roundings`]), so that D >= (1 - a u) |x - q|^2 - 2 dims v, and
 //!    |x - q| <= sqrt((D + 2 dims v) / (1 - a u)).
 //! 2. A term of a coordinate of z is rounded at most `b` times ([`Basis::roundings`]). With c for the centered query as
-//!    computed, |z_j - W_j (q - m)| <= 1.01 b u |W_j| |c| + 2 dims v, where 1.01 covers the powers of u. The squares of
-//!    all |W_j| add up to at most k |W|^2, so that |z - W (q - m)| <= 1.01 b u sqrt(k) |W| |c| + 2 sqrt(k) dims v. The same
+//!    computed, `|z_j - W_j (q - m)| <= 1.01 b u |W_j| |c| + 2 dims v`, where 1.01 covers the powers of u. The squares of
+//!    all `|W_j|` add up to at most k |W|^2, so that |z - W (q - m)| <= 1.01 b u sqrt(k) |W| |c| + 2 sqrt(k) dims v. The same
 //!    holds for y.
 //! 3. Whole coordinates are nearer to each other than z and y, but for their rounding, [`Lattice::error`] for each of both.
 //! 4. By the triangle inequality, sqrt(P) <= |W| |x - q| + E, with E for the errors of 2 and 3, of the row and of the query.

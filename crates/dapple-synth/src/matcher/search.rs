@@ -85,30 +85,26 @@ impl<S: Simd> Search<'_, S> {
     /// not predict it.
     #[inline(always)]
     fn visit_leaves(&mut self, first: usize, mut near: u64) {
-        let mut leaves = [0_usize; LANES];
         let mut sums = [[0_i32; LANES]; LANES];
-        let mut n = 0;
-        while near != 0 {
-            leaves[n] = first + near.trailing_zeros() as usize;
-            near &= near - 1;
-            n += 1;
-        }
         for (placed, pairs) in self.placed.iter().zip(&self.tree.steps) {
-            let mut n_near = 0;
-            for i in 0..n {
-                let leaf = leaves[i];
-                let sum = self.add_squares(sums[i], placed, &pairs[leaf]);
-                leaves[n_near] = leaf;
-                sums[n_near] = sum.into();
-                n_near += usize::from(sum.simd_le(self.threshold).any_true());
+            let pairs = &pairs[first..];
+            let mut left = near;
+            near = 0;
+            while left != 0 {
+                let leaf = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let sum = self.add_squares(sums[leaf], placed, &pairs[leaf]);
+                sums[leaf] = sum.into();
+                near |= u64::from(sum.simd_le(self.threshold).any_true()) << leaf;
             }
-            n = n_near;
-            if n == 0 {
+            if near == 0 {
                 return;
             }
         }
-        for (&leaf, sums) in leaves[..n].iter().zip(sums) {
-            self.compare_rows(leaf, sums);
+        while near != 0 {
+            let leaf = near.trailing_zeros() as usize;
+            near &= near - 1;
+            self.compare_rows(first + leaf, sums[leaf]);
         }
     }
 
