@@ -46,7 +46,7 @@ pub struct Match {
 
 /// Rows prepared for finding the nearest one.
 ///
-/// Holds a copy of the rows and at most 64 numbers of two bytes for each. While it is made, four times as many.
+/// Holds a copy of the rows and about 140 bytes more for each; up to 512 more while it is made.
 #[derive(Clone, Debug)]
 pub struct Matcher {
     dims: usize,
@@ -75,7 +75,8 @@ struct Index {
 }
 
 impl Matcher {
-    /// Prepares rows of `dims` numbers each, one after the other. What is left over at the end does not count.
+    /// Prepares rows of `dims` numbers each, one after the other. What is left over at the end does not count, nor do rows
+    /// after the first 2³² - 1.
     ///
     /// Any numbers are good, but rows are found slowly, by comparing with all of them, if one is not finite or farther than
     /// 10¹⁵ from the mean, or if they have more than 1024 numbers. A row that is not finite is never the nearest.
@@ -94,6 +95,7 @@ impl Matcher {
     #[must_use]
     pub fn new(dims: usize, rows: &[f32]) -> Self {
         let n_rows = rows.len().checked_div(dims).unwrap_or(0);
+        let n_rows = n_rows.min(u32::MAX as usize);
         let rows = &rows[..n_rows * dims];
         Self {
             dims,

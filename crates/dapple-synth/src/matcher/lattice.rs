@@ -1,8 +1,8 @@
 //! Coordinates in sixteen bits, whose differences are squared and added up exactly.
 //!
 //! A point is drawn into a ball, if it lies outside, and then rounded to whole units. Drawing two points into a ball
-//! never moves them apart, so that it can only make distances smaller, as a lower bound may be. The ball is
-//! [`RADIUS`] units wide, so that a difference of two coordinates fits sixteen bits with its sign, and the square of a
+//! never moves them apart, so that it can only make distances smaller, as a lower bound may be. The radius
+//! of the ball is [`RADIUS`] units, so that a difference of two coordinates fits sixteen bits with its sign, and the square of a
 //! distance thirty-one.
 
 use super::margin;
