@@ -34,10 +34,11 @@ mod surface;
 #[cfg(test)]
 mod test_meshes;
 #[cfg(test)]
+mod test_shapes;
+#[cfg(test)]
 mod testing;
 mod triangle;
 mod triangles;
-mod test_shapes;
 mod unstick;
 mod walk;
 

@@ -99,7 +99,11 @@ impl<'a> Cut<'a> {
 
     fn distance(&self, at: DVec3) -> f64 {
         let distance = self.solid.distance(at).max(box_distance(self.bounds, at));
-        if distance.is_nan() { f64::MAX } else { distance }
+        if distance.is_nan() {
+            f64::MAX
+        } else {
+            distance
+        }
     }
 
     /// The triangles in the tetrahedra of the lattice.

@@ -74,8 +74,7 @@ fn solid() -> Blend {
 
 /// An arm that leaves in a direction of the plane.
 fn arm(points: &[[f64; 4]; 7], [x, z]: [f64; 2]) -> Tube {
-    let placed = points.map(|[out, up, left, radius]| {
-        [out * x - left * z, up, out * z + left * x, radius]
-    });
+    let placed =
+        points.map(|[out, up, left, radius]| [out * x - left * z, up, out * z + left * x, radius]);
     Tube::through(&placed)
 }

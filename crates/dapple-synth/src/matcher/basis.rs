@@ -19,10 +19,13 @@ pub(crate) const LANES: usize = 16;
 const MOST: usize = 64;
 
 /// The most rows whose covariance is taken. Enough for the directions, which need not be exact.
-const SAMPLE: usize = 4096;
+const SAMPLE: usize = 2048;
+
+/// Lines of the covariance that are summed together: they stay in the cache.
+const BAND: usize = 8;
 
 /// Steps of orthogonal iteration: the spectrum of neighborhoods falls quickly.
-const STEPS: usize = 6;
+const STEPS: usize = 4;
 
 /// Where the iteration starts.
 const START: Seed = Seed(2001);
@@ -47,8 +50,10 @@ pub(crate) struct Basis {
 impl Basis {
     /// The directions of rows of `dims` finite numbers.
     pub(crate) fn new(dims: usize, rows: &[f32]) -> Self {
-        let mean = mean(dims, rows);
-        let sample = centered_sample(dims, rows, &mean);
+        let step = (rows.len() / dims).div_ceil(SAMPLE).max(1);
+        let sample: Vec<&[f32]> = rows.chunks_exact(dims).step_by(step).collect();
+        let mean = mean(dims, &sample);
+        let sample = centered(&sample, &mean);
         let n_directions = MOST.min(dims).next_multiple_of(LANES);
         let directions = if sample.is_empty() {
             vec![0.0; dims * n_directions]
@@ -123,66 +128,63 @@ fn rotate_group<S: Simd>(simd: S, values: &[f32], factors: &[[f32; LANES]]) -> f
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The mean of the rows, rounded: any point would do.
-fn mean(dims: usize, rows: &[f32]) -> Vec<f32> {
+/// The mean of some rows, rounded: any point would do.
+fn mean(dims: usize, rows: &[&[f32]]) -> Vec<f32> {
     let mut sums = vec![0.0_f64; dims];
-    for row in rows.chunks_exact(dims) {
-        for (sum, &value) in sums.iter_mut().zip(row) {
+    for row in rows {
+        for (sum, &value) in sums.iter_mut().zip(*row) {
             *sum += f64::from(value);
         }
     }
-    let n_rows = (rows.len() / dims).max(1) as f64;
+    let n_rows = rows.len() as f64;
     sums.iter().map(|sum| (sum / n_rows) as f32).collect()
 }
 
-/// Rows at even steps, less the mean, divided by the largest magnitude so that no square is out of range. Empty if all is zero.
-fn centered_sample(dims: usize, rows: &[f32], mean: &[f32]) -> Vec<f64> {
-    let step = (rows.len() / dims).div_ceil(SAMPLE).max(1);
-    let mut sample = Vec::new();
-    for row in rows.chunks_exact(dims).step_by(step) {
-        sample.extend(
-            row.iter()
-                .zip(mean)
-                .map(|(&value, &mean)| f64::from(value) - f64::from(mean)),
-        );
-    }
-    let largest = sample
+/// Rows less the mean, divided by the largest magnitude so that no square is out of range. Empty if all is zero.
+fn centered(rows: &[&[f32]], mean: &[f32]) -> Vec<f64> {
+    let less_mean = |row: &&[f32]| -> Vec<f64> {
+        let pairs = row.iter().zip(mean);
+        pairs.map(|(&a, &b)| f64::from(a) - f64::from(b)).collect()
+    };
+    let mut values: Vec<f64> = rows.iter().flat_map(less_mean).collect();
+    let largest = values
         .iter()
         .fold(0.0_f64, |max, value| max.max(value.abs()));
     if largest == 0.0 {
         return Vec::new();
     }
-    for value in &mut sample {
+    for value in &mut values {
         *value /= largest;
     }
-    sample
+    values
 }
 
 /// Sums of products of the values of rows: a symmetric matrix.
 fn covariance(dims: usize, sample: &[f64]) -> Vec<f64> {
     let level = simd::level();
-    let lines = par_map(dims, |line| {
-        let mut sums = vec![0.0; dims - line];
-        dispatch!(level, _simd => add_products(dims, line, sample, &mut sums));
+    let bands = par_map(dims.div_ceil(BAND), |band| {
+        let mut sums = vec![0.0; BAND.min(dims - band * BAND) * dims];
+        dispatch!(level, _simd => add_products(dims, band * BAND, sample, &mut sums));
         sums
     });
-    let mut matrix = vec![0.0; dims * dims];
-    for (line, sums) in lines.iter().enumerate() {
-        for (column, &sum) in (line..).zip(sums) {
-            matrix[line * dims + column] = sum;
-            matrix[column * dims + line] = sum;
+    let mut matrix = bands.concat();
+    for line in 0..dims {
+        for column in 0..line {
+            matrix[line * dims + column] = matrix[column * dims + line];
         }
     }
     matrix
 }
 
-/// Adds the products of value `line` of each row and of all from it on.
+/// Adds the products of some values of each row, from `first` on, and of all from `first` on: lines of the matrix.
 #[inline(always)]
-fn add_products(dims: usize, line: usize, sample: &[f64], sums: &mut [f64]) {
+fn add_products(dims: usize, first: usize, sample: &[f64], sums: &mut [f64]) {
     for row in sample.chunks_exact(dims) {
-        let factor = row[line];
-        for (sum, value) in sums.iter_mut().zip(&row[line..]) {
-            *sum += factor * value;
+        let row = &row[first..];
+        for (&factor, sums) in row.iter().zip(sums.chunks_exact_mut(dims)) {
+            for (sum, value) in sums[first..].iter_mut().zip(row) {
+                *sum += factor * value;
+            }
         }
     }
 }

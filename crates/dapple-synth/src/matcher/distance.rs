@@ -28,18 +28,55 @@ pub fn distance_sq(a: &[f32], b: &[f32]) -> f32 {
     add_in_pairs(sums)
 }
 
-/// As [`distance_sq`], of numbers that zeros fill up to whole registers. A zero more in a sum changes no bit of it.
-#[inline(always)]
-pub(crate) fn distance_sq_padded<S: Simd>(simd: S, a: &[[f32; LANES]], b: &[[f32; LANES]]) -> f32 {
-    let mut sums = f32x16::splat(simd, 0.0);
-    for (&a, &b) in a.iter().zip(b) {
-        let difference = f32x16::simd_from(simd, a) - f32x16::simd_from(simd, b);
-        sums += difference * difference;
+/// Rows, each filled up with zeros to whole registers. A zero more in a sum changes no bit of it.
+#[derive(Clone, Debug)]
+pub(crate) struct PaddedRows {
+    values: Vec<[f32; LANES]>,
+    stride: usize,
+}
+
+impl PaddedRows {
+    /// Copies rows of `dims` numbers. There are none if `dims` is zero.
+    pub(crate) fn new(dims: usize, rows: &[f32]) -> Self {
+        let stride = dims.div_ceil(LANES).max(1);
+        let mut values = Vec::with_capacity(rows.len() / dims.max(1) * stride);
+        for row in rows.chunks(dims.max(1)) {
+            pad(row, &mut values);
+        }
+        Self { values, stride }
     }
-    let (low, high) = sums.split();
-    let (low, high) = (low + high).split();
-    let sums: [f32; 4] = (low + high).into();
-    (sums[0] + sums[2]) + (sums[1] + sums[3])
+
+    /// The number of rows.
+    pub(crate) fn len(&self) -> usize {
+        self.values.len() / self.stride
+    }
+
+    /// [`distance_sq`] of a row and a query filled up alike.
+    #[inline(always)]
+    pub(crate) fn distance_sq<S: Simd>(&self, simd: S, query: &[[f32; LANES]], row: u32) -> f32 {
+        let row = &self.values[row as usize * self.stride..][..self.stride];
+        let mut sums = f32x16::splat(simd, 0.0);
+        for (&query, &row) in query.iter().zip(row) {
+            let difference = f32x16::simd_from(simd, query) - f32x16::simd_from(simd, row);
+            sums += difference * difference;
+        }
+        let (low, high) = sums.split();
+        let (low, high) = (low + high).split();
+        let sums: [f32; 4] = (low + high).into();
+        (sums[0] + sums[2]) + (sums[1] + sums[3])
+    }
+}
+
+/// Adds numbers to whole registers, the last of them filled up with zeros.
+#[inline(always)]
+pub(crate) fn pad(values: &[f32], target: &mut Vec<[f32; LANES]>) {
+    let (values, rest) = values.as_chunks::<LANES>();
+    target.extend(values);
+    if !rest.is_empty() {
+        let mut last = [0.0; LANES];
+        last[..rest.len()].copy_from_slice(rest);
+        target.push(last);
+    }
 }
 
 /// How often at most a term of [`distance_sq`] is rounded: as a difference, twice in it, as a square, and added up.

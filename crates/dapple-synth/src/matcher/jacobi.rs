@@ -5,6 +5,9 @@
 /// Sweeps over all pairs: the method converges quadratically, so that fewer are needed.
 const SWEEPS: usize = 12;
 
+/// Where the sweeps end: the squares of what is off the diagonal, by those of the diagonal.
+const DONE: f64 = 1e-24;
+
 /// The eigenvalues, in no order, and the eigenvectors that belong to them, one after the other.
 ///
 /// `matrix` has `n` lines of `n` numbers and is symmetric.
@@ -14,7 +17,7 @@ pub(crate) fn eigen(n: usize, mut matrix: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
         vectors[i * n + i] = 1.0;
     }
     for _ in 0..SWEEPS {
-        if off_diagonal(n, &matrix) <= 1e-24 * diagonal(n, &matrix) {
+        if off_diagonal(n, &matrix) <= DONE * diagonal(n, &matrix) {
             break;
         }
         for p in 0..n {

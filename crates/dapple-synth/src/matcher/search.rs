@@ -1,94 +1,77 @@
-//! Best-first search in a tree.
+//! The search in a tree: groups of leaves in the order of their distance, and of each leaf no more than is needed.
 
 use super::basis::LANES;
-use super::distance::distance_sq_padded;
 use super::margin::Margin;
-use super::tree::{BOX_DIRECTIONS, Boxes, Tree};
-use super::{Match, MatcherMemory, PaddedRows};
-use fearless_simd::{f32x16, prelude::*};
-
-/// After how many directions the rows of a leaf are looked at again.
-const STEP: usize = 8;
+use super::tree::{Boxes, Pairs, STEP, Tree};
+use super::{Match, PaddedRows};
+use fearless_simd::{i16x32, i32x16, prelude::*};
 
 /// A search on its way.
-struct Search<'a, S> {
-    simd: S,
-    tree: &'a Tree,
-    rows: &'a PaddedRows,
-    margin: &'a Margin,
-    query: &'a [[f32; LANES]],
-    /// The query along the directions.
-    rotated: &'a [f32],
-    rotation_error: f64,
-    best: Option<Match>,
+pub(crate) struct Search<'a, S> {
+    pub(crate) simd: S,
+    pub(crate) tree: &'a Tree,
+    pub(crate) margin: &'a Margin,
+    pub(crate) rows: &'a PaddedRows,
+    /// The query, filled up with zeros.
+    pub(crate) query: &'a [[f32; LANES]],
+    /// The query along the directions, each pair of coordinates sixteen times.
+    pub(crate) placed: &'a [[Pairs; STEP]],
+    /// [`Margin::error`] of the query.
+    pub(crate) error: f64,
+    /// The nearest row so far.
+    pub(crate) best: Option<Match>,
     /// The distance of `best`, or the bound that the caller gave.
-    limit: f32,
-    /// What has a larger sum is not nearest.
-    threshold: f32,
-}
-
-/// The nearest row, given a first one that may be.
-#[inline(always)]
-pub(crate) fn search<S: Simd>(
-    simd: S,
-    (tree, margin): (&Tree, &Margin),
-    rows: &PaddedRows,
-    (best, limit): (Option<Match>, f32),
-    memory: &mut MatcherMemory,
-) -> Option<Match> {
-    let n_directions = tree.basis.n_directions();
-    memory.rotated.resize(n_directions / LANES, [0.0; LANES]);
-    tree.basis
-        .rotate(simd, &memory.centered, &mut memory.rotated);
-    let rotation_error = margin.rotation_error(memory.length);
-    let mut search = Search {
-        simd,
-        tree,
-        rows,
-        margin,
-        query: &memory.query,
-        rotated: memory.rotated.as_flattened(),
-        rotation_error,
-        best,
-        limit,
-        threshold: margin.threshold(limit, rotation_error),
-    };
-    search.run(&mut memory.order);
-    search.best
+    pub(crate) below: f32,
+    /// Rows with a larger sum of squares are not nearer than `below`.
+    pub(crate) threshold: i32,
 }
 
 impl<S: Simd> Search<'_, S> {
+    /// Finds the nearest row. `order` is memory.
     #[inline(always)]
-    fn run(&mut self, order: &mut Vec<u64>) {
+    pub(crate) fn run(&mut self, order: &mut Vec<u64>) {
         order.clear();
-        for (index, boxes) in self.tree.groups.iter().enumerate() {
-            let sums: [f32; LANES] = self.box_sums(boxes).into();
-            let first = index * LANES;
+        for (first, boxes) in (0..).step_by(LANES).zip(&self.tree.groups) {
+            let sums: [i32; LANES] = self.box_sums(boxes).into();
             let n = (self.tree.leaves.len() - first).min(LANES);
-            for (lane, &sum) in sums[..n].iter().enumerate() {
+            for (group, &sum) in (first..).zip(&sums[..n]) {
                 if sum <= self.threshold {
-                    order.push(u64::from(sum.to_bits()) << 32 | (first + lane) as u64);
+                    order.push(u64::from(sum.cast_unsigned()) << 32 | group as u64);
                 }
             }
         }
         order.sort_unstable();
         for &entry in order.iter() {
-            if f32::from_bits((entry >> 32) as u32) > self.threshold {
+            if (entry >> 32) as i32 > self.threshold {
                 break;
             }
             self.visit_group((entry & 0xffff_ffff) as usize);
         }
     }
 
-    /// Looks at the leaves of a group whose boxes are near: first at the nearest one, which brings the threshold down.
+    /// Compares with a row.
+    #[inline(always)]
+    pub(crate) fn compare(&mut self, row: u32) {
+        let distance_sq = self.rows.distance_sq(self.simd, self.query, row);
+        let is_first = |best: Match| distance_sq == best.distance_sq && row < best.row;
+        if distance_sq < self.below || self.best.is_some_and(is_first) {
+            self.best = Some(Match { row, distance_sq });
+            self.below = distance_sq;
+            self.threshold = self.margin.threshold(distance_sq, self.error);
+        }
+    }
+
+    /// Looks at the leaves of a group whose boxes are near.
     #[inline(always)]
     fn visit_group(&mut self, group: usize) {
         let first = group * LANES;
-        let n = (self.tree.heads.len() - first).min(LANES);
-        let sums = self.box_sums(&self.tree.leaves[group]);
+        let n = (self.tree.rows.len() - first).min(LANES);
         let mut all = (1_u64 << n) - 1;
-        if self.threshold == f32::INFINITY {
-            let (nearest, _) = least(sums.into());
+        let sums = self.box_sums(&self.tree.leaves[group]);
+        if self.best.is_none() {
+            // One leaf alone brings the threshold down for the others.
+            let sums: [i32; LANES] = sums.into();
+            let (nearest, _) = least(&sums[..n]);
             all &= !(1 << nearest);
             self.visit_leaves(first, 1 << nearest);
         }
@@ -96,103 +79,88 @@ impl<S: Simd> Search<'_, S> {
         self.visit_leaves(first, near);
     }
 
-    /// Compares the rows of leaves that may be near: those of the 16 from `first` on that have a bit in `near`.
+    /// Compares the rows of leaves that may be near: those of the sixteen from `first` on that have a bit in `near`.
     ///
-    /// All of them take the next step before one takes the step after it, and who stays is found without a branch: whether
-    /// a leaf stays cannot be predicted.
+    /// All of them take a step before one takes the next, and which ones stay is found without a branch: a processor could
+    /// not predict it.
     #[inline(always)]
     fn visit_leaves(&mut self, first: usize, mut near: u64) {
-        let simd = self.simd;
-        let (head_z, tail_z) = self.rotated.split_at(BOX_DIRECTIONS);
-        let mut leaves = [0_usize; LANES];
-        let mut sums = [[0.0_f32; LANES]; LANES];
-        let mut n = 0;
-        while near != 0 {
-            let leaf = first + near.trailing_zeros() as usize;
-            near &= near - 1;
-            let sum = self.add_squares(f32x16::splat(simd, 0.0), head_z, &self.tree.heads[leaf]);
-            leaves[n] = leaf;
-            sums[n] = sum.into();
-            n += usize::from(sum.simd_le(self.threshold).any_true());
-        }
-        for (step, z) in tail_z.chunks_exact(STEP).enumerate() {
-            if n == 0 {
+        let mut sums = [[0_i32; LANES]; LANES];
+        for (placed, pairs) in self.placed.iter().zip(&self.tree.steps) {
+            let pairs = &pairs[first..];
+            let mut left = near;
+            near = 0;
+            while left != 0 {
+                let leaf = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let sum = self.add_squares(sums[leaf], placed, &pairs[leaf]);
+                sums[leaf] = sum.into();
+                near |= u64::from(sum.simd_le(self.threshold).any_true()) << leaf;
+            }
+            if near == 0 {
                 return;
             }
-            let mut kept = 0;
-            for i in 0..n {
-                let leaf = leaves[i];
-                let tail = &self.tree.tails[leaf * tail_z.len() + step * STEP..][..STEP];
-                let sum = self.add_squares(f32x16::simd_from(simd, sums[i]), z, tail);
-                leaves[kept] = leaf;
-                sums[kept] = sum.into();
-                kept += usize::from(sum.simd_le(self.threshold).any_true());
-            }
-            n = kept;
         }
-        for i in 0..n {
-            self.compare_rows(leaves[i], sums[i]);
+        while near != 0 {
+            let leaf = near.trailing_zeros() as usize;
+            near &= near - 1;
+            self.compare_rows(first + leaf, sums[leaf]);
         }
     }
 
-    /// Compares the rows of a leaf whose sums are near, the nearest first.
+    /// Compares with the rows of a leaf whose sums are near, the nearest first.
     #[inline(always)]
-    fn compare_rows(&mut self, leaf: usize, mut sums: [f32; LANES]) {
-        loop {
-            let (lane, sum) = least(sums);
-            if sum > self.threshold || sum == f32::INFINITY {
+    fn compare_rows(&mut self, leaf: usize, mut sums: [i32; LANES]) {
+        for _ in 0..LANES {
+            let (lane, sum) = least(&sums);
+            if sum > self.threshold {
                 return;
             }
             self.compare(self.tree.rows[leaf][lane]);
-            sums[lane] = f32::INFINITY;
+            sums[lane] = i32::MAX;
         }
     }
 
+    /// Adds the squares of the differences of the query and sixteen rows along [`STEP`] pairs of directions.
     #[inline(always)]
-    fn add_squares(&self, sum: f32x16<S>, z: &[f32], values: &[[f32; LANES]]) -> f32x16<S> {
-        let mut sums = [sum, f32x16::splat(self.simd, 0.0)];
+    fn add_squares(
+        &self,
+        sums: [i32; LANES],
+        placed: &[Pairs; STEP],
+        pairs: &[Pairs; STEP],
+    ) -> i32x16<S> {
+        let mut sums = i32x16::simd_from(self.simd, sums);
         for i in 0..STEP {
-            let difference = f32x16::simd_from(self.simd, values[i]) - z[i];
-            sums[i % 2] += difference * difference;
+            let placed = i16x32::simd_from(self.simd, placed[i]);
+            let difference = i16x32::simd_from(self.simd, pairs[i]) - placed;
+            sums += difference.pairwise_dot_product(difference);
         }
-        sums[0] + sums[1]
+        sums
     }
 
+    /// The squared distances of the query from sixteen boxes.
     #[inline(always)]
-    fn box_sums(&self, boxes: &Boxes) -> f32x16<S> {
-        let mut sum = f32x16::splat(self.simd, 0.0);
-        for i in 0..BOX_DIRECTIONS {
-            let z = f32x16::splat(self.simd, self.rotated[i]);
-            let below = f32x16::simd_from(self.simd, boxes.low[i]) - z;
-            let above = z - f32x16::simd_from(self.simd, boxes.high[i]);
-            let outside = below.max(above).max(0.0);
-            sum += outside * outside;
+    fn box_sums(&self, boxes: &Boxes) -> i32x16<S> {
+        let mut sums = i32x16::splat(self.simd, 0);
+        for i in 0..STEP {
+            let placed = i16x32::simd_from(self.simd, self.placed[0][i]);
+            let below = i16x32::simd_from(self.simd, boxes.low[i]) - placed;
+            let above = placed - i16x32::simd_from(self.simd, boxes.high[i]);
+            let outside = below.max(above).max(0);
+            sums += outside.pairwise_dot_product(outside);
         }
-        sum
-    }
-
-    #[inline(always)]
-    fn compare(&mut self, row: u32) {
-        let distance_sq = distance_sq_padded(self.simd, self.query, self.rows.row(row));
-        let first = self
-            .best
-            .is_some_and(|best| distance_sq == best.distance_sq && row < best.row);
-        if distance_sq < self.limit || first {
-            self.best = Some(Match { row, distance_sq });
-            self.limit = distance_sq;
-            self.threshold = self.margin.threshold(distance_sq, self.rotation_error);
-        }
+        sums
     }
 }
 
-/// The least number and its place.
+/// The place of the least number, and the number.
 #[inline(always)]
-fn least(values: [f32; LANES]) -> (usize, f32) {
-    let mut best = (0, values[0]);
-    for (lane, &value) in values.iter().enumerate() {
-        if value < best.1 {
-            best = (lane, value);
+fn least(values: &[i32]) -> (usize, i32) {
+    let mut least = (0, i32::MAX);
+    for (place, &value) in values.iter().enumerate() {
+        if value < least.1 {
+            least = (place, value);
         }
     }
-    best
+    least
 }

@@ -2,131 +2,173 @@
 //!
 //! Rows are halved along the direction in which they spread most (Bentley, Multidimensional binary search trees used for
 //! associative searching, Communications of the ACM 18, 1975) until sixteen are left: a leaf, whose rows fill the lanes of a
-//! register. Sixteen leaves after one another are a subtree, and so are sixteen of those; the boxes of sixteen are tested
+//! register. Sixteen leaves one after the other are a subtree, and so are sixteen of those; the boxes of sixteen are tested
 //! at once.
+//!
+//! Coordinates are whole numbers of a [`Lattice`]. Those along two directions stand side by side, as the instruction that
+//! multiplies and adds pairs wants them.
 
 use super::basis::{Basis, LANES};
+use super::lattice::Lattice;
 use super::margin;
 use super::parallel::par_map;
 use dapple_raster::simd;
 use fearless_simd::dispatch;
 
-/// Directions along which rows are halved and have boxes: those in which they differ most.
-pub(crate) const BOX_DIRECTIONS: usize = 8;
+/// Pairs of directions after which the rows of a leaf are looked at again.
+pub(crate) const STEP: usize = 4;
+
+/// Directions along which rows are halved and have boxes: those of the first step, in which they differ most.
+const BOX_DIRECTIONS: usize = 2 * STEP;
+
+/// The coordinates of sixteen rows along two directions: both of the first row, both of the second, and so on.
+pub(crate) type Pairs = [i16; 2 * LANES];
 
 /// Rows that are rotated by one thread at a time.
-const CHUNK: usize = 1024;
+const CHUNK: usize = 512;
 
-/// Boxes of sixteen things, for each direction the least or the largest coordinate.
+/// Boxes of sixteen things: the least and the largest coordinates.
 #[derive(Clone, Debug)]
 pub(crate) struct Boxes {
-    pub(crate) low: [[f32; LANES]; BOX_DIRECTIONS],
-    pub(crate) high: [[f32; LANES]; BOX_DIRECTIONS],
+    pub(crate) low: [Pairs; STEP],
+    pub(crate) high: [Pairs; STEP],
 }
 
 /// The rows along the directions of a basis, in leaves.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
-    pub(crate) basis: Basis,
-    /// The length of the longest centered row.
-    pub(crate) longest: f64,
     /// The row in each lane of each leaf. The lanes that are left over in the last leaf repeat its last row.
     pub(crate) rows: Vec<[u32; LANES]>,
-    /// For each leaf its coordinates along the first [`BOX_DIRECTIONS`] directions.
-    pub(crate) heads: Vec<[[f32; LANES]; BOX_DIRECTIONS]>,
-    /// For each leaf its coordinates along all other directions.
-    pub(crate) tails: Vec<[f32; LANES]>,
+    /// The coordinates of each leaf along the first eight directions, along the next eight, and so on. What is looked at
+    /// after one another lies close together.
+    pub(crate) steps: Vec<Vec<[Pairs; STEP]>>,
     /// Boxes around the rows of sixteen leaves each.
     pub(crate) leaves: Vec<Boxes>,
     /// Boxes around the leaves of sixteen of those each.
     pub(crate) groups: Vec<Boxes>,
 }
 
-impl Tree {
-    /// Sorts rows of `dims` numbers. Nothing if they are not finite or too long.
-    pub(crate) fn new(dims: usize, all: &[f32]) -> Option<Self> {
-        let basis = Basis::new(dims, all);
-        let (rotated, longest) = rotate(dims, all, &basis);
-        if longest.is_nan() || longest > margin::LONGEST {
+/// Rows along directions, before they are sorted.
+pub(crate) struct Placed {
+    n_directions: usize,
+    coordinates: Vec<i16>,
+    pub(crate) lattice: Lattice,
+    /// The length of the longest centered row.
+    pub(crate) longest: f64,
+}
+
+impl Placed {
+    /// Rotates rows of `dims` numbers. Nothing if they are not finite or too long.
+    pub(crate) fn new(dims: usize, rows: &[f32], basis: &Basis) -> Option<Self> {
+        let n_directions = basis.n_directions();
+        let chunks: Vec<&[f32]> = rows.chunks(CHUNK * dims).collect();
+        let rotated = par_map(chunks.len(), |chunk| rotate(dims, chunks[chunk], basis));
+        let longest = rotated.iter().fold(0.0, |max, part| part.longest.max(max));
+        // This is false for a length that is not a number, which `f64::max` would not keep.
+        let all_short = rotated.iter().all(|part| part.length_sq < f64::INFINITY);
+        if !all_short || longest > margin::LONGEST {
             return None;
         }
-        let mut indices: Vec<u32> = (0..(all.len() / dims) as u32).collect();
-        let n_directions = basis.n_directions();
-        sort(&mut indices, &rotated, n_directions);
-        let mut tree = Self {
-            basis,
+        let length_sq: f64 = rotated.iter().map(|part| part.length_sq).sum();
+        let spread = (length_sq / (rows.len() / dims) as f64).sqrt();
+        let lattice = Lattice::new(longest, spread);
+        let coordinates = par_map(rotated.len(), |part| {
+            let values = rotated[part].values.as_flattened();
+            let mut placed = vec![0; values.len()];
+            for (row, placed) in values
+                .chunks_exact(n_directions)
+                .zip(placed.chunks_exact_mut(n_directions))
+            {
+                lattice.place(row, placed);
+            }
+            placed
+        });
+        Some(Self {
+            n_directions,
+            coordinates: coordinates.concat(),
+            lattice,
             longest,
-            rows: Vec::new(),
-            heads: Vec::new(),
-            tails: Vec::new(),
-            leaves: Vec::new(),
-            groups: Vec::new(),
-        };
-        for leaf in indices.chunks(LANES) {
-            let rows = std::array::from_fn(|lane| leaf[lane.min(leaf.len() - 1)]);
-            let coordinates =
-                |direction: usize| rows.map(|row| rotated[row as usize * n_directions + direction]);
-            tree.rows.push(rows);
-            tree.heads.push(std::array::from_fn(coordinates));
-            tree.tails
-                .extend((BOX_DIRECTIONS..n_directions).map(coordinates));
-        }
-        let boxes: Vec<_> = tree.heads.iter().map(around_rows).collect();
-        tree.leaves = boxes.chunks(LANES).map(side_by_side).collect();
-        let boxes: Vec<_> = tree.leaves.iter().map(around_boxes).collect();
-        tree.groups = boxes.chunks(LANES).map(side_by_side).collect();
-        Some(tree)
+        })
+    }
+
+    #[inline(always)]
+    fn row(&self, row: u32) -> &[i16] {
+        &self.coordinates[row as usize * self.n_directions..][..self.n_directions]
     }
 }
 
-/// The coordinates of all rows, and the length of the longest one centered.
-fn rotate(dims: usize, all: &[f32], basis: &Basis) -> (Vec<f32>, f64) {
+impl Tree {
+    /// Sorts rows into leaves.
+    pub(crate) fn new(placed: &Placed) -> Self {
+        let n_rows = placed.coordinates.len() / placed.n_directions;
+        let mut order: Vec<u32> = (0..n_rows as u32).collect();
+        sort(&mut order, placed);
+        let leaf = |leaf: &[u32]| std::array::from_fn(|lane| leaf[lane.min(leaf.len() - 1)]);
+        let rows: Vec<[u32; LANES]> = order.chunks(LANES).map(leaf).collect();
+        let steps = par_map(placed.n_directions / (2 * STEP), |step| {
+            let coordinates = |leaf: &[u32; LANES]| {
+                let lanes = leaf.map(|row| &placed.row(row)[2 * STEP * step..][..2 * STEP]);
+                std::array::from_fn(|pair| pairs(&lanes, pair))
+            };
+            rows.iter().map(coordinates).collect()
+        });
+        let around = |leaf: &[u32; LANES]| around_rows(&leaf.map(|row| placed.row(row)));
+        let boxes: Vec<Box> = rows.iter().map(around).collect();
+        let boxes_16: Vec<Box> = boxes.chunks(LANES).map(around_boxes).collect();
+        Self {
+            rows,
+            steps,
+            leaves: boxes.chunks(LANES).map(side_by_side).collect(),
+            groups: boxes_16.chunks(LANES).map(side_by_side).collect(),
+        }
+    }
+}
+
+/// A part of the rows along directions.
+struct Rotated {
+    values: Vec<[f32; LANES]>,
+    longest: f64,
+    /// The sum of the squared lengths of the centered rows.
+    length_sq: f64,
+}
+
+fn rotate(dims: usize, rows: &[f32], basis: &Basis) -> Rotated {
     let level = simd::level();
     let n_groups = basis.n_directions() / LANES;
-    let chunks: Vec<&[f32]> = all.chunks(CHUNK * dims).collect();
-    let rotated = par_map(chunks.len(), |chunk| {
-        let mut centered = Vec::with_capacity(dims);
-        let mut rotated = vec![[0.0; LANES]; chunks[chunk].len() / dims * n_groups];
-        let mut longest = 0.0_f64;
-        for (row, rotated) in chunks[chunk]
-            .chunks_exact(dims)
-            .zip(rotated.chunks_exact_mut(n_groups))
-        {
-            dispatch!(level, simd => {
-                basis.center(row, &mut centered);
-                basis.rotate(simd, &centered, rotated);
-            });
-            longest = longest.max(margin::length(&centered));
-        }
-        (rotated, longest)
-    });
-    let longest = rotated
-        .iter()
-        .fold(0.0_f64, |max, (_, length)| max.max(*length));
-    let rotated: Vec<f32> = rotated
-        .iter()
-        .flat_map(|(rotated, _)| rotated.as_flattened())
-        .copied()
-        .collect();
-    (rotated, longest)
+    let mut centered = Vec::with_capacity(dims);
+    let mut part = Rotated {
+        values: vec![[0.0; LANES]; rows.len() / dims * n_groups],
+        longest: 0.0,
+        length_sq: 0.0,
+    };
+    for (row, rotated) in rows
+        .chunks_exact(dims)
+        .zip(part.values.chunks_exact_mut(n_groups))
+    {
+        let length = dispatch!(level, simd => {
+            basis.center(row, &mut centered);
+            basis.rotate(simd, &centered, rotated);
+            margin::length(&centered)
+        });
+        part.longest = part.longest.max(length);
+        part.length_sq += length * length;
+    }
+    part
 }
 
 /// Halves rows, and the halves again, down to leaves. All leaves but the last one are full, and sixteen of them that are
 /// tested at once are a subtree.
-fn sort(indices: &mut [u32], rotated: &[f32], n_directions: usize) {
-    let n_leaves = indices.len().div_ceil(LANES);
+fn sort(rows: &mut [u32], placed: &Placed) {
+    let n_leaves = rows.len().div_ceil(LANES);
     if n_leaves < 2 {
         return;
     }
-    let (mut low, mut high) = (
-        [f32::INFINITY; BOX_DIRECTIONS],
-        [f32::NEG_INFINITY; BOX_DIRECTIONS],
-    );
-    for &row in indices.iter() {
-        let coordinates = &rotated[row as usize * n_directions..][..BOX_DIRECTIONS];
-        for (i, &value) in coordinates.iter().enumerate() {
-            low[i] = low[i].min(value);
-            high[i] = high[i].max(value);
+    let mut low = [i16::MAX; BOX_DIRECTIONS];
+    let mut high = [i16::MIN; BOX_DIRECTIONS];
+    for &row in rows.iter() {
+        for (i, &coordinate) in placed.row(row)[..BOX_DIRECTIONS].iter().enumerate() {
+            low[i] = low[i].min(coordinate);
+            high[i] = high[i].max(coordinate);
         }
     }
     let mut widest = 0;
@@ -135,37 +177,41 @@ fn sort(indices: &mut [u32], rotated: &[f32], n_directions: usize) {
             widest = i;
         }
     }
-    let key = |&row: &u32| rotated[row as usize * n_directions + widest];
     let middle = n_leaves.next_power_of_two() / 2 * LANES;
-    indices.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
-    let (before, after) = indices.split_at_mut(middle);
-    sort(before, rotated, n_directions);
-    sort(after, rotated, n_directions);
+    rows.select_nth_unstable_by_key(middle, |&row| (placed.row(row)[widest], row));
+    let (before, after) = rows.split_at_mut(middle);
+    sort(before, placed);
+    sort(after, placed);
 }
 
-/// A box: the least and the largest coordinate for each direction.
-type Box = [[f32; BOX_DIRECTIONS]; 2];
-
-/// The box around nothing, which is infinitely far from everything.
-const NOTHING: Box = [
-    [f32::INFINITY; BOX_DIRECTIONS],
-    [f32::NEG_INFINITY; BOX_DIRECTIONS],
-];
-
-fn around_rows(head: &[[f32; LANES]; BOX_DIRECTIONS]) -> Box {
-    [head.map(least), head.map(largest)]
+/// The coordinates of rows along two directions.
+fn pairs(lanes: &[&[i16]; LANES], pair: usize) -> Pairs {
+    std::array::from_fn(|i| lanes[i / 2][2 * pair + i % 2])
 }
 
-fn around_boxes(boxes: &Boxes) -> Box {
-    [boxes.low.map(least), boxes.high.map(largest)]
+/// A box: the least and the largest coordinates.
+type Box = [[i16; BOX_DIRECTIONS]; 2];
+
+fn around_rows(lanes: &[&[i16]; LANES]) -> Box {
+    let along = |i: usize| lanes.map(|row| row[i]);
+    [
+        std::array::from_fn(|i| least(along(i))),
+        std::array::from_fn(|i| largest(along(i))),
+    ]
 }
 
-/// Up to sixteen boxes side by side. Lanes that are left over hold nothing.
+fn around_boxes(boxes: &[Box]) -> Box {
+    [
+        std::array::from_fn(|i| least(boxes.iter().map(|b| b[0][i]))),
+        std::array::from_fn(|i| largest(boxes.iter().map(|b| b[1][i]))),
+    ]
+}
+
+/// Up to sixteen boxes side by side. What is in the lanes that are left over does not matter.
 fn side_by_side(boxes: &[Box]) -> Boxes {
     let side = |side: usize| {
-        std::array::from_fn(|direction| {
-            std::array::from_fn(|lane| boxes.get(lane).unwrap_or(&NOTHING)[side][direction])
-        })
+        let lanes = |i: usize| &boxes[i.min(boxes.len() - 1)][side];
+        std::array::from_fn(|pair| std::array::from_fn(|i| lanes(i / 2)[2 * pair + i % 2]))
     };
     Boxes {
         low: side(0),
@@ -173,10 +219,10 @@ fn side_by_side(boxes: &[Box]) -> Boxes {
     }
 }
 
-fn least(values: [f32; LANES]) -> f32 {
-    values.into_iter().fold(f32::INFINITY, f32::min)
+fn least(values: impl IntoIterator<Item = i16>) -> i16 {
+    values.into_iter().fold(i16::MAX, i16::min)
 }
 
-fn largest(values: [f32; LANES]) -> f32 {
-    values.into_iter().fold(f32::NEG_INFINITY, f32::max)
+fn largest(values: impl IntoIterator<Item = i16>) -> i16 {
+    values.into_iter().fold(i16::MIN, i16::max)
 }
