@@ -1,16 +1,16 @@
 //! A large animal with a trunk.
 
 use super::{ball, cone, ellipsoid, turned};
-use crate::solid::{Blend, Tube};
+use crate::solid::{Blend, Grown, Tube};
 use crate::{Mesh, MeshError, polygonize_n};
 use glam::DVec3;
 
 /// The tip of the trunk.
-pub const TRUNK: DVec3 = DVec3::new(0.0, -0.5, 1.3);
+pub const TRUNK: DVec3 = DVec3::new(0.0, -0.43, 1.34);
 /// The middle of the forehead.
 pub const FOREHEAD: DVec3 = DVec3::new(0.0, 0.6, 0.75);
 /// The middle of the back.
-pub const BACK: DVec3 = DVec3::new(0.0, 0.65, -0.25);
+pub const BACK: DVec3 = DVec3::new(0.0, 0.62, -0.25);
 
 /// A side at which no part is missed.
 const SIDE: f64 = 0.07;
@@ -41,13 +41,23 @@ fn solid() -> Blend {
         [0.0, -0.36, -1.02, 0.05],
         [0.0, -0.46, -1.01, 0.035],
     ];
+    let ear = Grown {
+        solid: turned([0.5, 0.28, 0.42], [0.25, 0.34, 0.02], [0.0, 0.55, -0.15]),
+        by: 0.045,
+    };
     Blend::of(ellipsoid([0.0, 0.14, -0.25], [0.46, 0.48, 0.66]))
         .with(ball([0.0, 0.36, 0.58], 0.3), 0.25)
         .with(ball([0.0, 0.5, 0.52], 0.2), 0.15)
         .with(Tube::through(&trunk), 0.12)
-        .with_pair(cone([0.13, 0.1, 0.8, 0.06], [0.2, -0.12, 1.16, 0.035]), 0.05)
-        .with_pair(turned([0.5, 0.3, 0.4], [0.3, 0.38, 0.06], [0.0, 0.55, -0.15]), 0.08)
+        .with_pair(
+            cone([0.13, 0.1, 0.8, 0.06], [0.2, -0.12, 1.16, 0.035]),
+            0.05,
+        )
+        .with_pair(ear, 0.1)
         .with_pair(cone([0.26, -0.1, 0.2, 0.2], [0.26, -0.8, 0.2, 0.15]), 0.15)
-        .with_pair(cone([0.26, -0.1, -0.62, 0.22], [0.26, -0.8, -0.66, 0.15]), 0.15)
+        .with_pair(
+            cone([0.26, -0.1, -0.62, 0.22], [0.26, -0.8, -0.66, 0.15]),
+            0.15,
+        )
         .with(Tube::through(&tail), 0.06)
 }

@@ -6,7 +6,7 @@ use crate::{Mesh, MeshError, polygonize_n};
 use glam::DVec3;
 
 /// The top of the head.
-pub const CROWN: DVec3 = DVec3::new(0.0, 0.9, -0.15);
+pub const CROWN: DVec3 = DVec3::new(0.0, 0.96, -0.16);
 
 /// A side at which no part is missed.
 const SIDE: f64 = 0.05;
@@ -74,8 +74,7 @@ fn solid() -> Blend {
 
 /// An arm that leaves in a direction of the plane.
 fn arm(points: &[[f64; 4]; 7], [x, z]: [f64; 2]) -> Tube {
-    let placed = points.map(|[out, up, left, radius]| {
-        [out * x - left * z, up, out * z + left * x, radius]
-    });
+    let placed =
+        points.map(|[out, up, left, radius]| [out * x - left * z, up, out * z + left * x, radius]);
     Tube::through(&placed)
 }

@@ -6,12 +6,12 @@ use crate::{Mesh, MeshError, polygonize_n};
 use glam::DVec3;
 
 /// The tip of the muzzle.
-pub const MUZZLE: DVec3 = DVec3::new(0.0, 0.5, 1.05);
+pub const MUZZLE: DVec3 = DVec3::new(0.0, 0.54, 1.13);
 /// The middle of the back.
-pub const BACK: DVec3 = DVec3::new(0.0, 0.4, -0.1);
+pub const BACK: DVec3 = DVec3::new(0.0, 0.39, -0.1);
 
 /// A side at which no part is missed.
-const SIDE: f64 = 0.06;
+const SIDE: f64 = 0.04;
 
 /// The animal: it stands on four legs with its head up, and looks toward +z.
 ///
@@ -58,10 +58,23 @@ fn solid() -> Blend {
         .with(ellipsoid([0.0, 0.12, 0.3], [0.22, 0.27, 0.24]), 0.15)
         .with(Tube::through(&neck), 0.12)
         // The mane, the head and the ears.
-        .with(turned([0.0, 0.64, 0.5], [0.035, 0.34, 0.1], [0.67, 0.0, 0.0]), 0.05)
-        .with(cone([0.0, 0.78, 0.78, 0.12], [0.0, 0.58, 1.02, 0.075]), 0.06)
+        .with(
+            turned([0.0, 0.64, 0.5], [0.035, 0.34, 0.1], [0.67, 0.0, 0.0]),
+            0.05,
+        )
+        .with(
+            cone([0.0, 0.78, 0.78, 0.12], [0.0, 0.58, 1.02, 0.075]),
+            0.06,
+        )
         .with(ellipsoid([0.0, 0.55, 1.04], [0.08, 0.08, 0.09]), 0.05)
-        .with_pair(turned([0.085, 0.94, 0.72], [0.042, 0.12, 0.035], [-0.2, 0.3, -0.35]), 0.04)
+        .with_pair(
+            turned(
+                [0.085, 0.94, 0.72],
+                [0.042, 0.12, 0.035],
+                [-0.2, 0.3, -0.35],
+            ),
+            0.04,
+        )
         .with_pair(Tube::through(&front_leg), 0.1)
         .with_pair(Tube::through(&hind_leg), 0.1)
         .with(Tube::through(&tail), 0.06)

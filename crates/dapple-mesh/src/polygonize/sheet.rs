@@ -98,9 +98,9 @@ impl Sheet {
                 continue;
             }
             let at = self.positions[vertex as usize];
-            let sum: DVec3 = neighbors
-                .iter()
-                .fold(DVec3::ZERO, |sum, &next| sum + self.positions[next as usize]);
+            let sum: DVec3 = neighbors.iter().fold(DVec3::ZERO, |sum, &next| {
+                sum + self.positions[next as usize]
+            });
             let normal = self.normal_at(&[vertex]);
             let slide = (sum / neighbors.len() as f64 - at) * SLIDE;
             let slide = slide - normal * slide.dot(normal);
@@ -172,8 +172,8 @@ impl Sheet {
             return;
         }
         let corners = |face: [u32; 3]| face.map(|vertex| self.positions[vertex as usize]);
-        let [before, after] = [[[a, b, c], [b, a, d]], [[a, d, c], [d, b, c]]]
-            .map(|faces| faces.map(corners));
+        let [before, after] =
+            [[[a, b, c], [b, a, d]], [[a, d, c], [d, b, c]]].map(|faces| faces.map(corners));
         let worse = |faces: [[DVec3; 3]; 2]| evenness(faces[0]).min(evenness(faces[1]));
         let normal = area_normal(before[0]) + area_normal(before[1]);
         let turned = after.iter().any(|&face| {
@@ -200,7 +200,10 @@ impl Sheet {
                 let face = self.faces[face as usize];
                 let before = face.map(|corner| self.positions[corner as usize]);
                 least_before = least_before.min(evenness(before));
-                let n_moved = face.iter().filter(|corner| vertices.contains(corner)).count();
+                let n_moved = face
+                    .iter()
+                    .filter(|corner| vertices.contains(corner))
+                    .count();
                 if n_moved > 1 {
                     continue;
                 }
@@ -214,7 +217,8 @@ impl Sheet {
                 let [old, new] = [before, after].map(area_normal);
                 // The normal of a tiny face says little; then that of the faces around it does.
                 let sides = [(old, old.length()), (normal, 1.0)];
-                let kept = |&(side, length): &(DVec3, f64)| new.dot(side) >= TURN * new.length() * length;
+                let kept =
+                    |&(side, length): &(DVec3, f64)| new.dot(side) >= TURN * new.length() * length;
                 if !sides.iter().any(kept) {
                     return false;
                 }
@@ -326,5 +330,9 @@ fn evenness([a, b, c]: [DVec3; 3]) -> f64 {
     // Twice the area of an equilateral triangle is this part of its sides' squares.
     const EQUILATERAL: f64 = 0.288_675_134_594_812_9;
     let doubled = area_normal([a, b, c]).length();
-    if sides > 0.0 { doubled / (sides * EQUILATERAL) } else { 0.0 }
+    if sides > 0.0 {
+        doubled / (sides * EQUILATERAL)
+    } else {
+        0.0
+    }
 }

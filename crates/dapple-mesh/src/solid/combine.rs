@@ -61,7 +61,10 @@ impl Solid for Blend {
         // A seam reaches out by a sixth of its width at the most.
         let around = |[low, high]: [DVec3; 2], part: &Part| {
             let seam = part.width / 6.0;
-            [low.min(part.bounds[0]) - seam, high.max(part.bounds[1]) + seam]
+            [
+                low.min(part.bounds[0]) - seam,
+                high.max(part.bounds[1]) + seam,
+            ]
         };
         let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];
         self.parts.iter().fold(nothing, around)
