@@ -65,7 +65,7 @@ fn outer_distance(radii: DVec3, at: DVec3) -> f64 {
         let excess = terms.element_sum() - 1.0;
         let step = excess / (2.0 * (terms * inverse).element_sum());
         // The last bits do not matter, and NaN ends the search.
-        if !(excess > 1e-13) {
+        if excess.is_nan() || excess <= 1e-13 {
             break;
         }
         t += step;
