@@ -13,7 +13,7 @@ pub const FOREHEAD: DVec3 = DVec3::new(0.0, 0.6, 0.75);
 pub const BACK: DVec3 = DVec3::new(0.0, 0.62, -0.25);
 
 /// A side at which no part is missed.
-const SIDE: f64 = 0.07;
+const SIDE: f64 = 0.045;
 
 /// The animal: it stands on four thick legs with its ears spread, and looks toward +z.
 ///
