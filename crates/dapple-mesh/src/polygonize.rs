@@ -64,7 +64,8 @@ pub fn polygonize_n(solid: &dyn Solid, side: f64, n_triangles: usize) -> Result<
         cut = Cut::new(solid, cut.side * finer)?;
         sheet = cut.sheet()?;
     }
-    evened(&cut, sheet, n_triangles)
+    // A closed mesh has an even number.
+    evened(&cut, sheet, n_triangles / 2 * 2)
 }
 
 /// A solid that ends at its bounds, and the lattice.
@@ -98,12 +99,11 @@ impl<'a> Cut<'a> {
     }
 
     fn distance(&self, at: DVec3) -> f64 {
-        let distance = self.solid.distance(at).max(box_distance(self.bounds, at));
+        let distance = self.solid.distance(at);
         if distance.is_nan() {
-            f64::MAX
-        } else {
-            distance
+            return f64::MAX;
         }
+        distance.max(box_distance(self.bounds, at))
     }
 
     /// The triangles in the tetrahedra of the lattice.
@@ -118,15 +118,19 @@ impl<'a> Cut<'a> {
 
 /// Evens out the triangles of a sheet until about `count` are left.
 fn evened(cut: &Cut, mut sheet: Sheet, count: usize) -> Result<Mesh, MeshError> {
-    /// Each collapses a sixth of the edges that it may, or all that are too many.
+    /// Enough for the largest numbers: each takes a few percent of the faces at least, until it finds none.
     const ROUNDS: u32 = 60;
     /// After that the angles hardly get better.
-    const LAST_ROUNDS: u32 = 4;
+    const LAST_ROUNDS: u32 = 3;
     for _ in 0..ROUNDS {
-        if sheet.n_faces() <= count {
+        let before = sheet.n_faces();
+        if before <= count {
             break;
         }
         sheet.collapse(cut, count);
+        if sheet.n_faces() == before {
+            break;
+        }
         sheet.flip();
         sheet.smooth(cut);
     }

@@ -6,11 +6,11 @@ use crate::{Mesh, MeshError, polygonize_n};
 use glam::DVec3;
 
 /// The tip of the nose.
-pub const NOSE: DVec3 = DVec3::new(0.0, 0.28, 0.6);
+pub const NOSE: DVec3 = DVec3::new(0.0, 0.28, 0.55);
 /// The tip of the left ear.
 pub const LEFT_EAR: DVec3 = DVec3::new(0.25, 1.05, -0.05);
 /// The end of the tail.
-pub const TAIL: DVec3 = DVec3::new(0.0, -0.65, -0.65);
+pub const TAIL: DVec3 = DVec3::new(0.0, -0.68, -0.67);
 
 /// A side at which no part is missed.
 const SIDE: f64 = 0.08;
@@ -45,7 +45,7 @@ fn solid() -> Blend {
         0.1,
     )
     .with_pair(
-        cone([0.17, -0.25, 0.25, 0.12], [0.13, -0.78, 0.42, 0.075]),
+        cone([0.18, -0.2, 0.22, 0.12], [0.18, -0.42, 0.42, 0.08]),
         0.1,
     )
     .with(ball([0.0, -0.68, -0.52], 0.15), 0.08)

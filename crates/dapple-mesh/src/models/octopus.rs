@@ -6,7 +6,7 @@ use crate::{Mesh, MeshError, polygonize_n};
 use glam::DVec3;
 
 /// The top of the head.
-pub const CROWN: DVec3 = DVec3::new(0.0, 0.9, -0.15);
+pub const CROWN: DVec3 = DVec3::new(0.0, 0.96, -0.16);
 
 /// A side at which no part is missed.
 const SIDE: f64 = 0.05;

@@ -6,11 +6,11 @@ use crate::{Mesh, MeshError, polygonize_n};
 use glam::DVec3;
 
 /// The tip of the snout.
-pub const SNOUT: DVec3 = DVec3::new(0.0, 0.0, 0.85);
+pub const SNOUT: DVec3 = DVec3::new(0.0, 0.0, 0.86);
 /// The tip of the left wing.
-pub const LEFT_WING: DVec3 = DVec3::new(1.0, 0.1, 0.0);
+pub const LEFT_WING: DVec3 = DVec3::new(1.0, 0.16, 0.0);
 /// The end of the tail.
-pub const TAIL: DVec3 = DVec3::new(0.1, 0.0, -1.4);
+pub const TAIL: DVec3 = DVec3::new(0.04, 0.0, -1.42);
 
 /// A side at which no part is missed.
 const SIDE: f64 = 0.04;
@@ -27,9 +27,9 @@ pub fn ray(n_triangles: usize) -> Result<Mesh, MeshError> {
 fn solid() -> Blend {
     // Round from above, and then flat.
     let disc = Blend::of(ellipsoid([0.0, 0.0, 0.18], [0.34, 0.42, 0.5]))
-        .with_pair(cone([0.0, 0.0, 0.18, 0.4], [0.93, 0.0, -0.08, 0.08]), 0.2)
-        .with(cone([0.0, 0.0, 0.35, 0.3], [0.0, 0.0, 0.8, 0.06]), 0.2)
-        .with_pair(cone([0.1, 0.0, -0.2, 0.12], [0.15, 0.0, -0.38, 0.07]), 0.1);
+        .with_pair(cone([0.0, 0.0, 0.2, 0.48], [0.9, 0.0, -0.02, 0.1]), 0.25)
+        .with(cone([0.0, 0.0, 0.35, 0.36], [0.0, 0.0, 0.78, 0.08]), 0.25)
+        .with_pair(cone([0.1, 0.0, -0.25, 0.12], [0.14, 0.0, -0.4, 0.07]), 0.12);
     let disc = Scaled {
         solid: disc,
         scale: DVec3::new(1.0, 0.33, 1.0),

@@ -6,12 +6,12 @@ use crate::{Mesh, MeshError, polygonize_n};
 use glam::DVec3;
 
 /// The tip of the muzzle.
-pub const MUZZLE: DVec3 = DVec3::new(0.0, 0.5, 1.05);
+pub const MUZZLE: DVec3 = DVec3::new(0.0, 0.54, 1.13);
 /// The middle of the back.
-pub const BACK: DVec3 = DVec3::new(0.0, 0.4, -0.1);
+pub const BACK: DVec3 = DVec3::new(0.0, 0.39, -0.1);
 
 /// A side at which no part is missed.
-const SIDE: f64 = 0.06;
+const SIDE: f64 = 0.04;
 
 /// The animal: it stands on four legs with its head up, and looks toward +z.
 ///
@@ -38,8 +38,8 @@ fn solid() -> Blend {
         [0.145, -0.9, 0.37, 0.06],
     ];
     let hind_leg = [
-        [0.14, 0.1, -0.5, 0.19],
-        [0.15, -0.15, -0.5, 0.14],
+        [0.14, 0.1, -0.5, 0.18],
+        [0.165, -0.16, -0.5, 0.115],
         [0.15, -0.42, -0.62, 0.075],
         [0.15, -0.52, -0.64, 0.062],
         [0.15, -0.75, -0.58, 0.046],

@@ -308,7 +308,7 @@ fn settled(cut: &Cut, from: DVec3, along: DVec3) -> Option<DVec3> {
             return Some(at);
         }
         let step = -distance / slope;
-        if !(step.abs() <= cut.side) {
+        if step.is_nan() || step.abs() > cut.side {
             return None;
         }
         at += along * step;

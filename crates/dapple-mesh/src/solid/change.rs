@@ -66,6 +66,26 @@ impl<S: Solid> Solid for Scaled<S> {
     }
 }
 
+/// A solid with a layer of even thickness around it, which rounds its edges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grown<S> {
+    /// The solid before.
+    pub solid: S,
+    /// The thickness of the layer.
+    pub by: f64,
+}
+
+impl<S: Solid> Solid for Grown<S> {
+    fn distance(&self, at: DVec3) -> f64 {
+        self.solid.distance(at) - self.by
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        let [low, high] = self.solid.bounds();
+        [low - self.by, high + self.by]
+    }
+}
+
 /// A solid whose sides are bent up: what is at x is lifted by `lift` x².
 ///
 /// Its distance is the true one at the most, and less where it is bent.
@@ -103,7 +123,7 @@ impl<S: Solid> Bent<S> {
 impl<S: Solid> Solid for Bent<S> {
     fn distance(&self, at: DVec3) -> f64 {
         // Beyond the solid the bend goes on straight, so that its slope has a limit.
-        let x = at.x.clamp(self.bounds[0].x, self.bounds[1].x);
+        let x = at.x.max(self.bounds[0].x).min(self.bounds[1].x);
         let lift = self.lift * x * (2.0 * at.x - x);
         self.solid.distance(at - DVec3::Y * lift) * self.shrink
     }

@@ -65,7 +65,7 @@ fn outer_distance(radii: DVec3, at: DVec3) -> f64 {
         let excess = terms.element_sum() - 1.0;
         let step = excess / (2.0 * (terms * inverse).element_sum());
         // The last bits do not matter, and NaN ends the search.
-        if !(excess > 1e-13) {
+        if excess.is_nan() || excess <= 1e-13 {
             break;
         }
         t += step;
@@ -84,33 +84,65 @@ pub struct RoundCone {
 
 impl Solid for RoundCone {
     fn distance(&self, at: DVec3) -> f64 {
-        let [from, to] = self.ends;
-        let [first, last] = self.radii;
-        let (axis, reach) = (to - from, at - from);
-        let length = axis.length();
-        let narrowing = first - last;
-        if narrowing.abs() >= length {
-            // One of the balls holds the other.
-            let (center, radius) = if narrowing >= 0.0 {
-                (from, first)
-            } else {
-                (to, last)
-            };
-            return (at - center).length() - radius;
-        }
-        let axis = axis / length;
-        let height = reach.dot(axis);
-        let aside = (reach - axis * height).length();
-        // The normals of the mantle lean toward the narrow end; this is where the one through the point meets the axis.
-        let lean = narrowing / (length * length - narrowing * narrowing).sqrt();
-        let foot = (height - aside * lean).clamp(0.0, length);
-        let along = height - foot;
-        (aside * aside + along * along).sqrt() - (first - narrowing * (foot / length))
+        Spindle::new(self).distance(at)
     }
 
     fn bounds(&self) -> [DVec3; 2] {
         let [[a, b], [first, last]] = [[self.ends[0], self.ends[1]], self.radii.map(DVec3::splat)];
         [(a - first).min(b - last), (a + first).max(b + last)]
+    }
+}
+
+/// A round cone with what its distance needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spindle {
+    from: DVec3,
+    /// The unit direction to the other end.
+    axis: DVec3,
+    length: f64,
+    radius: f64,
+    /// What the radius loses along a unit of the axis.
+    taper: f64,
+    /// How far a normal of the mantle goes along the axis while it goes out by a unit.
+    lean: f64,
+}
+
+impl Spindle {
+    pub(super) fn new(cone: &RoundCone) -> Self {
+        let [from, to] = cone.ends;
+        let [first, last] = cone.radii;
+        let length = (to - from).length();
+        let narrowing = first - last;
+        if narrowing.abs() < length {
+            return Self {
+                from,
+                axis: (to - from) / length,
+                length,
+                radius: first,
+                taper: narrowing / length,
+                lean: narrowing / (length * length - narrowing * narrowing).sqrt(),
+            };
+        }
+        // One of the balls holds the other.
+        let bigger = if narrowing >= 0.0 { from } else { to };
+        Self {
+            from: bigger,
+            axis: DVec3::Y,
+            length: 0.0,
+            radius: first.max(last),
+            taper: 0.0,
+            lean: 0.0,
+        }
+    }
+
+    pub(super) fn distance(&self, at: DVec3) -> f64 {
+        let reach = at - self.from;
+        let height = reach.dot(self.axis);
+        let aside = (reach - self.axis * height).length();
+        // The normal of the mantle through the point meets the axis here.
+        let foot = (height - aside * self.lean).clamp(0.0, self.length);
+        let along = height - foot;
+        (aside * aside + along * along).sqrt() - (self.radius - self.taper * foot)
     }
 }
 

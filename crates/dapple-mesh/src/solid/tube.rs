@@ -1,5 +1,6 @@
 //! Tubes along curves.
 
+use super::shape::Spindle;
 use super::{RoundCone, Solid};
 use glam::DVec3;
 
@@ -10,12 +11,13 @@ use glam::DVec3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tube {
     links: Vec<Link>,
+    bounds: [DVec3; 2],
 }
 
 /// A part of a tube, with a ball around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Link {
-    cone: RoundCone,
+    cone: Spindle,
     center: DVec3,
     reach: f64,
 }
@@ -27,7 +29,7 @@ impl Tube {
     /// The tube through these points, each `[x, y, z, radius]`; empty if there are fewer than two.
     #[must_use]
     pub fn through(points: &[[f64; 4]]) -> Self {
-        let mut links = Vec::new();
+        let mut cones = Vec::new();
         for index in 1..points.len() {
             let before = points[index.saturating_sub(2)];
             let after = points[(index + 1).min(points.len() - 1)];
@@ -35,16 +37,30 @@ impl Tube {
             for step in 0..LINKS {
                 let [from, to] = [step, step + 1]
                     .map(|step| on_spline(&spline, f64::from(step) / f64::from(LINKS)));
-                links.push(link(from, to));
+                cones.push(round_cone(from, to));
             }
         }
-        Self { links }
+        let boxes = cones.iter().map(RoundCone::bounds);
+        let bounds = boxes.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        Self {
+            links: cones.iter().map(link).collect(),
+            bounds: bounds.unwrap_or_default(),
+        }
     }
 }
 
 impl Solid for Tube {
     fn distance(&self, at: DVec3) -> f64 {
-        let mut nearest = f64::INFINITY;
+        // The link that is likely the nearest goes first, so that most others need no look.
+        let (mut first, mut least_sq) = (0, f64::INFINITY);
+        for (index, link) in self.links.iter().enumerate() {
+            let distance_sq = (at - link.center).length_squared();
+            if distance_sq < least_sq {
+                (first, least_sq) = (index, distance_sq);
+            }
+        }
+        let likely = self.links.get(first);
+        let mut nearest = likely.map_or(f64::INFINITY, |link| link.cone.distance(at));
         for link in &self.links {
             // A link is no nearer than the ball around it.
             let least = nearest + link.reach;
@@ -56,19 +72,23 @@ impl Solid for Tube {
     }
 
     fn bounds(&self) -> [DVec3; 2] {
-        let all = self.links.iter().map(|link| link.cone.bounds());
-        all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
-            .unwrap_or_default()
+        self.bounds
     }
 }
 
-fn link(from: [f64; 4], to: [f64; 4]) -> Link {
-    let ends = [from, to].map(|[x, y, z, _]| DVec3::new(x, y, z));
-    let radii = [from[3], to[3]];
+fn round_cone(from: [f64; 4], to: [f64; 4]) -> RoundCone {
+    RoundCone {
+        ends: [from, to].map(|[x, y, z, _]| DVec3::new(x, y, z)),
+        radii: [from[3], to[3]],
+    }
+}
+
+fn link(cone: &RoundCone) -> Link {
+    let [from, to] = cone.ends;
     Link {
-        cone: RoundCone { ends, radii },
-        center: (ends[0] + ends[1]) * 0.5,
-        reach: 0.5 * (ends[1] - ends[0]).length() + radii[0].max(radii[1]),
+        cone: Spindle::new(cone),
+        center: (from + to) * 0.5,
+        reach: 0.5 * (to - from).length() + cone.radii[0].max(cone.radii[1]),
     }
 }
 
