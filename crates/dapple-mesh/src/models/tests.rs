@@ -57,7 +57,7 @@ fn places_lie_on_their_models() {
         ),
     ];
     for (model, places) in places {
-        let mesh = model(6_000).expect("the number is good");
+        let mesh = model(12_000).expect("the number is good");
         for &place in places {
             let nearest = mesh.positions().iter().map(|at| at.distance(place));
             let nearest = nearest.fold(f64::INFINITY, f64::min);

@@ -14,7 +14,7 @@ use glam::DVec3;
 pub(super) const FIGURE: Figure = Figure {
     number: "1",
     parameters: &[
-        ("points", "4000, 1000 and 250"),
+        ("points", "750, 3000 and 12,000"),
         ("exemplar", "wiggly checker, 64²"),
         ("orientation", "+x, projected"),
     ],
@@ -39,7 +39,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     };
     let surface = dapple_synth::mesh::Surface::new(polygonize_n(&ball, 0.2, 4000)?)?;
     let options = HierarchyOptions {
-        n_sites: 4000,
+        n_sites: 12_000,
         ..HierarchyOptions::default()
     };
     let hierarchy = Hierarchy::new(&surface, &options)?;

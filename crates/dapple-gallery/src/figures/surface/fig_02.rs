@@ -35,7 +35,6 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     // The field and its sweep look the same with fewer points.
     sites.n_sites = 16_000;
     let synthesizer = Synthesizer::new(surface, &TORI.directions(), &sites)?;
-    let hierarchy = synthesizer.hierarchy();
     let mesh = synthesizer.surface().mesh();
     let clay = LinearRgb::gray(0.7);
     let ink = LinearRgb::new(0.45, 0.02, 0.02);
@@ -54,10 +53,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         }
     };
     let ramp = cycle()?;
-    let distances = synthesizer.sweep().distances(0);
     let sweep = |at: &Point| {
-        let value = hierarchy.interpolate(0, distances, at.position, at.geometric_normal);
-        let turns = value.ok().flatten().unwrap_or(0.0) / CYCLE;
+        let turns = distance(&synthesizer, at.position) / CYCLE;
         ramp.at((turns - turns.floor()) as f32)
     };
     Ok(vec![
@@ -100,6 +97,25 @@ fn is_field(synthesizer: &Synthesizer, position: DVec3) -> bool {
         hit |= is_arrow(position - start, vector, size);
     });
     hit
+}
+
+/// The sweep distance at a position: that of the nearest site, and how far the position is ahead of it. Mixing several would
+/// blur the lines where the distance jumps.
+fn distance(synthesizer: &Synthesizer, position: DVec3) -> f64 {
+    let (hierarchy, level) = (
+        synthesizer.hierarchy(),
+        &synthesizer.hierarchy().levels()[0],
+    );
+    let mut nearest = (f64::INFINITY, 0.0);
+    level.grid().visit(position, level.spacing(), |site| {
+        let from = position - hierarchy.sites().positions()[site.index()];
+        if from.length_squared() < nearest.0 {
+            let ahead = from.dot(synthesizer.orientation().vectors()[site.index()]);
+            let distance = synthesizer.sweep().distances(0)[site.index()] + ahead;
+            nearest = (from.length_squared(), distance);
+        }
+    });
+    nearest.1
 }
 
 /// The colors of a cycle, which ends as it begins.

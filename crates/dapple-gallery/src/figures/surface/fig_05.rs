@@ -2,8 +2,8 @@
 //! animal, three blended tori, a zebra and an elephant.
 //!
 //! Points, levels and exemplar sizes are those of table 1 in a figure of 1024 pixels (`--full`); smaller figures have fewer
-//! points. Models and exemplars are procedural stand-ins for the paper's. The texture is baked to a map of right triangles, and
-//! the model that is drawn is the one with 14 000 triangles.
+//! points and triangles. Models and exemplars are procedural stand-ins for the paper's. The texture is baked to a map of right
+//! triangles on the model, which has 14,000 of them.
 
 use super::stage::lit;
 use super::subject::SUBJECTS;
@@ -18,7 +18,10 @@ pub(super) const FIGURE: Figure = Figure {
     parameters: &[
         ("points", "256,000 (ray: 64,000) at 1024 pixels"),
         ("levels", "3: ray, octopus, bunny; 4: tori, zebra, elephant"),
-        ("coherence", "the default"),
+        (
+            "coherence",
+            "1, the default; 0, as in the paper, for the ray",
+        ),
         ("texture map", "two pixels of the map for one of the figure"),
     ],
     source: source!(),

@@ -7,15 +7,17 @@ use dapple_color::LinearRgb;
 use dapple_preview::Surface;
 use dapple_raster::{Raster, Wrap};
 use dapple_synth::mesh::{HierarchyOptions, Mesh, MeshError, models};
-use dapple_synth::{Atlas, Direction, Exemplar, Options, SurfaceTexture, Synthesizer, bake};
+use dapple_synth::{Atlas, Direction, Exemplar, Options, Synthesizer, bake};
 use glam::{DVec2, DVec3};
 
 /// The size of a figure from which on a subject has as many sites as the paper's.
 const FULL_SIZE: u32 = 1024;
-/// The triangles of a model: the paper has 10 to 20 thousand.
-const TRIANGLES: usize = 14_000;
-/// The side of a texture map in a figure of full size.
-const MAP_SIDE: u32 = 2048;
+/// The triangles of a model at full size, of which the paper has 10 to 20 thousand, and the fewest.
+const TRIANGLES: [f64; 2] = [14_000.0, 2000.0];
+/// The fewest sites.
+const SITES_MIN: f64 = 1024.0;
+/// The texels of a texture map's side for a pixel of the figure.
+const TEXELS: u32 = 2;
 
 /// A model that gets a texture.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +29,7 @@ pub(super) struct Subject {
     /// Sites of the finest level at full size, and levels: those of table 1.
     n_sites: usize,
     n_levels: usize,
+    coherence: f32,
     /// Positions, and the directions there that are the texture's down.
     directions: &'static [[DVec3; 2]],
     pub(super) view: View,
@@ -35,7 +38,6 @@ pub(super) struct Subject {
 /// A subject with its texture.
 pub(super) struct Textured {
     pub(super) synthesizer: Synthesizer,
-    pub(super) texture: SurfaceTexture,
     map: Raster<LinearRgb>,
     uvs: Vec<[DVec2; 3]>,
 }
@@ -50,6 +52,7 @@ pub(super) const RAY: Subject = Subject {
     exemplar: "wiggly checker",
     n_sites: 64_000,
     n_levels: 3,
+    coherence: 0.0,
     directions: &[
         [DVec3::new(0.15, 0.1, 0.75), DVec3::new(0.9, 0.0, -0.6)],
         [DVec3::new(-0.15, 0.1, 0.75), DVec3::new(-0.9, 0.0, -0.6)],
@@ -73,6 +76,7 @@ const OCTOPUS: Subject = Subject {
     exemplar: "suckers",
     n_sites: 256_000,
     n_levels: 3,
+    coherence: 1.0,
     directions: &[
         [DVec3::new(0.0, 0.5, 0.4), DVec3::NEG_Y],
         [DVec3::new(0.0, 0.5, -0.6), DVec3::NEG_Y],
@@ -99,6 +103,7 @@ const BUNNY: Subject = Subject {
     exemplar: "scales",
     n_sites: 256_000,
     n_levels: 3,
+    coherence: 1.0,
     directions: &[
         [models::bunny::LEFT_EAR, DVec3::NEG_Y],
         [DVec3::new(-0.25, 1.05, -0.05), DVec3::NEG_Y],
@@ -123,6 +128,7 @@ pub(super) const TORI: Subject = Subject {
     exemplar: "woven hooks",
     n_sites: 256_000,
     n_levels: 4,
+    coherence: 1.0,
     directions: &[
         [DVec3::new(0.55, 0.55, 0.2), DVec3::new(-1.0, 1.0, 0.0)],
         [DVec3::new(-0.55, -0.55, 0.2), DVec3::new(1.0, -1.0, 0.0)],
@@ -145,6 +151,7 @@ const ZEBRA: Subject = Subject {
     exemplar: "text",
     n_sites: 256_000,
     n_levels: 4,
+    coherence: 1.0,
     directions: &[
         [models::zebra::BACK, DVec3::X],
         [DVec3::new(0.4, 0.0, 0.0), DVec3::NEG_Y],
@@ -165,6 +172,7 @@ const ELEPHANT: Subject = Subject {
     exemplar: "puzzle pieces",
     n_sites: 256_000,
     n_levels: 4,
+    coherence: 1.0,
     directions: &[
         [models::elephant::BACK, DVec3::NEG_Z],
         [models::elephant::FOREHEAD, DVec3::new(0.0, -1.0, 0.5)],
@@ -182,9 +190,8 @@ const ELEPHANT: Subject = Subject {
 impl Subject {
     /// The sites of the subject in a figure of a size: those of the paper at full size, and fewer as there are fewer pixels.
     pub(super) fn sites(&self, size: u32) -> HierarchyOptions {
-        let part = (f64::from(size) / f64::from(FULL_SIZE)).min(1.0);
         HierarchyOptions {
-            n_sites: ((self.n_sites as f64 * part * part) as usize).max(1024),
+            n_sites: (self.n_sites as f64 * part(size)).max(SITES_MIN) as usize,
             n_levels: self.n_levels,
             ..HierarchyOptions::default()
         }
@@ -215,22 +222,21 @@ impl Subject {
     /// The model with its texture, for a figure of a size.
     pub(super) fn textured(&self, size: u32) -> Result<Textured> {
         let (image, edges) = self.image()?;
-        let surface = dapple_synth::mesh::Surface::new((self.model)(TRIANGLES)?)?;
+        let n_triangles = (TRIANGLES[0] * part(size)).max(TRIANGLES[1]);
+        let model = (self.model)(n_triangles as usize)?;
+        let surface = dapple_synth::mesh::Surface::new(model)?;
         let synthesizer = Synthesizer::new(surface, &self.directions(), &self.sites(size))?;
         let options = Options {
             n_levels: self.n_levels,
+            coherence: self.coherence,
             ..Options::default()
         };
         let texture = synthesizer.synthesize(&Exemplar::new(&image, edges)?, &options)?;
-        let atlas = Atlas::uniform(
-            synthesizer.surface(),
-            (MAP_SIDE / FULL_SIZE * size).max(1024),
-        )?;
-        let values = texture.values(0);
+        let atlas = Atlas::uniform(synthesizer.surface(), (TEXELS * size).max(512))?;
         let map = bake::<3>(
             synthesizer.surface(),
             synthesizer.hierarchy(),
-            values,
+            texture.values(0),
             &atlas,
             [0.0; 3],
         )?;
@@ -238,9 +244,14 @@ impl Subject {
             map: map.map(|codes| srgb(*codes)),
             uvs: atlas.uvs(),
             synthesizer,
-            texture,
         })
     }
+}
+
+/// The part of the pixels of a figure of full size.
+fn part(size: u32) -> f64 {
+    let side = f64::from(size) / f64::from(FULL_SIZE);
+    (side * side).min(1.0)
 }
 
 impl Textured {
