@@ -2,7 +2,7 @@
 //!
 //! A surface meets few of the cells of its bounding box. Bricks of 8x8x8 cells are found by an open-addressed table;
 //! the cells of a brick are laid out densely, so that a row of cells is one run of sites, and a ball of the size of a
-//! cell needs about two searches in the table. Sites are sorted into their cells by counting.
+//! cell needs about two searches in the table. Sites are sorted into their cells by counting. Reference: our own.
 
 use crate::SiteIdx;
 use glam::DVec3;

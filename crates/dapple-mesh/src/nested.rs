@@ -1,6 +1,6 @@
 //! Nested sets of even points on a surface, each with about four times as many as the one before.
 //!
-//! Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1: the coarsest
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1: the coarsest
 //! points are repelled, then stay; new ones are added and repelled by all. The paper begins with random points at every
 //! level. Here a level begins with the middles of the edges between the points before it, which is nearly even from the
 //! start; and since the coarsest level is free to move, it is itself made from still coarser ones in this way. The

@@ -1,6 +1,6 @@
 //! Points on a surface that push each other apart until they lie evenly.
 //!
-//! Greg Turk, "Generating Textures on Arbitrary Surfaces Using Reaction-Diffusion", SIGGRAPH 1991, doi
+//! Reference: Greg Turk, "Generating Textures on Arbitrary Surfaces Using Reaction-Diffusion", SIGGRAPH 1991, doi
 //! 10.1145/127719.122749, section 3.1: a point is pushed away from the neighbors within a radius, mapped into the
 //! plane of its face with their distances in space kept, and walks over the surface as far as it is pushed. Where this
 //! departs or the paper is silent:

@@ -1,7 +1,7 @@
 //! Random points on a surface, each place as likely as any other.
 //!
 //! A point first falls on a face with a chance in proportion to its area, then anywhere in it: with two uniform numbers
-//! s and t the weights of the corners are `1 - sqrt(s)`, `sqrt(s) (1 - t)` and `sqrt(s) t` (Greg Turk, "Generating
+//! s and t the weights of the corners are `1 - sqrt(s)`, `sqrt(s) (1 - t)` and `sqrt(s) t` (Reference: Greg Turk, "Generating
 //! Random Points in Triangles", in Graphics Gems, 1990).
 
 use crate::{FaceIdx, Surface, SurfacePoint};

@@ -8,6 +8,8 @@
 //! that are right to a few roundings; their places are right to a few roundings of their longest edge.
 
 mod flat;
+//!
+//! Reference: our own; unfolding over edges is what Greg Turk, SIGGRAPH 1991, doi 10.1145/127719.122749, walks by.
 
 use crate::adjacency::{Adjacency, FaceEdge};
 use crate::{FaceIdx, Mesh, MeshError, MeshErrorKind};

@@ -1,4 +1,6 @@
-//! The passes: every site of a level takes the pixel whose neighborhood is most like its own (section 5).
+//! The passes: every site of a level takes the pixel whose neighborhood is most like its own.
+//!
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 5.
 
 use crate::ground::Ground;
 use crate::neighborhood::{Part, Pass, Reads};

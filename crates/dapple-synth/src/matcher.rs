@@ -1,6 +1,6 @@
 //! The row that is nearest to a query: exactly the one that comparing with all of them finds.
 //!
-//! Rows are turned to the directions in which they differ most (principal components; after Hertzmann, Jacobs, Oliver,
+//! Rows are turned to the directions in which they differ most (principal components; Reference: Hertzmann, Jacobs, Oliver,
 //! Curless and Salesin, Image Analogies, SIGGRAPH 2001, who search approximately in the first of them), and the first ones
 //! are kept, in sixteen bits. There a part of a distance is known after few numbers, and most rows can be skipped: whole
 //! leaves of a k-d tree by their boxes, sixteen rows at a time after every eighth number. What is left is compared as it

@@ -1,3 +1,5 @@
+//! The middles of edges.
+
 use super::{CENTER_REACH, REACH, edges};
 use crate::evenness::hexagonal_spacing;
 use crate::test_shapes::{plane, sphere};

@@ -1,3 +1,5 @@
+//! Cells beside a search through all sites.
+
 use super::*;
 use dapple_hash::{Seed, hash1, unit_f64};
 use spade::{DelaunayTriangulation, Point2, Triangulation};

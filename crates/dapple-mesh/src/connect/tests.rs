@@ -1,3 +1,5 @@
+//! Graphs of sites beside the triangulation of the plane.
+
 use super::*;
 use crate::testing::{even_sites, random_sites, sheets, spacing, sphere, torus};
 use dapple_hash::{Seed, hash1, unit_f64};

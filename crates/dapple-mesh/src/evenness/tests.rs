@@ -1,3 +1,5 @@
+//! The measure of evenness on points whose distances are known.
+
 use super::{evenness, hexagonal_spacing};
 use crate::test_shapes::{plane, scraps, sheet};
 use crate::{Sites, Surface, scatter};

@@ -1,3 +1,5 @@
+//! The grid beside a search through all sites.
+
 use super::{BRICKS_LEAST, SITES_PER_BRICK, SiteGrid};
 use crate::SiteIdx;
 use dapple_hash::{Seed, hash1, unit_f64};

@@ -1,3 +1,5 @@
+//! Interpolation beside sums over all sites.
+
 use super::*;
 use crate::testing::{even_sites, sheets, spacing, sphere};
 use crate::{SiteGrid, Sites, Surface};

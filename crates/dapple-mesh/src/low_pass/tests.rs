@@ -1,3 +1,5 @@
+//! The low-pass filter beside dense sums, and what it keeps.
+
 use super::*;
 use crate::Connected;
 use crate::testing::{even_sites, spacing, sphere};

@@ -1,3 +1,5 @@
+//! The models: closed, in one piece, with their number of triangles.
+
 use super::{blended_tori, bunny, elephant, octopus, ray, zebra};
 use crate::polygonize::tests::euler;
 use crate::{Mesh, MeshError, MeshErrorKind};

@@ -1,3 +1,5 @@
+//! Nested points: even on every level, and the same bits everywhere.
+
 use super::{morton, nested_points};
 use crate::share::Pieces;
 use crate::test_shapes::{plane, real, scraps, sphere, torus};

@@ -1,3 +1,5 @@
+//! Down- and upsampling beside the plain operations.
+
 use super::*;
 use crate::testing::{sheets, sphere};
 use crate::{HierarchyOptions, MeshErrorKind, SiteIdx, Surface};

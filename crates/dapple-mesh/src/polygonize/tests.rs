@@ -1,3 +1,5 @@
+//! Meshes around solids: closed, manifold, and where they should be.
+
 use super::{TOLERANCE, polygonize, polygonize_n};
 use crate::solid::{Ball, RoundBox, Solid, Torus};
 use crate::{Mesh, MeshErrorKind};

@@ -1,3 +1,5 @@
+//! Repulsion beside forces from all points, and how even it makes them.
+
 use super::{Crowd, FACING, GAIN_FIRST, MARGIN, push, repel};
 use crate::near::CHUNK;
 use crate::test_shapes::{plane, scraps, sheet, sphere, torus};

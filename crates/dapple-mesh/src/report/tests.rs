@@ -1,3 +1,5 @@
+//! Reports beside naive counts.
+
 use super::*;
 use crate::test_meshes::{cube, mesh, plane, ring, soup, tetrahedron};
 use proptest::prelude::*;

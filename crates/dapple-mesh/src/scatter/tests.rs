@@ -1,3 +1,5 @@
+//! Random points: as many on each face as its area says.
+
 use super::scatter;
 use crate::test_shapes::{scraps, torus};
 use dapple_hash::Seed;

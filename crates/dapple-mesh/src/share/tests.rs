@@ -1,3 +1,5 @@
+//! How many points the pieces of a surface get.
+
 use super::Pieces;
 use crate::test_shapes::{scraps, torus};
 

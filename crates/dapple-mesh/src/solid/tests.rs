@@ -1,3 +1,5 @@
+//! Distances of solids beside sampled ones.
+
 use super::{
     Ball, Bent, Blend, Ellipsoid, Grown, Mirrored, Placed, RoundBox, RoundCone, Scaled, Solid,
     Torus, Tube,

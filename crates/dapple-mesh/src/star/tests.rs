@@ -1,3 +1,5 @@
+//! Stars beside those of another triangulation.
+
 use super::*;
 use crate::SiteGrid;
 use crate::testing::{even_sites, random_sites, sheets, spacing, sphere, torus};

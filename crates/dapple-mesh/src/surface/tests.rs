@@ -1,3 +1,5 @@
+//! Faces laid out flat, and unfolded.
+
 use super::*;
 use crate::test_meshes::{cube, mesh, plane, ring, soup, surface, tetrahedron};
 use crate::{MeshErrorKind, VertexIdx};

@@ -1,3 +1,5 @@
+//! Triangles of sites: whole on even surfaces, and what is counted elsewhere.
+
 use super::*;
 use crate::SiteGrid;
 use crate::testing::{even_sites, random_sites, sheets, spacing, sphere, torus};

@@ -1,3 +1,5 @@
+//! Points that are wedged between others.
+
 use super::unstick;
 use crate::share::Pieces;
 use crate::test_shapes::{plane, scraps};

@@ -1,3 +1,5 @@
+//! Rows of neighborhoods beside naive ones.
+
 use super::{Candidates, CoarserCenter, FEW};
 use crate::{Edges, Exemplar, Part, Pass, Pyramid, Reads, Schedule, Shape, SynthErrorKind};
 use dapple_hash::{Seed, hash2, unit_f32};

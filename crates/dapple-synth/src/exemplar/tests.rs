@@ -1,3 +1,5 @@
+//! Exemplars and pyramids beside naive ones.
+
 use super::{Edges, Exemplar};
 use crate::{SynthError, SynthErrorKind};
 use dapple_color::LinearRgb;

@@ -1,3 +1,5 @@
+//! The search beside comparing with all rows.
+
 mod parts;
 
 use super::*;

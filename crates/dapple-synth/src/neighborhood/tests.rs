@@ -1,3 +1,5 @@
+//! Shapes and schedules.
+
 use super::{Part, Pass, Reads, Schedule, Shape};
 use crate::SynthErrorKind;
 

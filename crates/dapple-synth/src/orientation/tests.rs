@@ -1,3 +1,5 @@
+//! Fields of orientations on surfaces where they are known.
+
 use super::*;
 use crate::links::{Links, components};
 use crate::shapes::{moved, sites_on, sphere, square, tube, two_squares};

@@ -1,3 +1,5 @@
+//! The plane beside the pseudo-code of the paper.
+
 use super::{MAX_PIXELS, PlaneGround, SLANT, synthesize_plane, synthesize_plane_with};
 use crate::ground::Ground;
 use crate::{

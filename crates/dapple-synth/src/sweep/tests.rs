@@ -1,3 +1,5 @@
+//! Sweep distances on surfaces where they are known.
+
 use super::level::step;
 use super::*;
 use crate::Direction;

@@ -1,3 +1,5 @@
+//! Exemplars that tile, and those that do not.
+
 use super::{EXEMPLARS, Edges, Exemplar};
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
