@@ -6,10 +6,10 @@
 //! All is worked out from differences of positions, so that needles and flat triangles down to the limit that
 //! [`MeshReport::degenerate_faces`](crate::MeshReport::degenerate_faces) states have unit axes at right angles and turns
 //! that are right to a few roundings; their places are right to a few roundings of their longest edge.
-
-mod flat;
 //!
 //! Reference: our own; unfolding over edges is what Greg Turk, SIGGRAPH 1991, doi 10.1145/127719.122749, walks by.
+
+mod flat;
 
 use crate::adjacency::{Adjacency, FaceEdge};
 use crate::{FaceIdx, Mesh, MeshError, MeshErrorKind};
