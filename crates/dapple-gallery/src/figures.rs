@@ -7,6 +7,8 @@ mod surface;
 mod wavelet;
 mod worley;
 
+pub use surface::own::{Own, OwnTextured};
+
 use crate::{Figure, Paper};
 
 /// The papers, in the order of the page.

@@ -37,6 +37,6 @@ pub mod lock;
 pub mod page;
 
 pub use figure::{Figure, Paper, Source};
-pub use figures::{PAPERS, figures, select};
+pub use figures::{Own, OwnTextured, PAPERS, figures, select};
 pub use lock::{LOCK_SIZE, Lock};
 pub use panel::{Panel, Picture};

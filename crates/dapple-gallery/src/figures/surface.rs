@@ -11,6 +11,7 @@ mod fig_05;
 mod fig_extra_exemplars;
 mod hooks;
 mod letter;
+pub(crate) mod own;
 mod puzzle;
 mod scales;
 mod stage;
@@ -18,6 +19,7 @@ mod stripes;
 mod subject;
 mod suckers;
 mod text;
+mod textured;
 mod wobble;
 
 use crate::Paper;

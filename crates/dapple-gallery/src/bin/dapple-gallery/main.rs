@@ -3,6 +3,7 @@
 mod check;
 mod docs;
 mod export;
+mod own;
 mod ranges;
 
 use anyhow::ensure;
@@ -53,6 +54,9 @@ struct Arguments {
     /// Rewrites the pictures in the documentation of the crates: `docs/*.md` in their folders.
     #[arg(long, conflicts_with_all = ["filter", "list", "check", "bless", "out", "open", "size", "ranges"])]
     docs: bool,
+
+    #[command(flatten)]
+    own: own::OwnArguments,
 }
 
 /// The pixels of a picture with `--full`.
@@ -66,7 +70,17 @@ fn main() -> anyhow::Result<()> {
         "no figure has `{}` in its name; `--list` shows all names",
         arguments.filter.join("` or `")
     );
-    if arguments.ranges {
+    let size = if arguments.full {
+        FULL_SIZE
+    } else {
+        arguments.size
+    };
+    let out = arguments
+        .out
+        .unwrap_or_else(|| root().join("target/gallery"));
+    if arguments.own.mesh.is_some() {
+        own::run(&arguments.own, size, &out)
+    } else if arguments.ranges {
         say(&ranges::table()?);
         Ok(())
     } else if arguments.docs {
@@ -79,14 +93,6 @@ fn main() -> anyhow::Result<()> {
     } else if arguments.bless {
         check::bless(&figures, &lock_path())
     } else {
-        let out = arguments
-            .out
-            .unwrap_or_else(|| root().join("target/gallery"));
-        let size = if arguments.full {
-            FULL_SIZE
-        } else {
-            arguments.size
-        };
         let page = export::export(&figures, size, &out)?;
         let shown = page.canonicalize().unwrap_or_else(|_| page.clone());
         say(&format!("{} figures in {}", figures.len(), shown.display()));

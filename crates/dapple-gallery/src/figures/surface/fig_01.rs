@@ -2,7 +2,8 @@
 //! orientation field flows from left to right over the sphere, and the texture is that of the ray in figure 5.
 
 use super::stage::{View, lit};
-use super::subject::{RAY, srgb};
+use super::subject::RAY;
+use super::textured::srgb;
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_color::LinearRgb;

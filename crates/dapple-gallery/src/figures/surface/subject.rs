@@ -2,13 +2,13 @@
 
 use super::exemplar::{EXEMPLARS, Edges};
 use super::stage::View;
+use super::textured::{Job, Textured};
 use anyhow::{Context, Result};
 use dapple_color::LinearRgb;
-use dapple_preview::Surface;
-use dapple_raster::{Raster, Wrap};
+use dapple_raster::Raster;
+use dapple_synth::Direction;
 use dapple_synth::mesh::{HierarchyOptions, Mesh, MeshError, models};
-use dapple_synth::{Atlas, Direction, Exemplar, Options, Synthesizer, bake};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 /// The size of a figure from which on a subject has as many sites as the paper's.
 const FULL_SIZE: u32 = 1024;
@@ -33,13 +33,6 @@ pub(super) struct Subject {
     /// Positions, and the directions there that are the texture's down.
     directions: &'static [[DVec3; 2]],
     pub(super) view: View,
-}
-
-/// A subject with its texture.
-pub(super) struct Textured {
-    pub(super) synthesizer: Synthesizer,
-    map: Raster<LinearRgb>,
-    uvs: Vec<[DVec2; 3]>,
 }
 
 /// The six, in the order of table 1.
@@ -221,30 +214,18 @@ impl Subject {
 
     /// The model with its texture, for a figure of a size.
     pub(super) fn textured(&self, size: u32) -> Result<Textured> {
-        let (image, edges) = self.image()?;
         let n_triangles = (TRIANGLES[0] * part(size)).max(TRIANGLES[1]);
-        let model = (self.model)(n_triangles as usize)?;
-        let surface = dapple_synth::mesh::Surface::new(model)?;
-        let synthesizer = Synthesizer::new(surface, &self.directions(), &self.sites(size))?;
-        let options = Options {
-            n_levels: self.n_levels,
+        let (image, edges) = self.image()?;
+        let job = Job {
+            mesh: (self.model)(n_triangles as usize)?,
+            image,
+            edges,
+            directions: self.directions(),
+            sites: self.sites(size),
             coherence: self.coherence,
-            ..Options::default()
+            map_side: (TEXELS * size).max(512),
         };
-        let texture = synthesizer.synthesize(&Exemplar::new(&image, edges)?, &options)?;
-        let atlas = Atlas::uniform(synthesizer.surface(), (TEXELS * size).max(512))?;
-        let map = bake::<3>(
-            synthesizer.surface(),
-            synthesizer.hierarchy(),
-            texture.values(0),
-            &atlas,
-            [0.0; 3],
-        )?;
-        Ok(Textured {
-            map: map.map(|codes| srgb(*codes)),
-            uvs: atlas.uvs(),
-            synthesizer,
-        })
+        job.run()
     }
 }
 
@@ -252,22 +233,4 @@ impl Subject {
 fn part(size: u32) -> f64 {
     let side = f64::from(size) / f64::from(FULL_SIZE);
     (side * side).min(1.0)
-}
-
-impl Textured {
-    /// The color of the texture map where a ray met the model.
-    pub(super) fn color(&self, surface: &Surface) -> LinearRgb {
-        let Some(triangle) = surface.triangle() else {
-            return LinearRgb::BLACK;
-        };
-        let [a, b, c] = self.uvs[triangle.index as usize];
-        let [of_a, of_b, of_c] = triangle.weights;
-        let uv = a * of_a + b * of_b + c * of_c;
-        self.map.sample_bilinear(uv, [Wrap::Mirror; 2])
-    }
-}
-
-/// A color from its sRGB codes from 0 to 1, rounded to 8 bits as in a file.
-pub(super) fn srgb(codes: [f32; 3]) -> LinearRgb {
-    LinearRgb::from_srgb(codes.map(|code| (code.clamp(0.0, 1.0) * 255.0 + 0.5) as u8))
 }

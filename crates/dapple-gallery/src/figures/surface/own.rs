@@ -1,0 +1,112 @@
+//! A mesh and an exemplar of the user's own, as figure 5 shows its models.
+
+use super::stage::{View, lit};
+use super::textured::{Job, Textured};
+use crate::Panel;
+use anyhow::{Result, ensure};
+use dapple_color::LinearRgb;
+use dapple_image::{Transfer, encode_png};
+use dapple_raster::Raster;
+use dapple_synth::mesh::{EncodedImage, HierarchyOptions, Mesh, Model};
+use dapple_synth::{Direction, Edges};
+use glam::DVec3;
+
+/// What is to be put on what, and how.
+#[derive(Clone, Debug)]
+pub struct Own {
+    /// The mesh; what can be mended about it is.
+    pub mesh: Mesh,
+    /// The exemplar.
+    pub image: Raster<LinearRgb>,
+    /// Whether the exemplar tiles.
+    pub edges: Edges,
+    /// Directions of the texture; without any, its down is the mesh's -y.
+    pub directions: Vec<Direction>,
+    /// The points and their levels.
+    pub sites: HierarchyOptions,
+    /// See [`dapple_synth::Options::coherence`].
+    pub coherence: f32,
+    /// The side of the texture map in texels.
+    pub map_side: u32,
+}
+
+/// Pictures of a textured mesh, and the mesh with its texture map.
+#[derive(Clone, Debug)]
+pub struct OwnTextured {
+    /// The mesh from four sides.
+    pub panels: Vec<Panel>,
+    /// The mesh with its texture map, for a file.
+    pub model: Model,
+    /// What was mended, as text; empty if nothing was.
+    pub mended: String,
+}
+
+impl Own {
+    /// Makes the texture, and pictures of `size` pixels.
+    ///
+    /// # Errors
+    ///
+    /// What the crates refuse: a mesh without a face that has an area, an exemplar that is too small, and so on.
+    pub fn render(self, size: u32) -> Result<OwnTextured> {
+        let (mesh, repair) = self.mesh.repair();
+        let mended = if repair.before == repair.after {
+            String::new()
+        } else {
+            format!("before: {:?}\nafter:  {:?}", repair.before, repair.after)
+        };
+        ensure!(!mesh.faces().is_empty(), "no face of the mesh has an area");
+        let views = views(&mesh);
+        let job = Job {
+            mesh,
+            image: self.image,
+            edges: self.edges,
+            directions: self.directions,
+            sites: self.sites,
+            coherence: self.coherence,
+            map_side: self.map_side,
+        };
+        let textured = job.run()?;
+        let panel = |(label, view): &(&str, View)| {
+            let mesh = textured.synthesizer.surface().mesh();
+            let picture = lit(mesh, view, [size; 2], |surface| textured.color(surface))?;
+            Ok(Panel::color(*label, picture))
+        };
+        Ok(OwnTextured {
+            panels: views.iter().map(panel).collect::<Result<_>>()?,
+            model: model(&textured)?,
+            mended,
+        })
+    }
+}
+
+/// Views from four sides, from a little above, so far away that all of the mesh is seen.
+fn views(mesh: &Mesh) -> [(&'static str, View); 4] {
+    let positions = mesh.positions().iter().copied();
+    let low = positions.clone().fold(DVec3::INFINITY, DVec3::min);
+    let high = positions.clone().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let target = low * 0.5 + high * 0.5;
+    let radius = positions.map(|at| at.distance(target)).fold(0.0, f64::max);
+    let view = |toward: DVec3| View {
+        eye: target + toward.normalize() * (3.6 * radius),
+        target,
+        fov: 0.6,
+    };
+    [
+        ("front", view(DVec3::new(0.5, 0.4, 1.0))),
+        ("right", view(DVec3::new(1.0, 0.4, -0.5))),
+        ("back", view(DVec3::new(-0.5, 0.4, -1.0))),
+        ("left", view(DVec3::new(-1.0, 0.4, 0.5))),
+    ]
+}
+
+/// The mesh with its map as an embedded PNG.
+fn model(textured: &Textured) -> Result<Model> {
+    let mesh = textured.synthesizer.surface().mesh().clone();
+    let codes = textured.map.map(|color| color.to_srgb::<u8>());
+    let png = encode_png(codes.view(), Transfer::Srgb)?;
+    let mut model = Model::from(mesh);
+    model.normals = Some(model.mesh.vertex_normals());
+    model.uvs = Some(textured.uvs.clone());
+    model.material.base_color = Some(EncodedImage::new(png)?);
+    Ok(model)
+}

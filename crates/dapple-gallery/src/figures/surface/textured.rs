@@ -1,0 +1,77 @@
+//! From a mesh and an exemplar to a texture map.
+
+use anyhow::Result;
+use dapple_color::LinearRgb;
+use dapple_preview::Surface;
+use dapple_raster::{Raster, Wrap};
+use dapple_synth::mesh::{self, HierarchyOptions, Mesh};
+use dapple_synth::{Atlas, Direction, Edges, Exemplar, Options, Synthesizer, bake};
+use glam::DVec2;
+
+/// What is to be made.
+#[derive(Clone, Debug)]
+pub(super) struct Job {
+    pub(super) mesh: Mesh,
+    pub(super) image: Raster<LinearRgb>,
+    pub(super) edges: Edges,
+    pub(super) directions: Vec<Direction>,
+    pub(super) sites: HierarchyOptions,
+    pub(super) coherence: f32,
+    /// The side of the texture map in texels.
+    pub(super) map_side: u32,
+}
+
+/// A mesh with its texture.
+#[derive(Debug)]
+pub(super) struct Textured {
+    pub(super) synthesizer: Synthesizer,
+    pub(super) map: Raster<LinearRgb>,
+    pub(super) uvs: Vec<[DVec2; 3]>,
+}
+
+impl Job {
+    /// Synthesizes the texture and bakes it to a map of right triangles of one size, as the paper does.
+    pub(super) fn run(self) -> Result<Textured> {
+        let surface = mesh::Surface::new(self.mesh)?;
+        let options = Options {
+            n_levels: self.sites.n_levels,
+            coherence: self.coherence,
+            ..Options::default()
+        };
+        let synthesizer = Synthesizer::new(surface, &self.directions, &self.sites)?;
+        let exemplar = Exemplar::new(&self.image, self.edges)?;
+        let texture = synthesizer.synthesize(&exemplar, &options)?;
+        let surface = synthesizer.surface();
+        let atlas = Atlas::uniform(surface, self.map_side)?;
+        let map = bake::<3>(
+            surface,
+            synthesizer.hierarchy(),
+            texture.values(0),
+            &atlas,
+            [0.0; 3],
+        )?;
+        Ok(Textured {
+            map: map.map(|codes| srgb(*codes)),
+            uvs: atlas.uvs(),
+            synthesizer,
+        })
+    }
+}
+
+impl Textured {
+    /// The color of the texture map where a ray met the model.
+    pub(super) fn color(&self, surface: &Surface) -> LinearRgb {
+        let Some(triangle) = surface.triangle() else {
+            return LinearRgb::BLACK;
+        };
+        let [a, b, c] = self.uvs[triangle.index as usize];
+        let [of_a, of_b, of_c] = triangle.weights;
+        let uv = a * of_a + b * of_b + c * of_c;
+        self.map.sample_bilinear(uv, [Wrap::Mirror; 2])
+    }
+}
+
+/// A color from its sRGB codes from 0 to 1, rounded to 8 bits as in a file.
+pub(super) fn srgb(codes: [f32; 3]) -> LinearRgb {
+    LinearRgb::from_srgb(codes.map(|code| (code.clamp(0.0, 1.0) * 255.0 + 0.5) as u8))
+}
