@@ -13,12 +13,15 @@
 //! * Colors of vertices are coded as sRGB in OBJ, PLY and OFF, in whole numbers and in fractions alike, and linear in glTF.
 //! * A polygon becomes a fan of triangles around its first corner, which is right for convex ones. One with fewer than
 //!   three corners is left out.
-//! * No file makes a reader panic. A reader takes at most 128 bytes of memory for each byte of the file (of the files, for
+//! * No file makes a reader panic. A reader takes at most 256 bytes of memory for each byte of the file (of the files, for
 //!   formats with several) and 1 GiB more, whatever the file says about its counts.
 
+#[cfg(any(feature = "obj", feature = "ply", feature = "off"))]
 mod colors;
 #[cfg(feature = "gltf")]
 pub mod gltf;
+#[cfg(any(feature = "obj", feature = "off"))]
+mod line;
 #[cfg(feature = "obj")]
 pub mod obj;
 #[cfg(feature = "off")]

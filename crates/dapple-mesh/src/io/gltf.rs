@@ -9,13 +9,14 @@
 //! The material is the first that a primitive has. Textures are taken as they are if they are PNG or JPEG and use the same texture coordinates
 //! as the base color; their samplers and transforms are left out.
 //!
-//! At a seam of the texture a glTF file has two vertices at one position; [`Mesh::repair`] makes one of them, and
+//! At a seam of the texture a glTF file has two vertices at one position; [`Mesh::repair`](crate::Mesh::repair) makes one of them, and
 //! leaves texture coordinates, which belong to corners, as they are.
 
 mod accessor;
 mod container;
 mod document;
 mod scene;
+mod transform;
 mod write;
 
 #[cfg(test)]

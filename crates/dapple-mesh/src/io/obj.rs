@@ -19,7 +19,8 @@ pub use write::{NamedFile, write, write_files};
 
 use super::Beside;
 use super::colors::{self, Coding};
-use super::text::{Line, fan, lines, parse};
+use super::line::{Line, lines};
+use super::text::{fan, parse};
 use crate::{Mesh, MeshError, Model};
 use dapple_color::{LinearRgb, LinearRgba};
 use glam::{DVec2, DVec3};
@@ -235,11 +236,11 @@ const WHITE: LinearRgba = LinearRgba::opaque(LinearRgb::WHITE);
 
 /// The rest of a line as a name, which may have spaces.
 fn name(line: &Line<'_>) -> String {
-    let words: Vec<_> = line.words[1..]
-        .iter()
-        .map(|word| String::from_utf8_lossy(word))
-        .collect();
-    words.join(" ")
+    joined_words(&line.name_words())
+}
+
+fn joined_words(words: &[&[u8]]) -> String {
+    String::from_utf8_lossy(&words.join(b" ".as_slice())).into_owned()
 }
 
 fn index(number: i64, count: usize) -> Option<u32> {

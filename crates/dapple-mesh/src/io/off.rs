@@ -8,7 +8,8 @@
 //! to 1; those of faces are left out. The four-dimensional, n-dimensional and binary variants are refused.
 
 use super::colors::{self, Coding};
-use super::text::{Line, fan, lines, parse};
+use super::line::{Line, lines};
+use super::text::{fan, parse};
 use crate::{Mesh, MeshError, Model};
 use dapple_color::LinearRgba;
 use glam::{DVec2, DVec3};
@@ -186,8 +187,12 @@ fn color(line: &Line<'_>, at: usize, count: usize) -> Result<LinearRgba, MeshErr
         .skip(at)
         .take(count)
         .all(|word| parse::<i64>(word).is_some());
-    let coding = if whole { Coding::Byte } else { Coding::Unit };
-    let mut parts = [0.0, 0.0, 0.0, coding.full()];
+    let (coding, full) = if whole {
+        (Coding::Byte, 255.0)
+    } else {
+        (Coding::Unit, 1.0)
+    };
+    let mut parts = [0.0, 0.0, 0.0, full];
     for (i, part) in parts.iter_mut().enumerate().take(count.max(3)) {
         *part = line.number(at + i)?;
     }

@@ -8,7 +8,7 @@
 use crate::{MeshError, MeshErrorKind, Model};
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::{Component, Path};
+use std::path::Path;
 
 /// The most bytes that are read of a file. A device or a pipe has no length to trust.
 const BYTES_MAX: u64 = 1 << 32;
@@ -92,6 +92,7 @@ fn unknown(name: String, known: &'static str) -> MeshError {
 /// The content of another file by its name in a file, if it is in the folder of that or deeper.
 #[cfg(any(feature = "obj", feature = "gltf"))]
 fn beside(path: &Path, name: &str) -> Option<Vec<u8>> {
+    use std::path::Component;
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     let name = Path::new(name);
     if !name.components().all(inside) {
