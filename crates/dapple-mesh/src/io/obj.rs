@@ -1,13 +1,14 @@
 //! OBJ, the format of Wavefront, with its materials in MTL.
 //!
-//! Source: Wavefront, *Advanced Visualizer Manual*, appendix B1 (Object Files) and B2 (MTL). Colors of vertices follow
-//! `v x y z`, as many programs write them. Wavefront's v goes up, so that v becomes 1 - v on the way in and out.
+//! Reference: Wavefront, *Advanced Visualizer Manual*, appendix B1 (Object Files) and B2 (MTL). Colors of vertices
+//! follow `v x y z`, as many programs write them. Wavefront's v goes up, so that v becomes 1 - v on the way in and out.
 //!
 //! All faces become one mesh, whatever their objects, groups and materials, since a texture is to run across these; the
-//! material is the first that a face has. Of normals, which OBJ gives to corners, those are kept that are the same at all
-//! corners of each vertex; if one vertex has two, as at a crease, the model has none. Lines, points and free-form surfaces are
-//! left out. Of a material its `Kd` (linear, and only without a texture, since with one it is seldom meant), `d`, `map_Kd`
-//! and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is left out.
+//! material is the first that a face has. Of normals, which OBJ gives to corners, those are kept that are the same at
+//! all corners of each vertex; if one vertex has two, as at a crease, the model has none. Lines, points and free-form
+//! surfaces are left out. Of a material its `Kd` (linear, and only without a texture, since with one it is seldom
+//! meant), `d`, `map_Kd` and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is left
+//! out.
 
 mod mtl;
 mod write;
@@ -210,7 +211,8 @@ impl Draft {
             .map(Some)
     }
 
-    /// The normals of the vertices, if each vertex of a face has exactly one; those of a cloud of points in their order.
+    /// The normals of the vertices, if each vertex of a face has exactly one; those of a cloud of points in their
+    /// order.
     fn vertex_normals(&self, count: usize) -> Result<Option<Vec<DVec3>>, MeshError> {
         if self.faces.is_empty() {
             let whole = count > 0 && self.normals.len() == count;

@@ -1,11 +1,12 @@
 //! OFF: the Object File Format of Geomview, as text.
 //!
-//! Source: the manual of Geomview, `http://www.geomview.org/docs/html/OFF.html`, section 4.2.5.
+//! Reference: the manual of Geomview, `http://www.geomview.org/docs/html/OFF.html`.
 //!
-//! Read are all headers of three dimensions: `OFF` with the letters `ST`, `C` and `N` before it, in this order, for texture
-//! coordinates, colors and normals of the vertices, and none at all, which means `OFF`. The counts may follow the header
-//! on its line, even without a space. Colors are three or four numbers, 0 to 255 if a vertex has only whole ones and else 0
-//! to 1; those of faces are left out. The four-dimensional, n-dimensional and binary variants are refused.
+//! Read are all headers of three dimensions: `OFF` with the letters `ST`, `C` and `N` before it, in this order, for
+//! texture coordinates, colors and normals of the vertices, and none at all, which means `OFF`. The counts may follow
+//! the header on its line, even without a space. Colors are three or four numbers, 0 to 255 if a vertex has only whole
+//! ones and else 0 to 1; those of faces are left out. The four-dimensional, n-dimensional and binary variants are
+//! refused.
 
 use super::colors::{self, Coding};
 use super::line::{Line, lines};

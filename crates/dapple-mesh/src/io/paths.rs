@@ -44,8 +44,8 @@ pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshError> {
 
 /// Writes a mesh file by the extension of its path: `obj`, `ply` (binary) or `glb`, if their features are on.
 ///
-/// A file is written under a temporary name and then renamed, so that nobody ever sees half of it. With OBJ, its material
-/// and textures are written beside it before it, under the same stem.
+/// A file is written under a temporary name and then renamed, so that nobody ever sees half of it. With OBJ, its
+/// material and textures are written beside it before it, under the same stem.
 ///
 /// # Errors
 ///
@@ -153,5 +153,5 @@ fn temporary_beside(path: &Path) -> std::path::PathBuf {
     path.with_file_name(name)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "obj", feature = "ply", feature = "gltf"))]
 mod tests;

@@ -13,8 +13,8 @@ pub(super) struct Column {
 
 /// How many more numbers the accessors of a file may give.
 ///
-/// Accessors may share bytes, stand for zeros, and be used by many nodes, so that a file can ask for more memory than it
-/// has bytes. A file that asks for more than four numbers for each of its bytes, and 2^24 more, is refused.
+/// Accessors may share bytes, stand for zeros, and be used by many nodes, so that a file can ask for more memory than
+/// it has bytes. A file that asks for more than four numbers for each of its bytes, and 2^24 more, is refused.
 pub(super) struct Budget {
     left: usize,
 }

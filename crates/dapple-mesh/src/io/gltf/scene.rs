@@ -173,7 +173,10 @@ impl Draft<'_> {
         {
             return Err(wrong("attributes of a primitive have different counts"));
         }
-        u32::try_from(first).map_err(|_| wrong("there are too many vertices"))
+        // All numbers of vertices fit if the last does.
+        let fits = u32::try_from(end).is_ok();
+        let first = u32::try_from(first).ok().filter(|_| fits);
+        first.ok_or_else(|| wrong("there are too many vertices"))
     }
 
     /// The numbers of an attribute, if a primitive has it.

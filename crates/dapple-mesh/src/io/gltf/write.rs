@@ -40,8 +40,9 @@ struct Split {
 ///
 /// Numbers are rounded to `f32`. Vertices keep their numbers; where corners have different texture coordinates, further
 /// vertices follow. Faces have the normals of the model, of unit length, or else those of
-/// [`Mesh::vertex_normals`](crate::Mesh::vertex_normals); +z stands for a zero, which glTF does not have. Colors are clamped to 0 to 1. Without texture coordinates, textures are left out. The material is rough and not metallic where no
-/// texture says otherwise; it has two sides if the mesh is open, and blends if its base color factor is not opaque.
+/// [`Mesh::vertex_normals`](crate::Mesh::vertex_normals); +z stands for a zero, which glTF does not have. Colors are
+/// clamped to 0 to 1. Without texture coordinates, textures are left out. The material is rough and not metallic where
+/// no texture says otherwise; it has two sides if the mesh is open, and blends if its base color factor is not opaque.
 /// A model without faces becomes a cloud of points, and one without vertices an empty scene.
 ///
 /// # Errors

@@ -1,3 +1,5 @@
+//! OBJ and MTL by hand, back and forth, and from the real world.
+
 use super::*;
 use crate::test_meshes::{cube, mesh, soup};
 use crate::{EncodedImage, Material, MeshErrorKind, VertexIdx};

@@ -1,4 +1,4 @@
-#![cfg(all(feature = "obj", feature = "ply", feature = "gltf"))]
+//! Models in a folder.
 
 use super::*;
 use crate::EncodedImage;
