@@ -14,8 +14,8 @@
 //!   glTF.
 //! * A polygon becomes a fan of triangles around its first corner, which is right for convex ones. One with fewer than
 //!   three corners is left out.
-//! * No file makes a reader panic. A reader takes at most 256 bytes of memory for each byte of the file (of the files,
-//!   for formats with several) and 1 GiB more, whatever the file says about its counts.
+//! * No file makes a reader panic. A reader takes at most 256 bytes of memory for each byte of the file, and of what
+//!   it is given beside it, and 1 GiB more, whatever the file says about its counts.
 
 #[cfg(any(feature = "obj", feature = "ply", feature = "off"))]
 mod colors;

@@ -117,7 +117,10 @@ impl Draft {
             }
             b"vn" => self.normals.push(line.vector(1)?),
             b"f" => self.add_face(line)?,
-            b"mtllib" => self.libraries.push(name(line)),
+            // Some programs repeat it for each object.
+            b"mtllib" if self.libraries.last() != Some(&name(line)) => {
+                self.libraries.push(name(line));
+            }
             b"usemtl" if !matches!(self.material, Some((_, true))) => {
                 self.material = Some((name(line), false));
             }
