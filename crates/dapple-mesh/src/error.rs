@@ -66,11 +66,32 @@ pub enum MeshErrorKind {
         /// What is wrong, and where.
         why: String,
     },
+    /// A file cannot be read or written.
+    Io {
+        /// The path of the file.
+        path: String,
+        /// The error of the operating system, as text.
+        why: String,
+    },
+    /// No reader, or no writer, has this name.
+    Format {
+        /// The name, as the extension of a path has it.
+        name: String,
+        /// What there is, as text.
+        known: &'static str,
+    },
 }
 
 impl MeshError {
     pub(crate) fn new(kind: MeshErrorKind) -> Self {
         Self { kind }
+    }
+
+    /// Says that a file does not follow its format.
+    #[cfg(any(feature = "obj", feature = "ply", feature = "gltf", feature = "off"))]
+    pub(crate) fn file(format: &'static str, why: impl Into<String>) -> Self {
+        let why = why.into();
+        Self::new(MeshErrorKind::File { format, why })
     }
 
     /// Refuses a value outside of its range.
@@ -128,6 +149,10 @@ impl fmt::Display for MeshError {
             MeshErrorKind::NoArea => write!(f, "no face of the mesh has an area"),
             MeshErrorKind::File { format, why } => {
                 write!(f, "this is not a valid {format} file: {why}")
+            }
+            MeshErrorKind::Io { path, why } => write!(f, "{path}: {why}"),
+            MeshErrorKind::Format { name, known } => {
+                write!(f, "no mesh format is named `{name}`; there are {known}")
             }
         }
     }

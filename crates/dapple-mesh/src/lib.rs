@@ -1,4 +1,7 @@
 //! Triangle meshes for textures.
+//!
+//! Files are in [`io`], one module and one feature for each format, all on by default. With `default-features = false` none
+//! is there, and neither are `serde` and `serde_json`, which only glTF needs.
 
 #![forbid(unsafe_code)]
 
@@ -15,8 +18,11 @@ mod grid;
 mod hierarchy;
 mod idx;
 mod interpolation;
+#[cfg(any(feature = "obj", feature = "ply", feature = "gltf", feature = "off"))]
+pub mod io;
 mod low_pass;
 mod mesh;
+mod model;
 mod near;
 mod nested;
 mod operations;
@@ -59,6 +65,7 @@ pub use idx::{FaceIdx, SiteIdx, VertexIdx};
 pub use interpolation::INTERPOLATION_RADIUS;
 pub use low_pass::LowPass;
 pub use mesh::Mesh;
+pub use model::{EncodedImage, ImageFormat, Material, Model};
 pub use nested::nested_points;
 pub use operations::{DOWNSAMPLE_STEPS, DOWNSAMPLE_T};
 pub use polygonize::{TOLERANCE, polygonize, polygonize_n};

@@ -1,0 +1,167 @@
+//! glTF 2.0: reading glTF and GLB, and writing GLB.
+//!
+//! Source: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022).
+//!
+//! All triangles of the default scene become one mesh, with the transforms of their nodes applied; without a scene all
+//! nodes count. Triangle strips and fans become triangles, point primitives only vertices; lines, skins, morph targets
+//! and animations are left out. Primitives of one node with the same attributes share their vertices. Where only some primitives have
+//! colors or texture coordinates, the others become white and zero; normals are kept only if all have them.
+//! The material is the first that a primitive has. Textures are taken as they are if they are PNG or JPEG and use the same texture coordinates
+//! as the base color; their samplers and transforms are left out.
+//!
+//! At a seam of the texture a glTF file has two vertices at one position; [`Mesh::repair`] makes one of them, and
+//! leaves texture coordinates, which belong to corners, as they are.
+
+mod accessor;
+mod container;
+mod document;
+mod scene;
+mod write;
+
+#[cfg(test)]
+mod tests;
+
+pub use write::write;
+
+use super::Beside;
+use crate::{EncodedImage, Material, MeshError, Model};
+use container::{Container, percent_decoded};
+use dapple_color::LinearRgba;
+use document::{Document, TextureInfo};
+use std::borrow::Cow;
+
+const FORMAT: &str = "glTF";
+/// Extensions that a file may require: they change nothing here, or only the types of accessors, which are all read.
+const EXTENSIONS: [&str; 4] = [
+    "KHR_mesh_quantization",
+    "KHR_materials_unlit",
+    "KHR_materials_emissive_strength",
+    "KHR_lights_punctual",
+];
+
+/// A file with its buffers.
+struct Source<'a> {
+    document: Document,
+    buffers: Vec<Cow<'a, [u8]>>,
+}
+
+/// Reads a GLB file, or a glTF file that needs no other file.
+///
+/// # Errors
+///
+/// [`MeshErrorKind::File`](crate::MeshErrorKind::File) if the bytes are not a glTF 2.0 file, or it requires an extension
+/// or another file; and what [`Mesh::new`](crate::Mesh::new) and [`Model::check`] refuse.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_mesh::{Mesh, Model, glam::DVec3, io::gltf};
+///
+/// let mesh = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]])?;
+/// let bytes = gltf::write(&Model::from(mesh.clone()))?;
+/// assert_eq!(gltf::read(&bytes)?.mesh, mesh);
+/// # Ok::<(), dapple_mesh::MeshError>(())
+/// ```
+pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
+    read_with(bytes, &mut |_| None)
+}
+
+/// Reads a glTF or GLB file, and its buffers and textures through `beside`.
+///
+/// # Errors
+///
+/// As [`read`]. A missing texture is no error.
+pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshError> {
+    let container = Container::read(bytes)?;
+    let document: Document =
+        serde_json::from_slice(container.json).map_err(|error| wrong(error.to_string()))?;
+    if !document.asset.version.starts_with("2.") {
+        return Err(wrong(format!(
+            "its version is {}, and only 2 is read",
+            document.asset.version
+        )));
+    }
+    let unknown = |name: &&String| !EXTENSIONS.contains(&name.as_str());
+    if let Some(name) = document.extensions_required.iter().find(unknown) {
+        return Err(wrong(format!("it requires the extension {name}")));
+    }
+    let buffers = container.buffers(&document, beside)?;
+    let source = Source { document, buffers };
+    let n_bytes = bytes.len()
+        + source
+            .buffers
+            .iter()
+            .map(|buffer| buffer.len())
+            .sum::<usize>();
+    let (mut model, material) = scene::read(&source, n_bytes)?;
+    if let Some(material) = material {
+        model.material = source.material(material, beside);
+    }
+    model.check()?;
+    Ok(model)
+}
+
+fn wrong(why: impl Into<String>) -> MeshError {
+    MeshError::file(FORMAT, why)
+}
+
+impl Source<'_> {
+    /// The bytes of a buffer view.
+    fn view(&self, index: usize) -> Result<&[u8], MeshError> {
+        let view = self.document.buffer_views.get(index);
+        let bytes = view.and_then(|view| {
+            let end = view.byte_offset.checked_add(view.byte_length)?;
+            self.buffers.get(view.buffer)?.get(view.byte_offset..end)
+        });
+        bytes.ok_or_else(|| wrong(format!("there are no bytes for buffer view {index}")))
+    }
+
+    /// The material of a number; the default if there is none.
+    fn material(&self, index: usize, beside: &mut Beside<'_>) -> Material {
+        let Some(material) = self.document.materials.get(index) else {
+            return Material::default();
+        };
+        let pbr = material.pbr_metallic_roughness.as_deref();
+        let factor = pbr.and_then(|pbr| pbr.base_color_factor);
+        let uvs = self.uvs_of_material(index);
+        let mut image = |info: Option<TextureInfo>| {
+            let info = info.filter(|info| info.tex_coord == uvs)?;
+            self.image(info.index, beside)
+        };
+        Material {
+            base_color_factor: factor.map_or(
+                Material::default().base_color_factor,
+                |[r, g, b, alpha]| {
+                    let color = [r, g, b].into();
+                    LinearRgba { color, alpha }
+                },
+            ),
+            base_color: image(pbr.and_then(|pbr| pbr.base_color_texture)),
+            normal: image(material.normal_texture),
+            metallic_roughness: image(pbr.and_then(|pbr| pbr.metallic_roughness_texture)),
+        }
+    }
+
+    /// Which set of texture coordinates the textures of a material use: that of the base color, else of the normals.
+    fn uvs_of_material(&self, index: usize) -> u32 {
+        let material = self.document.materials.get(index);
+        let pbr = material.and_then(|material| material.pbr_metallic_roughness.as_deref());
+        let info = pbr
+            .and_then(|pbr| pbr.base_color_texture)
+            .or(material.and_then(|material| material.normal_texture))
+            .or(pbr.and_then(|pbr| pbr.metallic_roughness_texture));
+        info.map_or(0, |info| info.tex_coord)
+    }
+
+    /// The image of a texture, if there is one that is PNG or JPEG.
+    fn image(&self, texture: usize, beside: &mut Beside<'_>) -> Option<EncodedImage> {
+        let image = self.document.textures.get(texture)?.source?;
+        let image = self.document.images.get(image)?;
+        let bytes = match (&image.uri, image.buffer_view) {
+            (Some(uri), _) if uri.starts_with("data:") => container::data(uri)?,
+            (Some(uri), _) => beside(&percent_decoded(uri))?,
+            (None, view) => self.view(view?).ok()?.to_vec(),
+        };
+        EncodedImage::new(bytes).ok()
+    }
+}

@@ -1,0 +1,329 @@
+//! The scene of a glTF file as one mesh.
+
+use super::accessor::{Budget, Column};
+use super::document::{Node, Primitive};
+use super::{Source, wrong};
+use crate::{Mesh, MeshError, Model};
+use dapple_color::{LinearRgb, LinearRgba};
+use glam::{DMat3, DMat4, DQuat, DVec2, DVec3};
+use std::collections::BTreeMap;
+
+/// The accessors of positions, normals, colors and texture coordinates.
+type Attributes = [Option<usize>; 4];
+
+struct Draft<'a> {
+    source: &'a Source<'a>,
+    budget: Budget,
+    positions: Vec<DVec3>,
+    /// As many as positions, as long as all primitives have them.
+    normals: Vec<DVec3>,
+    /// As many as positions up to the last that has one; so are texture coordinates.
+    colors: Vec<LinearRgba>,
+    uvs: Vec<DVec2>,
+    faces: Vec<[u32; 3]>,
+    material: Option<usize>,
+}
+
+/// The model without its material, and the number of that. The file has so many bytes, with its buffers.
+pub(super) fn read(
+    source: &Source<'_>,
+    n_bytes: usize,
+) -> Result<(Model, Option<usize>), MeshError> {
+    let mut draft = Draft {
+        source,
+        budget: Budget::new(n_bytes),
+        positions: Vec::new(),
+        normals: Vec::new(),
+        colors: Vec::new(),
+        uvs: Vec::new(),
+        faces: Vec::new(),
+        material: None,
+    };
+    let nodes = &source.document.nodes;
+    let mut seen = vec![false; nodes.len()];
+    let mut open: Vec<_> = roots(source)?
+        .into_iter()
+        .rev()
+        .map(|root| (root, DMat4::IDENTITY))
+        .collect();
+    while let Some((index, parent)) = open.pop() {
+        let node = nodes
+            .get(index)
+            .ok_or_else(|| wrong(format!("there is no node {index}")))?;
+        // Nodes are trees, so that none is met twice.
+        if core::mem::replace(&mut seen[index], true) {
+            return Err(wrong(format!("node {index} has two parents")));
+        }
+        let transform = parent * local(node);
+        open.extend(node.children.iter().rev().map(|&child| (child, transform)));
+        if let Some(mesh) = node.mesh {
+            draft.add_mesh(mesh, transform)?;
+        }
+    }
+    draft.into_model()
+}
+
+/// The roots of the default scene; without scenes, all nodes that are nobody's child.
+fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshError> {
+    let document = &source.document;
+    if document.scene.is_none() && document.scenes.is_empty() {
+        let mut root = vec![true; document.nodes.len()];
+        for &child in document.nodes.iter().flat_map(|node| &node.children) {
+            if let Some(root) = root.get_mut(child) {
+                *root = false;
+            }
+        }
+        return Ok((0..root.len()).filter(|&node| root[node]).collect());
+    }
+    let scene = document.scene.unwrap_or(0);
+    let scene = document
+        .scenes
+        .get(scene)
+        .ok_or_else(|| wrong(format!("there is no scene {scene}")))?;
+    Ok(scene.nodes.clone())
+}
+
+/// The transform of a node to its parent.
+fn local(node: &Node) -> DMat4 {
+    if let Some(matrix) = &node.matrix {
+        return DMat4::from_cols_array(matrix);
+    }
+    let vector = |parts: &Option<Box<[f64; 3]>>, default| {
+        parts
+            .as_deref()
+            .map_or(default, |&parts| DVec3::from_array(parts))
+    };
+    let scale = vector(&node.scale, DVec3::ONE);
+    let rotation = node
+        .rotation
+        .as_deref()
+        .map_or(DQuat::IDENTITY, |&parts| DQuat::from_array(parts));
+    let [x, y, z] = axes(rotation);
+    let translation = vector(&node.translation, DVec3::ZERO);
+    DMat4::from_cols(
+        (x * scale.x).extend(0.0),
+        (y * scale.y).extend(0.0),
+        (z * scale.z).extend(0.0),
+        translation.extend(1.0),
+    )
+}
+
+/// Where a rotation takes the axes. The quaternion need not be of unit length.
+fn axes(rotation: DQuat) -> [DVec3; 3] {
+    let [x, y, z, w] = rotation.to_array();
+    let square = x * x + y * y + z * z + w * w;
+    let s = if square > 0.0 { 2.0 / square } else { 0.0 };
+    [
+        DVec3::new(
+            1.0 - s * (y * y + z * z),
+            s * (x * y + z * w),
+            s * (x * z - y * w),
+        ),
+        DVec3::new(
+            s * (x * y - z * w),
+            1.0 - s * (x * x + z * z),
+            s * (y * z + x * w),
+        ),
+        DVec3::new(
+            s * (x * z + y * w),
+            s * (y * z - x * w),
+            1.0 - s * (x * x + y * y),
+        ),
+    ]
+}
+
+impl Draft<'_> {
+    fn add_mesh(&mut self, index: usize, transform: DMat4) -> Result<(), MeshError> {
+        let mesh = self.source.document.meshes.get(index);
+        let mesh = mesh.ok_or_else(|| wrong(format!("there is no mesh {index}")))?;
+        let turned = DMat3::from_mat4(transform).determinant() < 0.0;
+        // Where the vertices of some attributes begin.
+        let mut known = BTreeMap::new();
+        for primitive in &mesh.primitives {
+            self.budget.take(1)?;
+            let mode = primitive.mode.unwrap_or(4);
+            if !matches!(mode, 0 | 4..=6) {
+                continue;
+            }
+            let attributes = self.attributes(primitive);
+            let Some(positions) = attributes[0] else {
+                continue;
+            };
+            let n_vertices = self.source.count(positions)?;
+            let first = match known.get(&attributes) {
+                Some(&first) => first,
+                None => self.add_vertices(attributes, transform)?,
+            };
+            known.insert(attributes, first);
+            self.material = self.material.or(primitive.material);
+            if mode != 0 {
+                self.add_faces(primitive, first, n_vertices, turned)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn attributes(&self, primitive: &Primitive) -> Attributes {
+        let set = primitive
+            .material
+            .map_or(0, |material| self.source.uvs_of_material(material));
+        let attribute = |name: &str| primitive.attributes.get(name).copied();
+        let uvs = attribute(&format!("TEXCOORD_{set}"));
+        [
+            attribute("POSITION"),
+            attribute("NORMAL"),
+            attribute("COLOR_0"),
+            uvs,
+        ]
+    }
+
+    /// Adds the vertices of attributes, and gives the number of the first.
+    fn add_vertices(&mut self, attributes: Attributes, transform: DMat4) -> Result<u32, MeshError> {
+        let [positions, normals, colors, uvs] = attributes;
+        let first = self.positions.len();
+        let whole = self.normals.len() == first;
+        if let Some(positions) = self.column(positions, 3..=3, false)? {
+            let vectors = positions.values.chunks_exact(3).map(DVec3::from_slice);
+            // Without a transform all bits stay, also the sign of zero.
+            if transform == DMat4::IDENTITY {
+                self.positions.extend(vectors);
+            } else {
+                self.positions
+                    .extend(vectors.map(|position| transform.transform_point3(position)));
+            }
+        }
+        let end = self.positions.len();
+        if let Some(normals) = self.column(normals, 3..=3, true)?.filter(|_| whole) {
+            let vectors = normals.values.chunks_exact(3).map(DVec3::from_slice);
+            if transform == DMat4::IDENTITY {
+                self.normals.extend(vectors);
+            } else {
+                let cofactors = cofactors(transform);
+                self.normals
+                    .extend(vectors.map(|normal| (cofactors * normal).normalize_or_zero()));
+            }
+        }
+        if let Some(colors) = self.column(colors, 3..=4, true)? {
+            self.colors
+                .resize(first, LinearRgba::opaque(LinearRgb::WHITE));
+            self.colors
+                .extend(colors.values.chunks_exact(colors.width).map(color));
+        }
+        if let Some(uvs) = self.column(uvs, 2..=2, true)? {
+            self.uvs.resize(first, DVec2::ZERO);
+            self.uvs
+                .extend(uvs.values.chunks_exact(2).map(DVec2::from_slice));
+        }
+        // A longer column would run into the vertices of the next primitive.
+        if [self.normals.len(), self.colors.len(), self.uvs.len()]
+            .into_iter()
+            .any(|n| n > first && n != end)
+        {
+            return Err(wrong("attributes of a primitive have different counts"));
+        }
+        u32::try_from(first).map_err(|_| wrong("there are too many vertices"))
+    }
+
+    /// The numbers of an attribute, if a primitive has it.
+    fn column(
+        &mut self,
+        accessor: Option<usize>,
+        widths: core::ops::RangeInclusive<usize>,
+        fractions: bool,
+    ) -> Result<Option<Column>, MeshError> {
+        let Some(accessor) = accessor else {
+            return Ok(None);
+        };
+        let column = self.source.column(accessor, fractions, &mut self.budget)?;
+        if !widths.contains(&column.width) {
+            return Err(wrong(format!(
+                "accessor {accessor} has {} numbers in each element",
+                column.width
+            )));
+        }
+        Ok(Some(column))
+    }
+
+    fn add_faces(
+        &mut self,
+        primitive: &Primitive,
+        first: u32,
+        n_vertices: usize,
+        turned: bool,
+    ) -> Result<(), MeshError> {
+        let indices = match primitive.indices {
+            Some(accessor) => self.source.indices(accessor, &mut self.budget)?,
+            None => {
+                self.budget.take(n_vertices)?;
+                (0..n_vertices as u32).collect()
+            }
+        };
+        if let Some(index) = indices.iter().find(|&&index| index as usize >= n_vertices) {
+            return Err(wrong(format!(
+                "an index is {index}, but there are {n_vertices} vertices"
+            )));
+        }
+        let mut add = |[a, b, c]: [u32; 3]| {
+            let [b, c] = if turned { [c, b] } else { [b, c] };
+            self.faces.push([a, b, c].map(|index| first + index));
+        };
+        match primitive.mode {
+            // In a strip every second triangle goes the other way around.
+            Some(5) => indices.windows(3).enumerate().for_each(|(i, w)| {
+                add(if i % 2 == 0 {
+                    [w[0], w[1], w[2]]
+                } else {
+                    [w[0], w[2], w[1]]
+                });
+            }),
+            Some(6) => indices
+                .windows(2)
+                .skip(1)
+                .for_each(|w| add([indices[0], w[0], w[1]])),
+            _ => indices
+                .chunks_exact(3)
+                .for_each(|w| add([w[0], w[1], w[2]])),
+        }
+        Ok(())
+    }
+
+    fn into_model(mut self) -> Result<(Model, Option<usize>), MeshError> {
+        let count = self.positions.len();
+        let mut model = Model::from(Mesh::new(self.positions, &self.faces)?);
+        if count > 0 && self.normals.len() == count {
+            model.normals = Some(self.normals);
+        }
+        if !self.colors.is_empty() {
+            self.colors
+                .resize(count, LinearRgba::opaque(LinearRgb::WHITE));
+            model.colors = Some(self.colors);
+        }
+        if !self.uvs.is_empty() {
+            self.uvs.resize(count, DVec2::ZERO);
+            let face = |face: &[u32; 3]| face.map(|vertex| self.uvs[vertex as usize]);
+            model.uvs = Some(self.faces.iter().map(face).collect());
+        }
+        Ok((model, self.material))
+    }
+}
+
+/// What takes normals along with a transform, but for their lengths; also where that has no inverse.
+fn cofactors(transform: DMat4) -> DMat3 {
+    let matrix = DMat3::from_mat4(transform);
+    let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
+    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+    // A mirror image has its outside where the cofactors say inside.
+    if matrix.determinant() < 0.0 {
+        -cofactors
+    } else {
+        cofactors
+    }
+}
+
+fn color(parts: &[f64]) -> LinearRgba {
+    let part = |i: usize| parts.get(i).map_or(1.0, |&part| part as f32);
+    LinearRgba {
+        color: LinearRgb::new(part(0), part(1), part(2)),
+        alpha: part(3),
+    }
+}

@@ -1,0 +1,265 @@
+//! OBJ, the format of Wavefront, with its materials in MTL.
+//!
+//! Source: Wavefront, *Advanced Visualizer Manual*, appendix B1 (Object Files) and B2 (MTL). Colors of vertices follow
+//! `v x y z`, as many programs write them. Wavefront's v goes up, so that v becomes 1 - v on the way in and out.
+//!
+//! All faces become one mesh, whatever their objects, groups and materials, since a texture is to run across these; the
+//! material is the first that a face has. Of normals, which OBJ gives to corners, those are kept that are the same at all
+//! corners of each vertex; if one vertex has two, as at a crease, the model has none. Lines, points and free-form surfaces are
+//! left out. Of a material its `Kd` (linear, and only without a texture, since with one it is seldom meant), `d`, `map_Kd`
+//! and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is left out.
+
+mod mtl;
+mod write;
+
+#[cfg(test)]
+mod tests;
+
+pub use write::{NamedFile, write, write_files};
+
+use super::Beside;
+use super::colors::{self, Coding};
+use super::text::{Line, fan, lines, parse};
+use crate::{Mesh, MeshError, Model};
+use dapple_color::{LinearRgb, LinearRgba};
+use glam::{DVec2, DVec3};
+use std::borrow::Cow;
+
+const FORMAT: &str = "OBJ";
+/// In place of the number of a texture coordinate or normal that a corner does not have.
+const NONE: u32 = u32::MAX;
+
+/// The numbers of the position, texture coordinate and normal of a corner.
+type Corner = [u32; 3];
+
+#[derive(Default)]
+struct Draft {
+    positions: Vec<DVec3>,
+    /// As many as positions up to the last that has one; others are white.
+    colors: Vec<LinearRgba>,
+    uvs: Vec<DVec2>,
+    normals: Vec<DVec3>,
+    faces: Vec<[Corner; 3]>,
+    libraries: Vec<String>,
+    /// The name of the material in use, and whether a face has it.
+    material: Option<(String, bool)>,
+}
+
+/// Reads an OBJ file without its material.
+///
+/// # Errors
+///
+/// [`MeshErrorKind::File`](crate::MeshErrorKind::File) with the line if the bytes are not an OBJ file;
+/// and what [`Mesh::new`] and [`Model::check`] refuse.
+///
+/// # Examples
+///
+/// ```
+/// let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 -1\n";
+/// let model = dapple_mesh::io::obj::read(text)?;
+/// assert_eq!(model.mesh.faces().len(), 2);
+/// # Ok::<(), dapple_mesh::MeshError>(())
+/// ```
+pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
+    read_with(bytes, &mut |_| None)
+}
+
+/// Reads an OBJ file, and its MTL files and textures through `beside`.
+///
+/// # Errors
+///
+/// As [`read`]; nothing about other files is an error.
+pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshError> {
+    let mut draft = Draft::default();
+    for line in lines(FORMAT, &joined(bytes)) {
+        draft.add(&line)?;
+    }
+    let libraries = core::mem::take(&mut draft.libraries);
+    let name = draft.material.take().map(|(name, _)| name);
+    let mut model = draft.into_model()?;
+    model.material = mtl::material(&libraries, name.as_deref(), beside);
+    Ok(model)
+}
+
+/// The text with lines joined that end with a backslash, but for comments, where that is often the end of a path.
+fn joined(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let continued = |pair: &[u8]| pair[0] == b'\\' && matches!(pair[1], b'\n' | b'\r');
+    if !bytes.windows(2).any(continued) {
+        return Cow::Borrowed(bytes);
+    }
+    let mut text = bytes.to_vec();
+    let mut comment = text[0] == b'#';
+    for i in 1..text.len() {
+        if text[i - 1] == b'\n' {
+            comment = text[i] == b'#';
+        }
+        if !comment && continued(&text[i - 1..=i]) {
+            let crlf = text[i..].starts_with(b"\r\n");
+            text[i - 1..=i + usize::from(crlf)].fill(b' ');
+        }
+    }
+    Cow::Owned(text)
+}
+
+impl Draft {
+    fn add(&mut self, line: &Line<'_>) -> Result<(), MeshError> {
+        match line.words[0] {
+            b"v" => self.add_vertex(line)?,
+            b"vt" => {
+                let v = if line.words.len() > 2 {
+                    line.number(2)?
+                } else {
+                    0.0
+                };
+                self.uvs.push(DVec2::new(line.number(1)?, 1.0 - v));
+            }
+            b"vn" => self.normals.push(line.vector(1)?),
+            b"f" => self.add_face(line)?,
+            b"mtllib" => self.libraries.push(name(line)),
+            b"usemtl" if !matches!(self.material, Some((_, true))) => {
+                self.material = Some((name(line), false));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn add_vertex(&mut self, line: &Line<'_>) -> Result<(), MeshError> {
+        // `v x y z w` has a weight that only free-form surfaces need.
+        if line.words.len() >= 7 {
+            let color = line.vector(4)?;
+            let parts = [color.x, color.y, color.z, 1.0];
+            self.colors.resize(self.positions.len(), WHITE);
+            self.colors.push(colors::decode(parts, [Coding::Unit; 4]));
+        }
+        self.positions.push(line.vector(1)?);
+        Ok(())
+    }
+
+    fn add_face(&mut self, line: &Line<'_>) -> Result<(), MeshError> {
+        let corner = |word: &&[u8]| {
+            self.corner(word)
+                .ok_or_else(|| line.error("a corner is not v, v/vt, v//vn or v/vt/vn"))
+        };
+        let corners = line.words[1..]
+            .iter()
+            .map(corner)
+            .collect::<Result<Vec<_>, _>>()?;
+        self.faces.extend(fan(&corners));
+        if let Some((_, used)) = &mut self.material {
+            *used = true;
+        }
+        Ok(())
+    }
+
+    /// The numbers from 0 of a corner, whose own are from 1, or from -1 back from the last there is.
+    fn corner(&self, word: &[u8]) -> Option<Corner> {
+        let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
+        let mut corner = [NONE; 3];
+        let mut parts = word.split(|&byte| byte == b'/');
+        for (i, count) in counts.into_iter().enumerate() {
+            match parts.next() {
+                Some(b"") | None if i > 0 => {}
+                part => corner[i] = index(parse(part?)?, count)?,
+            }
+        }
+        parts.next().is_none().then_some(corner)
+    }
+
+    fn into_model(mut self) -> Result<Model, MeshError> {
+        let faces: Vec<_> = self
+            .faces
+            .iter()
+            .map(|face| face.map(|corner| corner[0]))
+            .collect();
+        let uvs = self.face_uvs()?;
+        // The corners name vertices that there are before normals are spread over these.
+        let count = self.positions.len();
+        let mesh = Mesh::new(core::mem::take(&mut self.positions), &faces)?;
+        let normals = self.vertex_normals(count)?;
+        if !self.colors.is_empty() {
+            self.colors.resize(count, WHITE);
+        }
+        let colors = (!self.colors.is_empty()).then_some(self.colors);
+        let model = Model {
+            mesh,
+            colors,
+            uvs,
+            normals,
+            ..Model::default()
+        };
+        model.check()?;
+        Ok(model)
+    }
+
+    /// The texture coordinates of the corners, zero where there are none, or nothing if no corner has one.
+    fn face_uvs(&self) -> Result<Option<Vec<[DVec2; 3]>>, MeshError> {
+        if self.faces.iter().flatten().all(|corner| corner[1] == NONE) {
+            return Ok(None);
+        }
+        let uv = |[_, uv, _]: Corner| match uv {
+            NONE => Ok(DVec2::ZERO),
+            _ => named("texture coordinate", &self.uvs, uv),
+        };
+        let face = |&[a, b, c]: &[Corner; 3]| Ok([uv(a)?, uv(b)?, uv(c)?]);
+        self.faces
+            .iter()
+            .map(face)
+            .collect::<Result<_, _>>()
+            .map(Some)
+    }
+
+    /// The normals of the vertices, if each vertex of a face has exactly one; those of a cloud of points in their order.
+    fn vertex_normals(&self, count: usize) -> Result<Option<Vec<DVec3>>, MeshError> {
+        if self.faces.is_empty() {
+            let whole = count > 0 && self.normals.len() == count;
+            return Ok(whole.then(|| self.normals.clone()));
+        }
+        let mut normals = vec![None; count];
+        let mut whole = true;
+        for &[vertex, _, number] in self.faces.iter().flatten() {
+            if number == NONE {
+                whole = false;
+                continue;
+            }
+            let normal = named("normal", &self.normals, number)?;
+            whole &= *normals[vertex as usize].get_or_insert(normal) == normal;
+        }
+        let spread = || normals.into_iter().map(Option::unwrap_or_default).collect();
+        Ok(whole.then(spread))
+    }
+}
+
+/// The color of vertices that have none where others do.
+const WHITE: LinearRgba = LinearRgba::opaque(LinearRgb::WHITE);
+
+/// The rest of a line as a name, which may have spaces.
+fn name(line: &Line<'_>) -> String {
+    let words: Vec<_> = line.words[1..]
+        .iter()
+        .map(|word| String::from_utf8_lossy(word))
+        .collect();
+    words.join(" ")
+}
+
+fn index(number: i64, count: usize) -> Option<u32> {
+    let from_zero = if number > 0 {
+        number - 1
+    } else {
+        i64::try_from(count).ok()? + number
+    };
+    // Zero names nothing, and would be one past the last.
+    u32::try_from(from_zero)
+        .ok()
+        .filter(|&index| number != 0 && index != NONE)
+}
+
+fn named<T: Copy>(what: &str, column: &[T], number: u32) -> Result<T, MeshError> {
+    column.get(number as usize).copied().ok_or_else(|| {
+        let (number, count) = (u64::from(number) + 1, column.len());
+        MeshError::file(
+            FORMAT,
+            format!("a corner names {what} {number}, but there are {count}"),
+        )
+    })
+}

@@ -1,0 +1,290 @@
+//! OFF: the Object File Format of Geomview, as text.
+//!
+//! Source: the manual of Geomview, `http://www.geomview.org/docs/html/OFF.html`, section 4.2.5.
+//!
+//! Read are all headers of three dimensions: `OFF` with the letters `ST`, `C` and `N` before it, in this order, for texture
+//! coordinates, colors and normals of the vertices, and none at all, which means `OFF`. The counts may follow the header
+//! on its line, even without a space. Colors are three or four numbers, 0 to 255 if a vertex has only whole ones and else 0
+//! to 1; those of faces are left out. The four-dimensional, n-dimensional and binary variants are refused.
+
+use super::colors::{self, Coding};
+use super::text::{Line, fan, lines, parse};
+use crate::{Mesh, MeshError, Model};
+use dapple_color::LinearRgba;
+use glam::{DVec2, DVec3};
+
+const FORMAT: &str = "OFF";
+
+/// What the header says that vertices have.
+#[derive(Clone, Copy, Default)]
+struct Header {
+    texture: bool,
+    color: bool,
+    normal: bool,
+}
+
+/// The columns of the vertices.
+#[derive(Default)]
+struct Vertices {
+    positions: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    colors: Vec<LinearRgba>,
+    uvs: Vec<DVec2>,
+}
+
+/// Reads an OFF file.
+///
+/// # Errors
+///
+/// [`MeshErrorKind::File`](crate::MeshErrorKind::File) with the line if the bytes are not an OFF file;
+/// and what [`Mesh::new`] and [`Model::check`] refuse.
+///
+/// # Examples
+///
+/// ```
+/// let text = b"OFF\n3 1 0 # counts\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+/// let model = dapple_mesh::io::off::read(text)?;
+/// assert_eq!(model.mesh.faces().len(), 1);
+/// # Ok::<(), dapple_mesh::MeshError>(())
+/// ```
+pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
+    let mut lines = lines(FORMAT, bytes);
+    let Some(mut line) = lines.next() else {
+        return Err(MeshError::file(FORMAT, "it is empty"));
+    };
+    let header = take_header(&mut line)?;
+    let counts = if line.words.is_empty() {
+        lines.next()
+    } else {
+        Some(line)
+    };
+    let [n_vertices, n_faces] = counts_of(counts.as_ref())?;
+    let mut vertices = Vertices::default();
+    for _ in 0..n_vertices {
+        let line = lines.next().ok_or_else(|| ended("vertices", n_vertices))?;
+        vertices.add(header, &line)?;
+    }
+    let (mut faces, mut corners) = (Vec::new(), Vec::new());
+    for _ in 0..n_faces {
+        let line = lines.next().ok_or_else(|| ended("faces", n_faces))?;
+        take_corners(&line, &mut corners)?;
+        faces.extend(fan(&corners));
+    }
+    vertices.into_model(header, &faces)
+}
+
+/// What the header means, taken off its line.
+fn take_header(line: &mut Line<'_>) -> Result<Header, MeshError> {
+    let word = line.words[0];
+    if parse::<f64>(word).is_some() {
+        return Ok(Header::default());
+    }
+    let (rest, texture) = strip(word, b"ST");
+    let (rest, color) = strip(rest, b"C");
+    let (rest, normal) = strip(rest, b"N");
+    let (rest, off) = strip(rest, b"OFF");
+    let count = rest.is_empty() || parse::<u64>(rest).is_some();
+    let binary = line.words.get(1) == Some(&b"BINARY".as_slice());
+    if !off || !count || binary {
+        return Err(line.error("the header is not [ST][C][N]OFF"));
+    }
+    if rest.is_empty() {
+        line.words.remove(0);
+    } else {
+        line.words[0] = rest;
+    }
+    Ok(Header {
+        texture,
+        color,
+        normal,
+    })
+}
+
+fn strip<'a>(word: &'a [u8], prefix: &[u8]) -> (&'a [u8], bool) {
+    word.strip_prefix(prefix)
+        .map_or((word, false), |rest| (rest, true))
+}
+
+/// How many vertices and faces there are; the number of edges, which follows, is never needed.
+fn counts_of(line: Option<&Line<'_>>) -> Result<[u64; 2], MeshError> {
+    let line = line.ok_or_else(|| MeshError::file(FORMAT, "there are no counts"))?;
+    let count = |at: usize| line.words.get(at).copied().and_then(parse::<u64>);
+    match (count(0), count(1)) {
+        (Some(vertices), Some(faces)) => Ok([vertices, faces]),
+        _ => Err(line.error("the numbers of vertices and faces are needed")),
+    }
+}
+
+fn ended(what: &str, count: u64) -> MeshError {
+    MeshError::file(
+        FORMAT,
+        format!("it ends before the last of its {count} {what}"),
+    )
+}
+
+/// The corners of the polygon of a line.
+fn take_corners(line: &Line<'_>, corners: &mut Vec<u32>) -> Result<(), MeshError> {
+    let count = parse::<usize>(line.words[0])
+        .filter(|&count| count < line.words.len())
+        .ok_or_else(|| line.error("a face has fewer corners than it says"))?;
+    corners.clear();
+    for word in &line.words[1..=count] {
+        let corner =
+            parse(word).ok_or_else(|| line.error("a corner is not the number of a vertex"))?;
+        corners.push(corner);
+    }
+    Ok(())
+}
+
+impl Vertices {
+    /// Adds the vertex of a line: position, normal, color, texture coordinates.
+    fn add(&mut self, header: Header, line: &Line<'_>) -> Result<(), MeshError> {
+        self.positions.push(line.vector(0)?);
+        let mut at = 3;
+        if header.normal {
+            self.normals.push(line.vector(at)?);
+            at += 3;
+        }
+        if header.color {
+            // Three numbers or four, and then perhaps texture coordinates.
+            let end = line.words.len()
+                - if header.texture {
+                    2.min(line.words.len())
+                } else {
+                    0
+                };
+            let count = end.saturating_sub(at).min(4);
+            self.colors.push(color(line, at, count)?);
+            at += count;
+        }
+        if header.texture {
+            // Here v goes up.
+            let v = 1.0 - line.number(at + 1)?;
+            self.uvs.push(DVec2::new(line.number(at)?, v));
+        }
+        Ok(())
+    }
+
+    fn into_model(self, header: Header, faces: &[[u32; 3]]) -> Result<Model, MeshError> {
+        let mut model = Model::from(Mesh::new(self.positions, faces)?);
+        model.normals = header.normal.then_some(self.normals);
+        model.colors = header.color.then_some(self.colors);
+        model.uvs = header.texture.then(|| {
+            let uv = |&vertex: &u32| self.uvs[vertex as usize];
+            faces.iter().map(|face| face.each_ref().map(uv)).collect()
+        });
+        model.check()?;
+        Ok(model)
+    }
+}
+
+/// The color in three or four numbers from a place on.
+fn color(line: &Line<'_>, at: usize, count: usize) -> Result<LinearRgba, MeshError> {
+    let whole = line
+        .words
+        .iter()
+        .skip(at)
+        .take(count)
+        .all(|word| parse::<i64>(word).is_some());
+    let coding = if whole { Coding::Byte } else { Coding::Unit };
+    let mut parts = [0.0, 0.0, 0.0, coding.full()];
+    for (i, part) in parts.iter_mut().enumerate().take(count.max(3)) {
+        *part = line.number(at + i)?;
+    }
+    Ok(colors::decode(parts, [coding; 4]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{MeshErrorKind, VertexIdx};
+    use dapple_color::LinearRgb;
+
+    fn why(text: &str) -> String {
+        match read(text.as_bytes()).expect_err("it is refused").kind() {
+            MeshErrorKind::File { format: "OFF", why } => why.clone(),
+            kind => panic!("{kind:?}"),
+        }
+    }
+
+    #[test]
+    fn headers_comments_and_quads_are_read() {
+        let body =
+            "4 2 0 # counts\r\n\r\n0 0 0\n1 0 0\n1 1 0 # far\n0 1 .5\n4 0 1 2 3 255 0 0\n2 0 1\n";
+        for header in ["OFF\n", "# first\r\nOFF # header\r\n", "OFF ", "OFF", ""] {
+            let model = read(format!("{header}{body}").as_bytes()).expect("it is valid");
+            let faces = [[0, 1, 2], [0, 2, 3]].map(|face| face.map(VertexIdx));
+            assert_eq!(model.mesh.faces(), faces, "{header}");
+            assert_eq!(
+                model.mesh.positions()[3],
+                DVec3::new(0.0, 1.0, 0.5),
+                "{header}"
+            );
+        }
+    }
+
+    #[test]
+    fn columns_of_vertices_are_read() {
+        let text = "STCNOFF\n3 1 0\n0 0 0 0 0 1 255 0 188 128 0 0.25\n1 0 0 0 1 0 1.0 0 0.5 0 1 1\n0 1 0 1 0 0 0 0 0 .5 .5\n3 0 1 2\n";
+        let model = read(text.as_bytes()).expect("it is valid");
+        assert_eq!(model.normals, Some(vec![DVec3::Z, DVec3::Y, DVec3::X]));
+        let colors = model.colors.expect("it has colors");
+        assert_eq!(
+            colors[0],
+            LinearRgba::from_srgb([255, 0, 188, 128u8]),
+            "whole numbers"
+        );
+        assert_eq!(
+            colors[1].color,
+            LinearRgb::from_srgb([65535, 0, 32768u16]),
+            "fractions"
+        );
+        assert_eq!(
+            (colors[1].alpha, colors[2].alpha),
+            (0.0, 1.0),
+            "alpha and none"
+        );
+        let uvs = [
+            DVec2::new(0.0, 0.75),
+            DVec2::new(1.0, 0.0),
+            DVec2::new(0.5, 0.5),
+        ];
+        assert_eq!(model.uvs, Some(vec![uvs]));
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        assert_eq!(why("\n# nothing\n"), "it is empty");
+        for header in ["4OFF", "nOFF", "OFF BINARY", "COF", "ply"] {
+            assert_eq!(
+                why(&format!("{header}\n0 0 0\n")),
+                "line 1: the header is not [ST][C][N]OFF"
+            );
+        }
+        assert_eq!(why("OFF\n"), "there are no counts");
+        assert_eq!(
+            why("OFF\n3\n"),
+            "line 2: the numbers of vertices and faces are needed"
+        );
+        assert_eq!(
+            why("OFF\n4000000000 0 0\n"),
+            "it ends before the last of its 4000000000 vertices"
+        );
+        assert_eq!(
+            why("OFF\n1 9 0\n0 0 0\n"),
+            "it ends before the last of its 9 faces"
+        );
+        assert_eq!(
+            why("OFF\n1 1 0\n0 0 0\n3 0 0\n"),
+            "line 4: a face has fewer corners than it says"
+        );
+        assert_eq!(
+            why("OFF\n1 1 0\n0 0 0\n3 0 0 -1\n"),
+            "line 4: a corner is not the number of a vertex"
+        );
+        assert_eq!(
+            why("COFF\n1 0 0\n0 0 0\n"),
+            "line 3: a number is needed in place 4"
+        );
+    }
+}

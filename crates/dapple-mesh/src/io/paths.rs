@@ -1,0 +1,156 @@
+//! Reading and writing models at paths: the only place that touches files.
+
+#![expect(
+    clippy::disallowed_methods,
+    reason = "this module is where meshes meet files"
+)]
+
+use crate::{MeshError, MeshErrorKind, Model};
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Component, Path};
+
+/// The most bytes that are read of a file. A device or a pipe has no length to trust.
+const BYTES_MAX: u64 = 1 << 32;
+
+/// Reads a mesh file by the extension of its path: `obj`, `ply`, `gltf`, `glb` or `off`, if their features are on.
+///
+/// Materials, buffers and textures are looked for in the same folder and those in it, never outside of it.
+///
+/// # Errors
+///
+/// [`MeshErrorKind::Io`] if the file cannot be read or has more than 4 GiB; [`MeshErrorKind::Format`] if its extension
+/// is none of these; and what the reader of the format refuses.
+pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshError> {
+    let path = path.as_ref();
+    let extension = extension(path);
+    #[cfg(any(feature = "obj", feature = "gltf"))]
+    let beside = &mut |name: &str| beside(path, name);
+    match extension.as_str() {
+        #[cfg(feature = "obj")]
+        "obj" => super::obj::read_with(&read(path)?, beside),
+        #[cfg(feature = "ply")]
+        "ply" => super::ply::read(&read(path)?),
+        #[cfg(feature = "gltf")]
+        "gltf" | "glb" => super::gltf::read_with(&read(path)?, beside),
+        #[cfg(feature = "off")]
+        "off" => super::off::read(&read(path)?),
+        _ => Err(unknown(
+            extension,
+            "obj, ply, gltf, glb and off, each behind its feature",
+        )),
+    }
+}
+
+/// Writes a mesh file by the extension of its path: `obj`, `ply` (binary) or `glb`, if their features are on.
+///
+/// A file is written under a temporary name and then renamed, so that nobody ever sees half of it. With OBJ, its material
+/// and textures are written beside it before it, under the same stem.
+///
+/// # Errors
+///
+/// [`MeshErrorKind::Io`] if a file cannot be written; [`MeshErrorKind::Format`] if the extension is none of these;
+/// and what the writer of the format refuses.
+#[cfg(any(feature = "obj", feature = "ply", feature = "gltf"))]
+pub fn write_model(path: impl AsRef<Path>, model: &Model) -> Result<(), MeshError> {
+    let path = path.as_ref();
+    let extension = extension(path);
+    match extension.as_str() {
+        #[cfg(feature = "obj")]
+        "obj" => {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            let mut files = super::obj::write_files(model, &stem)?;
+            let obj = files.pop();
+            for file in files {
+                replace(&path.with_file_name(file.name), &file.bytes)?;
+            }
+            obj.map_or(Ok(()), |obj| replace(path, &obj.bytes))
+        }
+        #[cfg(feature = "ply")]
+        "ply" => replace(path, &super::ply::write(model)?),
+        #[cfg(feature = "gltf")]
+        "glb" => replace(path, &super::gltf::write(model)?),
+        _ => Err(unknown(
+            extension,
+            "obj, ply and glb to write, each behind its feature",
+        )),
+    }
+}
+
+/// The extension in small letters; empty where there is none.
+fn extension(path: &Path) -> String {
+    path.extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase()
+}
+
+fn unknown(name: String, known: &'static str) -> MeshError {
+    MeshError::new(MeshErrorKind::Format { name, known })
+}
+
+/// The content of another file by its name in a file, if it is in the folder of that or deeper.
+#[cfg(any(feature = "obj", feature = "gltf"))]
+fn beside(path: &Path, name: &str) -> Option<Vec<u8>> {
+    let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+    let name = Path::new(name);
+    if !name.components().all(inside) {
+        return None;
+    }
+    read(&path.with_file_name("").join(name)).ok()
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, MeshError> {
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(BYTES_MAX + 1).read_to_end(&mut bytes))
+        .map_err(|error| failed(path, &error))?;
+    if bytes.len() as u64 > BYTES_MAX {
+        return Err(failed(path, &io::Error::other("it has more than 4 GiB")));
+    }
+    Ok(bytes)
+}
+
+fn failed(path: &Path, error: &io::Error) -> MeshError {
+    let (path, why) = (path.display().to_string(), error.to_string());
+    MeshError::new(MeshErrorKind::Io { path, why })
+}
+
+/// Makes `bytes` the content of the file at `path`, which is new or the old one until all of it is written.
+#[cfg(any(feature = "obj", feature = "ply", feature = "gltf"))]
+fn replace(path: &Path, bytes: &[u8]) -> Result<(), MeshError> {
+    let temporary = temporary_beside(path);
+    write_and_rename(&temporary, path, bytes).map_err(|error| {
+        // What remains is of no use, and the first error is the one to report.
+        let _ = std::fs::remove_file(&temporary);
+        failed(path, &error)
+    })
+}
+
+#[cfg(any(feature = "obj", feature = "ply", feature = "gltf"))]
+fn write_and_rename(temporary: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    use std::io::Write as _;
+    let mut file = File::options()
+        .write(true)
+        .create_new(true)
+        .open(temporary)?;
+    file.write_all(bytes)?;
+    // Closed first, since not every system renames an open file.
+    drop(file);
+    std::fs::rename(temporary, path)
+}
+
+/// A name in the same folder that no other call, in this process or another, has at the same time.
+#[cfg(any(feature = "obj", feature = "ply", feature = "gltf"))]
+fn temporary_beside(path: &Path) -> std::path::PathBuf {
+    use std::sync::atomic::{AtomicU64, Ordering};
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    let mut name = std::ffi::OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(format!(".{}-{count}.tmp", std::process::id()));
+    path.with_file_name(name)
+}
+
+#[cfg(test)]
+mod tests;

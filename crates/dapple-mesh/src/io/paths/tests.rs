@@ -1,0 +1,92 @@
+#![cfg(all(feature = "obj", feature = "ply", feature = "gltf"))]
+
+use super::*;
+use crate::EncodedImage;
+use crate::test_meshes::cube;
+use glam::DVec2;
+use std::fs;
+use std::path::PathBuf;
+
+/// An empty folder of its own for a test.
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("dapple-mesh-{}-{name}", std::process::id()));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(folder.join("inside")).expect("a temporary folder can be made");
+    folder
+}
+
+fn textured() -> Model {
+    let mut model = Model::from(cube());
+    model.uvs = Some(vec![
+        [DVec2::ZERO, DVec2::X, DVec2::Y];
+        model.mesh.faces().len()
+    ]);
+    model.material.base_color = EncodedImage::new(b"\x89PNG\r\n\x1a\n".to_vec()).ok();
+    model
+}
+
+#[test]
+fn models_are_written_and_read_by_extension() {
+    let folder = folder("extension");
+    let model = textured();
+    for name in ["a.obj", "a.PLY", "a.glb"] {
+        let path = folder.join("inside").join(name);
+        write_model(&path, &model).expect("it is written");
+        let back = read_model(&path).expect("it is read");
+        assert_eq!(back.mesh.faces().len(), model.mesh.faces().len(), "{name}");
+        assert_eq!(back.uvs, model.uvs, "{name}");
+        assert_eq!(back.material == model.material, name != "a.PLY", "{name}");
+    }
+    let mut names: Vec<_> = fs::read_dir(folder.join("inside"))
+        .expect("it is there")
+        .flatten()
+        .map(|entry| entry.file_name())
+        .collect();
+    names.sort();
+    assert_eq!(
+        names,
+        ["a.PLY", "a.glb", "a.mtl", "a.obj", "a_base_color.png"],
+        "and nothing else"
+    );
+    fs::remove_dir_all(folder).expect("it is there");
+}
+
+#[test]
+fn unknown_extensions_and_missing_files_are_refused() {
+    let folder = folder("refused");
+    let kind = |result: Result<(), MeshError>| result.expect_err("it is refused").kind().clone();
+    for name in ["a.stl", "a", "a.gltf", "a.off"] {
+        let kind = kind(write_model(folder.join(name), &textured()));
+        assert!(matches!(kind, MeshErrorKind::Format { .. }), "{kind:?}");
+    }
+    for path in [
+        folder.join("missing.obj"),
+        folder.join("missing").join("a.glb"),
+    ] {
+        let kind = kind(read_model(&path).map(drop));
+        assert!(matches!(kind, MeshErrorKind::Io { .. }), "{kind:?}");
+    }
+    let kind = kind(write_model(
+        folder.join("missing").join("a.glb"),
+        &textured(),
+    ));
+    assert!(matches!(kind, MeshErrorKind::Io { .. }), "{kind:?}");
+    fs::remove_dir_all(folder).expect("it is there");
+}
+
+#[test]
+fn names_in_a_file_do_not_lead_out_of_its_folder() {
+    let folder = folder("inside");
+    fs::write(folder.join("secret"), "outside").expect("it is written");
+    fs::write(folder.join("inside").join("known"), "beside").expect("it is written");
+    let path = folder.join("inside").join("a.obj");
+    assert_eq!(
+        beside(&path, "./known").as_deref(),
+        Some(b"beside".as_slice())
+    );
+    let absolute = folder.join("secret").display().to_string();
+    for name in ["../secret", "x/../../secret", absolute.as_str(), ""] {
+        assert_eq!(beside(&path, name), None, "{name}");
+    }
+    fs::remove_dir_all(folder).expect("it is there");
+}

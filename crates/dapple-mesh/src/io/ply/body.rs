@@ -1,0 +1,122 @@
+//! The numbers after the header of a PLY file.
+
+use super::super::text::parse;
+use super::FORMAT;
+use super::header::{Element, Encoding, Kind, Scalar};
+use crate::MeshError;
+
+/// What is still to be read.
+pub(super) struct Body<'a> {
+    encoding: Encoding,
+    rest: &'a [u8],
+}
+
+impl<'a> Body<'a> {
+    pub(super) fn new(encoding: Encoding, rest: &'a [u8]) -> Self {
+        Self { encoding, rest }
+    }
+
+    /// Refuses an element of which there are said to be more than the bytes that are left can hold.
+    pub(super) fn check_room(&self, element: &Element) -> Result<(), MeshError> {
+        let least = |kind: Kind| match kind {
+            // A digit and a space, of which the last may be missing.
+            _ if self.encoding == Encoding::Text => 2,
+            Kind::Scalar(scalar) | Kind::List(scalar, _) => scalar.size(),
+        };
+        let row: usize = element
+            .properties
+            .iter()
+            .map(|property| least(property.kind))
+            .sum();
+        let needed = u128::from(element.count) * row as u128;
+        if needed <= self.rest.len() as u128 + 1 {
+            return Ok(());
+        }
+        let (name, count, left) = (&element.name, element.count, self.rest.len());
+        let why = format!(
+            "the header says {count} of the element {name}, but there are only {left} bytes left"
+        );
+        Err(MeshError::file(FORMAT, why))
+    }
+
+    /// Reads the numbers of a property, in place of what was in the list.
+    pub(super) fn values(&mut self, kind: Kind, list: &mut Vec<f64>) -> Result<(), MeshError> {
+        list.clear();
+        let (count, item) = match kind {
+            Kind::Scalar(item) => (1, item),
+            Kind::List(count, item) => (self.count(count)?, item),
+        };
+        for _ in 0..count {
+            let value = self.scalar(item)?;
+            list.push(value);
+        }
+        Ok(())
+    }
+
+    /// The length of a list.
+    fn count(&mut self, scalar: Scalar) -> Result<usize, MeshError> {
+        let count = self.scalar(scalar)?;
+        // Each has at least a byte, so that reading stops soon after a lie; no memory is taken on trust.
+        if count >= 0.0 && count <= self.rest.len() as f64 {
+            return Ok(count as usize);
+        }
+        let left = self.rest.len();
+        Err(MeshError::file(
+            FORMAT,
+            format!("a list says it has {count} items, but there are only {left} bytes left"),
+        ))
+    }
+
+    fn scalar(&mut self, scalar: Scalar) -> Result<f64, MeshError> {
+        let value = match self.encoding {
+            Encoding::Text => self.word(),
+            Encoding::Little => self
+                .take(scalar.size())
+                .and_then(|bytes| little(scalar, bytes)),
+            Encoding::Big => self
+                .take(scalar.size())
+                .and_then(|bytes| big(scalar, bytes)),
+        };
+        let why = "it ends early, or has something else in place of a number";
+        value.ok_or_else(|| MeshError::file(FORMAT, why))
+    }
+
+    /// The next word as a number.
+    fn word(&mut self) -> Option<f64> {
+        let text = self.rest.trim_ascii_start();
+        let end = text
+            .iter()
+            .position(u8::is_ascii_whitespace)
+            .unwrap_or(text.len());
+        let (word, rest) = text.split_at(end);
+        self.rest = rest;
+        parse(word)
+    }
+
+    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (bytes, rest) = self.rest.split_at_checked(count)?;
+        self.rest = rest;
+        Some(bytes)
+    }
+}
+
+fn little(scalar: Scalar, bytes: &[u8]) -> Option<f64> {
+    Some(match scalar {
+        Scalar::I8 => i8::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::U8 => u8::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::I16 => i16::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::U16 => u16::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::I32 => i32::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::U32 => u32::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::F32 => f32::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::F64 => f64::from_le_bytes(bytes.try_into().ok()?),
+    })
+}
+
+fn big(scalar: Scalar, bytes: &[u8]) -> Option<f64> {
+    let mut reversed = [0; 8];
+    let reversed = reversed.get_mut(..bytes.len())?;
+    reversed.copy_from_slice(bytes);
+    reversed.reverse();
+    little(scalar, reversed)
+}

@@ -1,0 +1,267 @@
+//! What a mesh file holds: a mesh, its columns, and one material whose textures travel as encoded bytes.
+//!
+//! Colors are linear light. Texture coordinates have v down: (0, 0) is the top left corner of the first row of the
+//! texture, as in glTF; the readers and writers of formats in which v goes up turn it over.
+
+use crate::{Mesh, MeshError, MeshErrorKind};
+use dapple_color::{LinearRgb, LinearRgba};
+use glam::{DVec2, DVec3};
+
+/// The largest part of a texture coordinate or a normal, as of a position.
+const PART_MAX: f64 = 1e30;
+/// The first bytes of every PNG file.
+const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+/// The first bytes of every JPEG file.
+const JPEG: &[u8] = b"\xff\xd8\xff";
+
+/// A mesh with everything that a file says about its looks.
+///
+/// The fields are free to change; [`check`](Self::check) says whether they fit together, and every writer asks it.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_mesh::{Mesh, Model, glam::{DVec2, DVec3}};
+///
+/// let mesh = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]])?;
+/// let mut model = Model::from(mesh);
+/// model.uvs = Some(vec![[DVec2::Y, DVec2::ONE, DVec2::ZERO]]);
+/// assert!(model.check().is_ok());
+/// # Ok::<(), dapple_mesh::MeshError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Model {
+    /// The triangles. A mesh without faces is a cloud of points, which may have normals and colors.
+    pub mesh: Mesh,
+    /// A color for each vertex, linear.
+    pub colors: Option<Vec<LinearRgba>>,
+    /// A texture coordinate for each corner of each face, v down; 0 to 1 is once the texture.
+    pub uvs: Option<Vec<[DVec2; 3]>>,
+    /// A normal for each vertex; zero where there is none.
+    pub normals: Option<Vec<DVec3>>,
+    /// What all faces are made of.
+    pub material: Material,
+}
+
+/// What a surface is made of: the metallic-roughness material of glTF 2.0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// The factor of the base color, linear; white by default.
+    pub base_color_factor: LinearRgba,
+    /// The base color, which the file codes as sRGB.
+    pub base_color: Option<EncodedImage>,
+    /// The normals in the tangent frame of the texture coordinates, green up.
+    pub normal: Option<EncodedImage>,
+    /// Roughness in green and metalness in blue.
+    pub metallic_roughness: Option<EncodedImage>,
+}
+
+/// The bytes of an image file. They are not decoded; only their first ones are looked at.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EncodedImage {
+    format: ImageFormat,
+    bytes: Vec<u8>,
+}
+
+/// The format of an [`EncodedImage`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ImageFormat {
+    /// PNG.
+    Png,
+    /// JPEG.
+    Jpeg,
+}
+
+impl Model {
+    /// Whether the columns have the lengths of the mesh and only numbers that a file can hold.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshErrorKind::Count`] if a column is longer or shorter than the mesh; [`MeshErrorKind::Range`] if a part of a
+    /// color is not finite, or one of a normal or a texture coordinate is not between -1e30 and 1e30.
+    pub fn check(&self) -> Result<(), MeshError> {
+        let (vertices, faces) = (self.mesh.positions().len(), self.mesh.faces().len());
+        if let Some(colors) = &self.colors {
+            check_count("colors", colors.len(), vertices, "one for each vertex")?;
+            for color in colors {
+                check_color("part of a color", *color)?;
+            }
+        }
+        if let Some(normals) = &self.normals {
+            check_count("normals", normals.len(), vertices, "one for each vertex")?;
+            for part in normals.iter().flat_map(DVec3::to_array) {
+                check_part("part of a normal", part)?;
+            }
+        }
+        if let Some(uvs) = &self.uvs {
+            check_count("faces with texture coordinates", uvs.len(), faces, "all")?;
+            for part in uvs.iter().flatten().flat_map(DVec2::to_array) {
+                check_part("texture coordinate", part)?;
+            }
+        }
+        check_color("base color factor", self.material.base_color_factor)
+    }
+}
+
+impl From<Mesh> for Model {
+    /// The mesh, and nothing else.
+    fn from(mesh: Mesh) -> Self {
+        Self {
+            mesh,
+            ..Self::default()
+        }
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            base_color_factor: LinearRgba::opaque(LinearRgb::WHITE),
+            base_color: None,
+            normal: None,
+            metallic_roughness: None,
+        }
+    }
+}
+
+impl EncodedImage {
+    /// The image in these bytes, whose beginning says which format it has.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshErrorKind::File`] if they begin neither as a PNG nor as a JPEG file.
+    pub fn new(bytes: Vec<u8>) -> Result<Self, MeshError> {
+        let format = if bytes.starts_with(PNG) {
+            ImageFormat::Png
+        } else if bytes.starts_with(JPEG) {
+            ImageFormat::Jpeg
+        } else {
+            let why = "its first bytes are of neither format".to_owned();
+            let format = "PNG or JPEG";
+            return Err(MeshError::new(MeshErrorKind::File { format, why }));
+        };
+        Ok(Self { format, bytes })
+    }
+
+    /// The format.
+    #[must_use]
+    pub fn format(&self) -> ImageFormat {
+        self.format
+    }
+
+    /// The bytes, as a file has them.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+}
+
+impl ImageFormat {
+    /// The extension of a file of this format.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Jpeg => "jpg",
+        }
+    }
+
+    /// The media type: `image/png` or `image/jpeg`.
+    #[must_use]
+    pub fn media_type(self) -> &'static str {
+        match self {
+            Self::Png => "image/png",
+            Self::Jpeg => "image/jpeg",
+        }
+    }
+}
+
+fn check_count(
+    what: &'static str,
+    count: usize,
+    wanted: usize,
+    needed: &'static str,
+) -> Result<(), MeshError> {
+    if count == wanted {
+        return Ok(());
+    }
+    Err(MeshError::new(MeshErrorKind::Count {
+        what,
+        count,
+        needed,
+    }))
+}
+
+fn check_color(what: &'static str, color: LinearRgba) -> Result<(), MeshError> {
+    let [r, g, b] = color.color.to_array();
+    for part in [r, g, b, color.alpha] {
+        MeshError::check(part.is_finite(), what, f64::from(part), "finite")?;
+    }
+    Ok(())
+}
+
+fn check_part(what: &'static str, part: f64) -> Result<(), MeshError> {
+    MeshError::check(part.abs() <= PART_MAX, what, part, "between -1e30 and 1e30")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_meshes::tetrahedron;
+
+    fn count(model: &Model) -> usize {
+        match model.check().expect_err("it is refused").kind() {
+            MeshErrorKind::Count { count, .. } => *count,
+            kind => panic!("{kind:?}"),
+        }
+    }
+
+    #[test]
+    fn model_refuses_columns_of_another_length() {
+        let plain = Model::from(tetrahedron());
+        assert!(plain.check().is_ok(), "no columns");
+        let (mut colors, mut uvs, mut normals) = (plain.clone(), plain.clone(), plain);
+        colors.colors = Some(vec![LinearRgba::default(); 3]);
+        uvs.uvs = Some(vec![[DVec2::ZERO; 3]; 5]);
+        normals.normals = Some(vec![]);
+        assert_eq!((count(&colors), count(&uvs), count(&normals)), (3, 5, 0));
+    }
+
+    #[test]
+    fn model_refuses_numbers_that_are_not_finite() {
+        let plain = Model::from(tetrahedron());
+        for value in [f64::NAN, f64::INFINITY, -1.1e39] {
+            let mut models = [plain.clone(), plain.clone(), plain.clone(), plain.clone()];
+            let gray = LinearRgba::opaque(LinearRgb::gray(value as f32));
+            models[0].colors = Some(vec![gray; 4]);
+            models[1].uvs = Some(vec![[DVec2::new(0.0, value); 3]; 4]);
+            models[2].normals = Some(vec![DVec3::new(0.0, 0.0, value); 4]);
+            models[3].material.base_color_factor = gray;
+            for model in models {
+                let error = model.check().expect_err("it is refused");
+                assert!(
+                    matches!(error.kind(), MeshErrorKind::Range { .. }),
+                    "{error}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn encoded_image_knows_its_format_by_its_first_bytes() {
+        let png = EncodedImage::new([PNG, b"rest"].concat()).expect("a beginning of PNG");
+        let jpeg = EncodedImage::new([JPEG, b"rest"].concat()).expect("a beginning of JPEG");
+        assert_eq!(
+            (png.format(), jpeg.format()),
+            (ImageFormat::Png, ImageFormat::Jpeg)
+        );
+        for bytes in [b"".as_slice(), b"\x89PNG", b"RIFF....WEBP"] {
+            let error = EncodedImage::new(bytes.to_vec()).expect_err("neither");
+            assert!(
+                matches!(error.kind(), MeshErrorKind::File { .. }),
+                "{error}"
+            );
+        }
+    }
+}
