@@ -4,10 +4,13 @@
 
 mod atlas;
 mod bake;
+mod bake_normals;
 mod candidates;
 mod cells;
 mod columns;
 mod directions;
+mod displaced;
+mod display;
 mod engine;
 mod error;
 mod exemplar;
@@ -16,6 +19,7 @@ mod ground;
 mod groups;
 mod likeness;
 mod links;
+mod maps;
 mod matcher;
 mod mesh_ground;
 mod neighborhood;
@@ -33,12 +37,16 @@ mod visit;
 
 pub use atlas::{Atlas, PADDING};
 pub use bake::bake;
+pub use bake_normals::bake_normals;
 pub use candidates::{Candidates, CoarserCenter};
 pub use dapple_mesh as mesh;
+pub use displaced::{displaced_mesh, displaced_sites};
+pub use display::{point_model, site_model, textured_model};
 pub use engine::Progress;
 pub use error::{SynthError, SynthErrorKind};
 pub use exemplar::{Edges, Exemplar, Pyramid};
 pub use likeness::Likeness;
+pub use maps::{bake_colors, bake_values};
 pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
 pub use options::Options;
