@@ -1,7 +1,7 @@
 //! Mesh files.
 //!
-//! Every format reads from bytes and writes to bytes; only [`read_model`] and [`write_model`] touch files. A format is a
-//! module behind a feature of the same name, and the feature `io`, on by default, has them all:
+//! Every format reads from bytes and writes to bytes; only [`read_model`] and [`write_model`] touch files. A format is
+//! a module behind a feature of the same name, and the feature `io`, on by default, has them all:
 //!
 //! | format | reads | writes | numbers in a file |
 //! |---|---|---|---|
@@ -10,15 +10,19 @@
 //! | [`gltf`] | glTF, GLB | GLB | `f32` |
 //! | [`off`] | text | - | |
 //!
-//! * Colors of vertices are coded as sRGB in OBJ, PLY and OFF, in whole numbers and in fractions alike, and linear in glTF.
+//! * Colors of vertices are coded as sRGB in OBJ, PLY and OFF, in whole numbers and in fractions alike, and linear in
+//!   glTF.
 //! * A polygon becomes a fan of triangles around its first corner, which is right for convex ones. One with fewer than
 //!   three corners is left out.
-//! * No file makes a reader panic. A reader takes at most 128 bytes of memory for each byte of the file (of the files, for
-//!   formats with several) and 1 GiB more, whatever the file says about its counts.
+//! * No file makes a reader panic. A reader takes at most 256 bytes of memory for each byte of the file, and of what
+//!   it is given beside it, and 1 GiB more, whatever the file says about its counts.
 
+#[cfg(any(feature = "obj", feature = "ply", feature = "off"))]
 mod colors;
 #[cfg(feature = "gltf")]
 pub mod gltf;
+#[cfg(any(feature = "obj", feature = "off"))]
+mod line;
 #[cfg(feature = "obj")]
 pub mod obj;
 #[cfg(feature = "off")]
@@ -29,7 +33,13 @@ pub mod ply;
 #[cfg(any(feature = "obj", feature = "ply", feature = "off"))]
 mod text;
 
-#[cfg(test)]
+#[cfg(all(
+    test,
+    feature = "obj",
+    feature = "ply",
+    feature = "gltf",
+    feature = "off"
+))]
 mod tests;
 
 pub use paths::read_model;

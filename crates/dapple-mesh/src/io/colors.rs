@@ -15,19 +15,6 @@ pub(super) enum Coding {
     Unit,
 }
 
-impl Coding {
-    /// The number of the largest value.
-    #[cfg(any(feature = "ply", feature = "off"))]
-    pub(super) fn full(self) -> f64 {
-        match self {
-            Self::Byte => 255.0,
-            #[cfg(feature = "ply")]
-            Self::Short => 65535.0,
-            Self::Unit => 1.0,
-        }
-    }
-}
-
 /// The color of red, green, blue and alpha, of which alpha is linear.
 pub(super) fn decode(parts: [f64; 4], codings: [Coding; 4]) -> LinearRgba {
     let linear = |i: usize| match codings[i] {
@@ -43,7 +30,7 @@ pub(super) fn decode(parts: [f64; 4], codings: [Coding; 4]) -> LinearRgba {
         #[cfg(feature = "ply")]
         Coding::Short => code::<u16>(parts[3], 65535.0).to_unit(),
         // NaN is 0 here, too.
-        Coding::Unit => (parts[3] as f32).max(0.0).min(1.0),
+        Coding::Unit => (parts[3] as f32).clamp(0.0, 1.0).max(0.0),
     };
     LinearRgba {
         color: LinearRgb::new(linear(0), linear(1), linear(2)),

@@ -1,21 +1,24 @@
 //! glTF 2.0: reading glTF and GLB, and writing GLB.
 //!
-//! Source: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022).
+//! Reference: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022).
 //!
 //! All triangles of the default scene become one mesh, with the transforms of their nodes applied; without a scene all
 //! nodes count. Triangle strips and fans become triangles, point primitives only vertices; lines, skins, morph targets
-//! and animations are left out. Primitives of one node with the same attributes share their vertices. Where only some primitives have
-//! colors or texture coordinates, the others become white and zero; normals are kept only if all have them.
-//! The material is the first that a primitive has. Textures are taken as they are if they are PNG or JPEG and use the same texture coordinates
-//! as the base color; their samplers and transforms are left out.
+//! and animations are left out. Primitives of one node with the same attributes share their vertices. Where only some
+//! primitives have colors or texture coordinates, the others become white and zero; normals are kept only if all have
+//! them. The material is the first that a primitive has. Textures are taken as they are if they are PNG or JPEG and use
+//! the same texture coordinates as the base color; their samplers and transforms are left out, as is everything that
+//! [`Material`] does not have.
 //!
-//! At a seam of the texture a glTF file has two vertices at one position; [`Mesh::repair`] makes one of them, and
-//! leaves texture coordinates, which belong to corners, as they are.
+//! At a seam of the texture a glTF file has two vertices at one position; [`Mesh::repair`](crate::Mesh::repair) makes
+//! one of them. Texture coordinates belong to corners and do not mind; [`Repair::face_before`](crate::Repair) says whose
+//! they are.
 
 mod accessor;
 mod container;
 mod document;
 mod scene;
+mod transform;
 mod write;
 
 #[cfg(test)]
@@ -49,8 +52,8 @@ struct Source<'a> {
 ///
 /// # Errors
 ///
-/// [`MeshErrorKind::File`](crate::MeshErrorKind::File) if the bytes are not a glTF 2.0 file, or it requires an extension
-/// or another file; and what [`Mesh::new`](crate::Mesh::new) and [`Model::check`] refuse.
+/// [`MeshErrorKind::File`](crate::MeshErrorKind::File) if the bytes are not a glTF 2.0 file, or it requires an
+/// extension or another file; and what [`Mesh::new`](crate::Mesh::new) and [`Model::check`] refuse.
 ///
 /// # Examples
 ///

@@ -1,13 +1,14 @@
 //! OBJ, the format of Wavefront, with its materials in MTL.
 //!
-//! Source: Wavefront, *Advanced Visualizer Manual*, appendix B1 (Object Files) and B2 (MTL). Colors of vertices follow
-//! `v x y z`, as many programs write them. Wavefront's v goes up, so that v becomes 1 - v on the way in and out.
+//! Reference: Wavefront, *Advanced Visualizer Manual*, appendix B1 (Object Files) and B2 (MTL). Colors of vertices
+//! follow `v x y z`, as many programs write them. Wavefront's v goes up, so that v becomes 1 - v on the way in and out.
 //!
 //! All faces become one mesh, whatever their objects, groups and materials, since a texture is to run across these; the
-//! material is the first that a face has. Of normals, which OBJ gives to corners, those are kept that are the same at all
-//! corners of each vertex; if one vertex has two, as at a crease, the model has none. Lines, points and free-form surfaces are
-//! left out. Of a material its `Kd` (linear, and only without a texture, since with one it is seldom meant), `d`, `map_Kd`
-//! and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is left out.
+//! material is the first that a face has. Of normals, which OBJ gives to corners, those are kept that are the same at
+//! all corners of each vertex; if one vertex has two, as at a crease, the model has none. Lines, points and free-form
+//! surfaces are left out. Of a material its `Kd` (linear, and only without a texture, since with one it is seldom
+//! meant), `d`, `map_Kd` and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is left
+//! out.
 
 mod mtl;
 mod write;
@@ -19,7 +20,8 @@ pub use write::{NamedFile, write, write_files};
 
 use super::Beside;
 use super::colors::{self, Coding};
-use super::text::{Line, fan, lines, parse};
+use super::line::{Line, lines};
+use super::text::{fan, parse};
 use crate::{Mesh, MeshError, Model};
 use dapple_color::{LinearRgb, LinearRgba};
 use glam::{DVec2, DVec3};
@@ -115,7 +117,10 @@ impl Draft {
             }
             b"vn" => self.normals.push(line.vector(1)?),
             b"f" => self.add_face(line)?,
-            b"mtllib" => self.libraries.push(name(line)),
+            // Some programs repeat it for each object.
+            b"mtllib" if self.libraries.last() != Some(&name(line)) => {
+                self.libraries.push(name(line));
+            }
             b"usemtl" if !matches!(self.material, Some((_, true))) => {
                 self.material = Some((name(line), false));
             }
@@ -209,7 +214,8 @@ impl Draft {
             .map(Some)
     }
 
-    /// The normals of the vertices, if each vertex of a face has exactly one; those of a cloud of points in their order.
+    /// The normals of the vertices, if each vertex of a face has exactly one; those of a cloud of points in their
+    /// order.
     fn vertex_normals(&self, count: usize) -> Result<Option<Vec<DVec3>>, MeshError> {
         if self.faces.is_empty() {
             let whole = count > 0 && self.normals.len() == count;
@@ -235,11 +241,11 @@ const WHITE: LinearRgba = LinearRgba::opaque(LinearRgb::WHITE);
 
 /// The rest of a line as a name, which may have spaces.
 fn name(line: &Line<'_>) -> String {
-    let words: Vec<_> = line.words[1..]
-        .iter()
-        .map(|word| String::from_utf8_lossy(word))
-        .collect();
-    words.join(" ")
+    joined_words(&line.name_words())
+}
+
+fn joined_words(words: &[&[u8]]) -> String {
+    String::from_utf8_lossy(&words.join(b" ".as_slice())).into_owned()
 }
 
 fn index(number: i64, count: usize) -> Option<u32> {

@@ -1,14 +1,16 @@
 //! OFF: the Object File Format of Geomview, as text.
 //!
-//! Source: the manual of Geomview, `http://www.geomview.org/docs/html/OFF.html`, section 4.2.5.
+//! Reference: the manual of Geomview, `http://www.geomview.org/docs/html/OFF.html`.
 //!
-//! Read are all headers of three dimensions: `OFF` with the letters `ST`, `C` and `N` before it, in this order, for texture
-//! coordinates, colors and normals of the vertices, and none at all, which means `OFF`. The counts may follow the header
-//! on its line, even without a space. Colors are three or four numbers, 0 to 255 if a vertex has only whole ones and else 0
-//! to 1; those of faces are left out. The four-dimensional, n-dimensional and binary variants are refused.
+//! Read are all headers of three dimensions: `OFF` with the letters `ST`, `C` and `N` before it, in this order, for
+//! texture coordinates, colors and normals of the vertices, and none at all, which means `OFF`. The counts may follow
+//! the header on its line, even without a space. Colors are three or four numbers, 0 to 255 if a vertex has only whole
+//! ones and else 0 to 1; those of faces are left out. The four-dimensional, n-dimensional and binary variants are
+//! refused.
 
 use super::colors::{self, Coding};
-use super::text::{Line, fan, lines, parse};
+use super::line::{Line, lines};
+use super::text::{fan, parse};
 use crate::{Mesh, MeshError, Model};
 use dapple_color::LinearRgba;
 use glam::{DVec2, DVec3};
@@ -186,8 +188,12 @@ fn color(line: &Line<'_>, at: usize, count: usize) -> Result<LinearRgba, MeshErr
         .skip(at)
         .take(count)
         .all(|word| parse::<i64>(word).is_some());
-    let coding = if whole { Coding::Byte } else { Coding::Unit };
-    let mut parts = [0.0, 0.0, 0.0, coding.full()];
+    let (coding, full) = if whole {
+        (Coding::Byte, 255.0)
+    } else {
+        (Coding::Unit, 1.0)
+    };
+    let mut parts = [0.0, 0.0, 0.0, full];
     for (i, part) in parts.iter_mut().enumerate().take(count.max(3)) {
         *part = line.number(at + i)?;
     }

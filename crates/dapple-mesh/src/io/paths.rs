@@ -8,14 +8,16 @@
 use crate::{MeshError, MeshErrorKind, Model};
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::{Component, Path};
+use std::path::Path;
 
-/// The most bytes that are read of a file. A device or a pipe has no length to trust.
+/// The most bytes that are read of a file, and of all files beside it. A device or a pipe has no length to trust, and a
+/// small file may name a large one many times.
 const BYTES_MAX: u64 = 1 << 32;
 
 /// Reads a mesh file by the extension of its path: `obj`, `ply`, `gltf`, `glb` or `off`, if their features are on.
 ///
-/// Materials, buffers and textures are looked for in the same folder and those in it, never outside of it.
+/// Materials, buffers and textures are looked for in the same folder and those in it, never outside of it, and
+/// until there are 4 GiB of them.
 ///
 /// # Errors
 ///
@@ -25,7 +27,9 @@ pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshError> {
     let path = path.as_ref();
     let extension = extension(path);
     #[cfg(any(feature = "obj", feature = "gltf"))]
-    let beside = &mut |name: &str| beside(path, name);
+    let mut left = BYTES_MAX;
+    #[cfg(any(feature = "obj", feature = "gltf"))]
+    let beside = &mut |name: &str| beside(path, name, &mut left);
     match extension.as_str() {
         #[cfg(feature = "obj")]
         "obj" => super::obj::read_with(&read(path)?, beside),
@@ -44,8 +48,8 @@ pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshError> {
 
 /// Writes a mesh file by the extension of its path: `obj`, `ply` (binary) or `glb`, if their features are on.
 ///
-/// A file is written under a temporary name and then renamed, so that nobody ever sees half of it. With OBJ, its material
-/// and textures are written beside it before it, under the same stem.
+/// A file is written under a temporary name and then renamed, so that nobody ever sees half of it. With OBJ, its
+/// material and textures are written beside it before it, under the same stem.
 ///
 /// # Errors
 ///
@@ -91,22 +95,30 @@ fn unknown(name: String, known: &'static str) -> MeshError {
 
 /// The content of another file by its name in a file, if it is in the folder of that or deeper.
 #[cfg(any(feature = "obj", feature = "gltf"))]
-fn beside(path: &Path, name: &str) -> Option<Vec<u8>> {
+fn beside(path: &Path, name: &str, left: &mut u64) -> Option<Vec<u8>> {
+    use std::path::Component;
     let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     let name = Path::new(name);
     if !name.components().all(inside) {
         return None;
     }
-    read(&path.with_file_name("").join(name)).ok()
+    let bytes = read_at_most(&path.with_file_name("").join(name), *left).ok()?;
+    *left -= bytes.len() as u64;
+    Some(bytes)
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, MeshError> {
+    read_at_most(path, BYTES_MAX)
+}
+
+fn read_at_most(path: &Path, limit: u64) -> Result<Vec<u8>, MeshError> {
     let mut bytes = Vec::new();
     File::open(path)
-        .and_then(|file| file.take(BYTES_MAX + 1).read_to_end(&mut bytes))
+        .and_then(|file| file.take(limit + 1).read_to_end(&mut bytes))
         .map_err(|error| failed(path, &error))?;
-    if bytes.len() as u64 > BYTES_MAX {
-        return Err(failed(path, &io::Error::other("it has more than 4 GiB")));
+    if bytes.len() as u64 > limit {
+        let why = format!("it has more than {limit} bytes");
+        return Err(failed(path, &io::Error::other(why)));
     }
     Ok(bytes)
 }
@@ -152,5 +164,5 @@ fn temporary_beside(path: &Path) -> std::path::PathBuf {
     path.with_file_name(name)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "obj", feature = "ply", feature = "gltf"))]
 mod tests;

@@ -1,12 +1,14 @@
 //! PLY, the polygon file format of Stanford.
 //!
-//! Source: Greg Turk, *The PLY Polygon File Format* (1994), as distributed with the models of the Stanford 3D Scanning Repository.
+//! Reference: Greg Turk, *The PLY Polygon File Format* (1994), as distributed with the models of the Stanford 3D
+//! Scanning Repository.
 //!
 //! Read are text and binary files of both byte orders, with any scalar type for any property. Of the element `vertex`:
-//! `x y z`, `nx ny nz`, `red green blue alpha` (also with `diffuse_` before or as `r g b a`) and `s t`, `u v` or `texture_u texture_v`. Of the element `face`: the list
-//! `vertex_indices` or `vertex_index`, and `texcoord` with two numbers for each corner, which goes before those of vertices.
-//! Everything else is passed over. Colors are coded as sRGB: 0 to 255, for `ushort` 0 to 65535, and for `float` and
-//! `double` 0 to 1. Texture coordinates have v up, as OBJ, so that v becomes 1 - v.
+//! `x y z`, `nx ny nz`, `red green blue alpha` (also with `diffuse_` before or as `r g b a`) and `s t`, `u v` or
+//! `texture_u texture_v`. Of the element `face`: the list `vertex_indices` or `vertex_index`, and `texcoord` with two
+//! numbers for each corner, which goes before those of vertices. Everything else is passed over. Colors are coded as
+//! sRGB: 0 to 255, for `ushort` 0 to 65535, and for `float` and `double` 0 to 1. Texture coordinates have v up, as OBJ,
+//! so that v becomes 1 - v.
 
 mod body;
 mod header;

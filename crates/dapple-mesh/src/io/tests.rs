@@ -25,46 +25,36 @@ fn model() -> Model {
 /// One valid file of each format.
 fn files() -> Vec<Vec<u8>> {
     let mut files = Vec::new();
-    #[cfg(feature = "obj")]
     files.push(obj::write(&model()).expect("it is valid"));
-    #[cfg(feature = "ply")]
     files.extend(
         [ply::write(&model()), ply::write_text(&model())].map(|file| file.expect("it is valid")),
     );
-    #[cfg(feature = "gltf")]
     files.push(gltf::write(&model()).expect("it is valid"));
-    #[cfg(feature = "off")]
     files.push(b"STCNOFF # all\n3 1 0\n0 0 0 0 0 1 1 0 0 1 .5 .5\n1 0 0 0 0 1 0 1 0 0 1 1\n0 1 0 0 0 1 255 0 0 255 0 1\n3 0 1 2\n".to_vec());
     files
 }
 
 /// Reads the bytes in every format, and what can be read again after it was written.
 fn read_all(bytes: &[u8]) {
-    #[cfg(feature = "obj")]
-    {
-        // The file is its own library and texture.
-        if let Ok(model) = obj::read_with(bytes, &mut |_| Some(bytes.to_vec())) {
-            assert!(
-                obj::read(&obj::write(&model).expect("it was checked")).is_ok(),
-                "OBJ"
-            );
-        }
+    // Every file is its own library, buffer and texture.
+    if let Ok(model) = obj::read_with(bytes, &mut |_| Some(bytes.to_vec())) {
+        assert!(
+            obj::read(&obj::write(&model).expect("it was checked")).is_ok(),
+            "OBJ"
+        );
     }
-    #[cfg(feature = "ply")]
     if let Ok(model) = ply::read(bytes) {
         assert!(
             ply::read(&ply::write(&model).expect("it was checked")).is_ok(),
             "PLY"
         );
     }
-    #[cfg(feature = "gltf")]
     if let Ok(model) = gltf::read_with(bytes, &mut |_| Some(bytes.to_vec())) {
         assert!(
             gltf::read(&gltf::write(&model).expect("it was checked")).is_ok(),
             "glTF"
         );
     }
-    #[cfg(feature = "off")]
     if let Ok(model) = off::read(bytes) {
         assert!(model.check().is_ok(), "OFF");
     }

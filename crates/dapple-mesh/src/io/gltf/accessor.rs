@@ -13,8 +13,8 @@ pub(super) struct Column {
 
 /// How many more numbers the accessors of a file may give.
 ///
-/// Accessors may share bytes, stand for zeros, and be used again, so that a file may say more than it has. A file that gives each of its bytes
-/// out eight times, and 2^24 numbers more, is refused.
+/// Accessors may share bytes, stand for zeros, and be used by many nodes, so that a file can ask for more memory than
+/// it has bytes. A file that asks for more than four numbers for each of its bytes, and 2^24 more, is refused.
 pub(super) struct Budget {
     left: usize,
 }
@@ -40,7 +40,7 @@ struct Elements<'a> {
 
 impl Budget {
     pub(super) fn new(n_bytes: usize) -> Self {
-        let left = n_bytes.saturating_mul(8).saturating_add(1 << 24);
+        let left = n_bytes.saturating_mul(4).saturating_add(1 << 24);
         Self { left }
     }
 
@@ -84,7 +84,7 @@ impl Source<'_> {
         let (component, width) = Component::new(accessor.component_type)
             .zip(width(&accessor.shape))
             .ok_or_else(|| wrong(format!("accessor {index} has a type that there is not")))?;
-        let count = accessor.count.checked_mul(width).unwrap_or(usize::MAX);
+        let count = accessor.count.saturating_mul(width);
         budget.take(count)?;
         let mut values = match accessor.buffer_view {
             None => vec![0.0; count],

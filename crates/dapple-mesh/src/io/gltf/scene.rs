@@ -1,11 +1,12 @@
 //! The scene of a glTF file as one mesh.
 
 use super::accessor::{Budget, Column};
-use super::document::{Node, Primitive};
+use super::document::Primitive;
+use super::transform::{cofactors, local};
 use super::{Source, wrong};
 use crate::{Mesh, MeshError, Model};
 use dapple_color::{LinearRgb, LinearRgba};
-use glam::{DMat3, DMat4, DQuat, DVec2, DVec3};
+use glam::{DMat3, DMat4, DVec2, DVec3};
 use std::collections::BTreeMap;
 
 /// The accessors of positions, normals, colors and texture coordinates.
@@ -81,55 +82,6 @@ fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshError> {
         .get(scene)
         .ok_or_else(|| wrong(format!("there is no scene {scene}")))?;
     Ok(scene.nodes.clone())
-}
-
-/// The transform of a node to its parent.
-fn local(node: &Node) -> DMat4 {
-    if let Some(matrix) = &node.matrix {
-        return DMat4::from_cols_array(matrix);
-    }
-    let vector = |parts: &Option<Box<[f64; 3]>>, default| {
-        parts
-            .as_deref()
-            .map_or(default, |&parts| DVec3::from_array(parts))
-    };
-    let scale = vector(&node.scale, DVec3::ONE);
-    let rotation = node
-        .rotation
-        .as_deref()
-        .map_or(DQuat::IDENTITY, |&parts| DQuat::from_array(parts));
-    let [x, y, z] = axes(rotation);
-    let translation = vector(&node.translation, DVec3::ZERO);
-    DMat4::from_cols(
-        (x * scale.x).extend(0.0),
-        (y * scale.y).extend(0.0),
-        (z * scale.z).extend(0.0),
-        translation.extend(1.0),
-    )
-}
-
-/// Where a rotation takes the axes. The quaternion need not be of unit length.
-fn axes(rotation: DQuat) -> [DVec3; 3] {
-    let [x, y, z, w] = rotation.to_array();
-    let square = x * x + y * y + z * z + w * w;
-    let s = if square > 0.0 { 2.0 / square } else { 0.0 };
-    [
-        DVec3::new(
-            1.0 - s * (y * y + z * z),
-            s * (x * y + z * w),
-            s * (x * z - y * w),
-        ),
-        DVec3::new(
-            s * (x * y - z * w),
-            1.0 - s * (x * x + z * z),
-            s * (y * z + x * w),
-        ),
-        DVec3::new(
-            s * (x * z + y * w),
-            s * (y * z - x * w),
-            1.0 - s * (x * x + y * y),
-        ),
-    ]
 }
 
 impl Draft<'_> {
@@ -221,7 +173,10 @@ impl Draft<'_> {
         {
             return Err(wrong("attributes of a primitive have different counts"));
         }
-        u32::try_from(first).map_err(|_| wrong("there are too many vertices"))
+        // All numbers of vertices fit if the last does.
+        let fits = u32::try_from(end).is_ok();
+        let first = u32::try_from(first).ok().filter(|_| fits);
+        first.ok_or_else(|| wrong("there are too many vertices"))
     }
 
     /// The numbers of an attribute, if a primitive has it.
@@ -263,6 +218,8 @@ impl Draft<'_> {
                 "an index is {index}, but there are {n_vertices} vertices"
             )));
         }
+        // In strips and fans an index is for three corners.
+        self.budget.take(indices.len().saturating_mul(3))?;
         let mut add = |[a, b, c]: [u32; 3]| {
             let [b, c] = if turned { [c, b] } else { [b, c] };
             self.faces.push([a, b, c].map(|index| first + index));
@@ -304,19 +261,6 @@ impl Draft<'_> {
             model.uvs = Some(self.faces.iter().map(face).collect());
         }
         Ok((model, self.material))
-    }
-}
-
-/// What takes normals along with a transform, but for their lengths; also where that has no inverse.
-fn cofactors(transform: DMat4) -> DMat3 {
-    let matrix = DMat3::from_mat4(transform);
-    let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
-    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-    // A mirror image has its outside where the cofactors say inside.
-    if matrix.determinant() < 0.0 {
-        -cofactors
-    } else {
-        cofactors
     }
 }
 

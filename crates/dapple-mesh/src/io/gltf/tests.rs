@@ -1,3 +1,5 @@
+//! glTF by hand, back and forth, and through another reader.
+
 use super::*;
 use crate::test_meshes::{cube, mesh, plane, soup};
 use crate::{MeshErrorKind, VertexIdx};

@@ -1,7 +1,8 @@
 //! Writing GLB.
 
 use super::container::{BIN, JSON, MAGIC};
-use crate::{EncodedImage, MeshError, MeshErrorKind, Model};
+use crate::adjacency::sorted_edges;
+use crate::{EncodedImage, Mesh, MeshError, MeshErrorKind, Model};
 use dapple_color::LinearRgba;
 use glam::DVec3;
 use serde_json::{Map, Value, json};
@@ -39,8 +40,9 @@ struct Split {
 ///
 /// Numbers are rounded to `f32`. Vertices keep their numbers; where corners have different texture coordinates, further
 /// vertices follow. Faces have the normals of the model, of unit length, or else those of
-/// [`Mesh::vertex_normals`]; +z stands for a zero, which glTF does not have. Colors are clamped to 0 to 1. Without texture coordinates, textures are left out. The material is rough and not metallic where no
-/// texture says otherwise; it has two sides if the mesh is open, and blends if its base color factor is not opaque.
+/// [`Mesh::vertex_normals`](crate::Mesh::vertex_normals); +z stands for a zero, which glTF does not have. Colors are
+/// clamped to 0 to 1. Without texture coordinates, textures are left out. The material is rough and not metallic where
+/// no texture says otherwise; it has two sides if the mesh is open, and blends if its base color factor is not opaque.
 /// A model without faces becomes a cloud of points, and one without vertices an empty scene.
 ///
 /// # Errors
@@ -141,13 +143,21 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
     if let Some(texture) = texture(&material.normal) {
         value["normalTexture"] = texture;
     }
-    if model.mesh.report().boundary_edges > 0 {
+    if is_open(&model.mesh) {
         value["doubleSided"] = true.into();
     }
     if material.base_color_factor.alpha < 1.0 {
         value["alphaMode"] = "BLEND".into();
     }
     value
+}
+
+/// Whether an edge has only one face.
+fn is_open(mesh: &Mesh) -> bool {
+    let edges = sorted_edges(mesh);
+    edges
+        .chunk_by(|a, b| a.ends == b.ends)
+        .any(|same| same.len() == 1)
 }
 
 fn narrow(part: f64) -> f32 {

@@ -1,8 +1,9 @@
 //! MTL: the materials of an OBJ file.
 
 use super::super::Beside;
-use super::super::text::{Line, lines, parse};
-use super::name;
+use super::super::line::{Line, lines};
+use super::super::text::parse;
+use super::{joined_words, name};
 use crate::{EncodedImage, Material};
 use dapple_color::{LinearRgb, LinearRgba};
 
@@ -62,10 +63,8 @@ impl Entry {
                 self.diffuse = color.map(|color| color.as_vec3().to_array().into());
             }
             b"d" => {
-                self.alpha = line
-                    .number(1)
-                    .ok()
-                    .map(|alpha| alpha.clamp(0.0, 1.0) as f32)
+                let alpha = line.number(1).ok().filter(|alpha| !alpha.is_nan());
+                self.alpha = alpha.map(|alpha| alpha.clamp(0.0, 1.0) as f32);
             }
             b"map_Kd" => self.diffuse_map = file_name(line),
             b"norm" => self.normal_map = file_name(line),
@@ -83,7 +82,7 @@ impl Entry {
         let color = self.diffuse.filter(|_| self.diffuse_map.is_none());
         let base_color_factor = LinearRgba {
             color: color.unwrap_or(LinearRgb::WHITE),
-            alpha: self.alpha.filter(|alpha| alpha.is_finite()).unwrap_or(1.0),
+            alpha: self.alpha.unwrap_or(1.0),
         };
         Material {
             base_color_factor,
@@ -96,7 +95,8 @@ impl Entry {
 
 /// The name of the file behind the options of a texture, each of which is a word with a dash and what belongs to it.
 fn file_name(line: &Line<'_>) -> Option<String> {
-    let mut words = &line.words[1..];
+    let words = line.name_words();
+    let mut words = words.as_slice();
     while let Some((option, rest)) = words
         .split_first()
         .filter(|(word, _)| word.starts_with(b"-"))
@@ -113,9 +113,5 @@ fn file_name(line: &Line<'_>) -> Option<String> {
         };
         words = rest.get(n_values..)?;
     }
-    let words: Vec<_> = words
-        .iter()
-        .map(|word| String::from_utf8_lossy(word))
-        .collect();
-    (!words.is_empty()).then(|| words.join(" ").replace('\\', "/"))
+    (!words.is_empty()).then(|| joined_words(words).replace('\\', "/"))
 }

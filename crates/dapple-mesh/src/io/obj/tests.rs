@@ -1,3 +1,5 @@
+//! OBJ and MTL by hand, back and forth, and from the real world.
+
 use super::*;
 use crate::test_meshes::{cube, mesh, soup};
 use crate::{EncodedImage, Material, MeshErrorKind, VertexIdx};
@@ -7,7 +9,7 @@ use proptest::prelude::*;
 const QUAD: &[u8] =
     b"# a quad \\\r\nmtllib my house.mtl\r\no one\r\nv 0 0 0 1 0 0 # red\r\nv 1 0 0\r\n\r\n\
 v 1 1 0\r\nv -0.5 1e-7 .25 0 0.5 1\r\nvt 0 0\r\nvt 1 0.25\r\nvt 1 1 0\r\nvt 0 1\r\nvn 0 0 1\r\n\
-usemtl other\r\nusemtl wall\r\nf 1/1/1 2/2/1 \\\r\n 3/3/1 -1/-1/-1\r\nl 1 2\r\n";
+usemtl other\r\nusemtl wall #2\r\nf 1/1/1 2/2/1 \\\r\n 3/3/1 -1/-1/-1\r\nl 1 2\r\n";
 
 fn faces(model: &Model) -> Vec<[u32; 3]> {
     let faces = model.mesh.faces().iter();
@@ -146,7 +148,7 @@ fn what_is_wrong_is_named_with_its_line() {
 
 #[test]
 fn material_is_found_beside_the_file() {
-    let library = b"newmtl roof\nKd 1 0 0\nnewmtl wall\nKd .2 .2 .2\nd 0.5\nmap_Kd -s 2 2 -clamp on my textures\\brick wall.png\nnorm missing.png\n";
+    let library = b"newmtl roof\nKd 1 0 0\nnewmtl wall\nKd 0 0 0\nnewmtl wall #2\nKd .2 .2 .2\nd 0.5\nmap_Kd -s 2 2 -clamp on my textures\\brick wall.png\nnorm missing.png\n";
     let image = b"\x89PNG\r\n\x1a\n...".to_vec();
     let mut asked = Vec::new();
     let model = read_with(QUAD, &mut |name| {

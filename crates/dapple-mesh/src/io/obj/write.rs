@@ -18,8 +18,8 @@ pub struct NamedFile {
 
 /// The model as an OBJ file without its material.
 ///
-/// Positions, normals and texture coordinates have the fewest digits that read back as the same `f64`. Colors are clamped
-/// to 0 to 1, have 16 bits per channel, and no alpha.
+/// Positions, normals and texture coordinates have the fewest digits that read back as the same `f64`. Colors are
+/// clamped to 0 to 1, have 16 bits per channel, and no alpha.
 ///
 /// # Errors
 ///
@@ -28,8 +28,8 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshError> {
     Ok(text(model, None)?.into_bytes())
 }
 
-/// The model as an OBJ file `stem.obj` and, if it has a material, its `stem.mtl` and the textures `stem_base_color.png` and
-/// `stem_normal.png`, or `.jpg`. The OBJ file is the last.
+/// The model as an OBJ file `stem.obj` and, if it has a material, its `stem.mtl` and the textures `stem_base_color.png`
+/// and `stem_normal.png`, or `.jpg`. The OBJ file is the last.
 ///
 /// The texture of metalness and roughness is left out, since MTL keeps both apart.
 ///

@@ -1,4 +1,4 @@
-#![cfg(all(feature = "obj", feature = "ply", feature = "gltf"))]
+//! Models in a folder.
 
 use super::*;
 use crate::EncodedImage;
@@ -80,13 +80,16 @@ fn names_in_a_file_do_not_lead_out_of_its_folder() {
     fs::write(folder.join("secret"), "outside").expect("it is written");
     fs::write(folder.join("inside").join("known"), "beside").expect("it is written");
     let path = folder.join("inside").join("a.obj");
+    let mut left = 10;
     assert_eq!(
-        beside(&path, "./known").as_deref(),
+        beside(&path, "./known", &mut left).as_deref(),
         Some(b"beside".as_slice())
     );
+    assert_eq!(left, 4, "six of ten bytes were read");
+    assert_eq!(beside(&path, "known", &mut left), None, "too much");
     let absolute = folder.join("secret").display().to_string();
     for name in ["../secret", "x/../../secret", absolute.as_str(), ""] {
-        assert_eq!(beside(&path, name), None, "{name}");
+        assert_eq!(beside(&path, name, &mut 100), None, "{name}");
     }
     fs::remove_dir_all(folder).expect("it is there");
 }

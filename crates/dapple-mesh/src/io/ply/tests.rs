@@ -1,3 +1,5 @@
+//! PLY by hand, and back and forth.
+
 use super::*;
 use crate::test_meshes::{cube, mesh, plane, soup};
 use crate::{MeshErrorKind, VertexIdx};

@@ -17,9 +17,10 @@ struct Out {
 
 /// The model as a binary PLY file, little-endian.
 ///
-/// Positions, normals and texture coordinates are each written as `float` if that loses nothing for any of them, and else as
-/// `double`, so that all come back bit for bit, but for 1 - v. Colors are 8 bits of sRGB per channel, with `alpha` if there is one.
-/// A model without faces becomes a cloud of points, oriented if it has normals. The material is left out.
+/// Positions, normals and texture coordinates are each written as `float` if that loses nothing for any of them, and
+/// else as `double`, so that all come back bit for bit, but for 1 - v. Colors are 8 bits of sRGB per channel, with
+/// `alpha` if there is one. A model without faces becomes a cloud of points, oriented if it has normals. The material
+/// is left out.
 ///
 /// # Errors
 ///

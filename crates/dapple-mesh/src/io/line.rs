@@ -1,0 +1,61 @@
+//! Lines of text, for formats in which a line says one thing.
+
+use super::text::{parse, words};
+use crate::MeshError;
+use glam::DVec3;
+
+/// A line that has something to say.
+pub(super) struct Line<'a> {
+    format: &'static str,
+    /// From 1.
+    number: usize,
+    /// All of it.
+    #[cfg(feature = "obj")]
+    text: &'a [u8],
+    /// The words before a comment; at least one.
+    pub(super) words: Vec<&'a [u8]>,
+}
+
+/// The lines of a text without comments, which begin with `#`, and without those where nothing else is.
+pub(super) fn lines<'a>(format: &'static str, bytes: &'a [u8]) -> impl Iterator<Item = Line<'a>> {
+    let lines = bytes.split(|&byte| byte == b'\n').zip(1..);
+    lines.filter_map(move |(text, number)| {
+        let words: Vec<_> = words(text.split(|&byte| byte == b'#').next()?).collect();
+        (!words.is_empty()).then_some(Line {
+            format,
+            number,
+            #[cfg(feature = "obj")]
+            text,
+            words,
+        })
+    })
+}
+
+impl Line<'_> {
+    /// The number at a place.
+    pub(super) fn number(&self, at: usize) -> Result<f64, MeshError> {
+        let word = self.words.get(at).copied();
+        word.and_then(parse)
+            .ok_or_else(|| self.error(format!("a number is needed in place {}", at + 1)))
+    }
+
+    /// The three numbers from a place on.
+    pub(super) fn vector(&self, at: usize) -> Result<DVec3, MeshError> {
+        Ok(DVec3::new(
+            self.number(at)?,
+            self.number(at + 1)?,
+            self.number(at + 2)?,
+        ))
+    }
+
+    /// All words behind the first, also those in what may be a comment: a name may have `#`.
+    #[cfg(feature = "obj")]
+    pub(super) fn name_words(&self) -> Vec<&[u8]> {
+        words(self.text).skip(1).collect()
+    }
+
+    /// Says what is wrong with the line.
+    pub(super) fn error(&self, why: impl core::fmt::Display) -> MeshError {
+        MeshError::file(self.format, format!("line {}: {why}", self.number))
+    }
+}
