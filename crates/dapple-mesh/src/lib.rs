@@ -1,7 +1,53 @@
-//! Triangle meshes for textures.
+//! Triangle meshes for textures: validity, walking, even points and their hierarchies, closest points, models and files.
 //!
-//! Files are in [`io`], one module and one feature for each format, all on by default. With `default-features = false` none
-//! is there, and neither are `serde` and `serde_json`, which only glTF needs.
+//! A [`Mesh`] is positions and faces, whatever they are. [`Mesh::report`] counts what is wrong with it, and
+//! [`Mesh::repair`] mends what can be mended. A mesh whose faces have an area and a consistent side becomes a
+//! [`Surface`]: every face laid out flat, so that a [`SurfacePoint`] can [walk](Surface::walk) straight on over edges and
+//! carry a direction along. It need not be closed, in one piece or manifold: an edge of one face, or of three, is a border.
+//!
+//! On a surface live *sites*, which are to a texture what pixels are to an image. [`scatter`] throws points with one
+//! density everywhere, [`repel`] lets them push each other apart, [`nested_points`] does both for sets of n, 4n, 16n …
+//! points in which the coarse points stay. A [`Hierarchy`] connects the sites of each level with their neighbors
+//! ([`SiteGraph`]) and has the operations on columns of values: [interpolation](Hierarchy::interpolate), a [`LowPass`]
+//! filter, [down](Hierarchy::downsample)- and [upsampling](Hierarchy::upsample). Level 0 is the finest.
+//!
+//! ```
+//! use dapple_mesh::{Hierarchy, HierarchyOptions, Surface, models};
+//!
+//! let tori = models::blended_tori(1000)?;
+//! assert_eq!(tori.report().boundary_edges, 0, "it is closed");
+//! let surface = Surface::new(tori)?;
+//!
+//! let options = HierarchyOptions { n_sites: 1000, n_levels: 2, ..HierarchyOptions::default() };
+//! let hierarchy = Hierarchy::new(&surface, &options)?;
+//! assert_eq!(hierarchy.levels()[1].n_sites(), 250);
+//!
+//! // Heights at the sites, those of the coarser level, and one between sites.
+//! let heights: Vec<f64> = hierarchy.sites().positions().iter().map(|at| at.y).collect();
+//! let coarse = hierarchy.downsample(0, &heights)?;
+//! let at = surface.point(dapple_mesh::FaceIdx(0), [1.0 / 3.0; 3]);
+//! let (position, normal) = (surface.position(at), surface.normal(at));
+//! let height = hierarchy.interpolate(1, &coarse, position, normal)?;
+//! assert!(height.is_some_and(|height| (height - position.y).abs() < 0.2));
+//! # Ok::<(), dapple_mesh::MeshError>(())
+//! ```
+//!
+//! Sites, their neighbors and the operations are those of Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001,
+//! section 3, <https://doi.org/10.1145/383259.383297>, on the repulsion of his "Generating Textures on Arbitrary Surfaces
+//! Using Reaction-Diffusion", SIGGRAPH 1991. Turk's meshes are graphs; [`Hierarchy::triangles`] makes triangles of one, for
+//! export. The crate `dapple-synth` puts textures on them.
+//!
+//! A [`Bvh`] finds nearest points and first hits of rays. [`solid`] has shapes given by distance functions, which
+//! [`polygonize()`] makes to meshes, and [`models`] six creatures and objects made of them.
+//!
+//! Positions are `f64`, in whatever unit the caller likes, up to 1e30. All results have the same bits on every machine and
+//! on any number of threads.
+//!
+//! # Files
+//!
+//! A [`Model`] is a mesh with colors, normals, texture coordinates and a material. Files are in [`io`], one module and one
+//! feature for each format, all on by default. With `default-features = false` none is there, and neither are `serde` and
+//! `serde_json`, which only glTF needs.
 
 #![forbid(unsafe_code)]
 

@@ -3,11 +3,15 @@
 //! Reference: Marc Soucy, Guy Godin and Marc Rioux, "A texture-mapping approach for the compression of colored 3D
 //! triangulations", The Visual Computer 12(10), 1996: every face is mapped to a right triangle of its own, two of which share a
 //! square tile. Here tiles are all of one size, or of sizes that follow the areas of the faces; or the map is the caller's.
+//! No tile is mirrored: what is counterclockwise from outside is so in the picture.
 //!
 //! Texel (x, y) has its center at `(x + 0.5, y + 0.5)`; row 0 is the top, and uv go from 0 to 1, v down.
 
 mod own_uvs;
+mod tangents;
 mod tiles;
+
+pub(crate) use tangents::Tangents;
 
 use crate::{SynthError, SynthErrorKind};
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
@@ -24,8 +28,12 @@ pub struct Atlas {
 
 /// The texels around a face that continue it, so that reading between texels does not mix in other faces.
 ///
-/// 1 is enough for bilinear reading of the finest level; every coarser level of a mipmap doubles it.
+/// 1 is enough for bilinear reading of the finest level; every coarser level of a mipmap doubles it, for which there is
+/// [`Atlas::uniform_padded`].
 pub const PADDING: u32 = 1;
+
+/// The most padding of tiles.
+const PADDING_MAX: u32 = 1 << 10;
 
 /// No face.
 const NONE: u32 = u32::MAX;
@@ -38,7 +46,19 @@ impl Atlas {
     /// [`SynthErrorKind::Range`] if a tile would have fewer texels than [`padding`](PADDING) needs, saying the side that is
     /// needed, or if the map is larger than 2^14.
     pub fn uniform(surface: &Surface, side: u32) -> Result<Self, SynthError> {
-        tiles::uniform(surface, side)
+        tiles::uniform(surface, side, PADDING)
+    }
+
+    /// As [`uniform`](Self::uniform), with a padding of the caller's, from 1 to 1024.
+    ///
+    /// With a padding of `2^k` texels and a side that is a multiple of it, bilinear reading of a mipmap's first `k + 1`
+    /// levels, each the mean of 2 x 2 texels of the one before, mixes in no other face: tiles begin at multiples of `2^k`.
+    ///
+    /// # Errors
+    ///
+    /// As [`uniform`](Self::uniform), and [`SynthErrorKind::Range`] for another padding.
+    pub fn uniform_padded(surface: &Surface, side: u32, padding: u32) -> Result<Self, SynthError> {
+        tiles::uniform(surface, side, padding)
     }
 
     /// Right triangles in tiles whose sides are powers of two and follow the areas of the faces, so that texels are of
@@ -48,7 +68,16 @@ impl Atlas {
     ///
     /// As [`uniform`](Self::uniform).
     pub fn by_area(surface: &Surface, side: u32) -> Result<Self, SynthError> {
-        tiles::by_area(surface, side)
+        tiles::by_area(surface, side, PADDING)
+    }
+
+    /// As [`by_area`](Self::by_area), with a padding of the caller's, as in [`uniform_padded`](Self::uniform_padded).
+    ///
+    /// # Errors
+    ///
+    /// As [`uniform_padded`](Self::uniform_padded).
+    pub fn by_area_padded(surface: &Surface, side: u32, padding: u32) -> Result<Self, SynthError> {
+        tiles::by_area(surface, side, padding)
     }
 
     /// The caller's own layout: uv of the three corners of every face, v down. Whole turns are taken off, so that a face may
@@ -101,6 +130,7 @@ impl Atlas {
     }
 
     /// Where the center of a texel is on the surface: on its face, or, in the padding, on the face that continues it.
+    /// Past a border of the mesh, it is where the border was met.
     ///
     /// # Panics
     ///
@@ -109,8 +139,7 @@ impl Atlas {
     pub fn point(&self, surface: &Surface, texel: [u32; 2]) -> Option<SurfacePoint> {
         let face = self.face(texel)?;
         let corners = self.corners[face.index()];
-        let center = DVec2::new(f64::from(texel[0]) + 0.5, f64::from(texel[1]) + 0.5);
-        let weights = weights(corners, center);
+        let weights = weights(corners, tangents::center(texel));
         let point = surface.point(face, weights);
         if weights.iter().all(|&weight| weight >= 0.0) {
             return Some(point);
@@ -119,7 +148,9 @@ impl Atlas {
         let middle = surface.point(face, [1.0 / 3.0; 3]);
         let path = point.flat - middle.flat;
         let length = path.length();
-        Some(surface.walk(middle, path / length, length).point)
+        // Where a caller's layout makes a sliver of a face, a texel beside it is far away.
+        let distance = length.min(surface.area().sqrt());
+        Some(surface.walk(middle, path / length, distance).point)
     }
 }
 

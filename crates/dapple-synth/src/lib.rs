@@ -1,13 +1,104 @@
 //! Texture synthesis from an example image, on triangle meshes and on the plane.
+//!
+//! Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, <https://doi.org/10.1145/383259.383297>: all of it. A small
+//! image, the *exemplar*, and a few directions become a texture that covers a mesh without seams and follows the
+//! directions.
+//!
+//! ```
+//! use dapple_color::LinearRgb;
+//! use dapple_raster::Raster;
+//! use dapple_synth::mesh::{HierarchyOptions, glam::DVec3, models};
+//! use dapple_synth::{Atlas, Direction, Edges, Exemplar, Options, bake_colors, synthesize};
+//!
+//! let checker = Raster::from_fn([16, 16], |x, y| match (x / 4 + y / 4) % 2 {
+//!     0 => LinearRgb::new(0.8, 0.6, 0.2),
+//!     _ => LinearRgb::new(0.1, 0.1, 0.3),
+//! })?;
+//! let exemplar = Exemplar::new(&checker, Edges::Wrap)?;
+//!
+//! // The pattern runs from the snout to the tail.
+//! let back = Direction { at: models::ray::SNOUT, vector: DVec3::NEG_Z };
+//! let sites = HierarchyOptions { n_sites: 2000, ..HierarchyOptions::default() };
+//! let (ray, texture) =
+//!     synthesize(models::ray(1000)?, &exemplar, &[back], &sites, &Options::default())?;
+//!
+//! let atlas = Atlas::uniform(ray.surface(), 256)?;
+//! let map = bake_colors(&ray, &texture.transfer(&checker)?, &atlas)?;
+//! assert_eq!(map.size(), [256, 256]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # How it works
+//!
+//! Even points, the *sites*, are scattered over the surface on several levels, each four times as dense as the next
+//! coarser one; they are the pixels of the texture ([`Hierarchy`](mesh::Hierarchy)). The directions are interpolated to a
+//! unit vector at every site ([`Orientation`]), which is the "down" of the texture there, and sites are put in an order
+//! that runs along it ([`Sweep`]). Then, from the coarsest level to the finest, every site looks at the colors around it,
+//! as they lie to the right of it and below it, and takes the color of that pixel of the exemplar around which it looks
+//! most alike ([`Schedule`], [`Matcher`]). A [`SurfaceTexture`] has the color and, more than that, the pixel that each
+//! site took.
+//!
+//! So other maps of the exemplar can follow: [`SurfaceTexture::transfer`] copies heights, roughness and normals, which
+//! [`bake_values`] and [`bake_normals`] write to texture maps with the same [`Atlas`] as the colors. What is to be matched
+//! and what is only copied is the caller's choice: see [`Exemplar::from_planes`] and the example of [`bake_values`].
+//! [`textured_model`] and [`site_model`] make what file formats take, [`displaced_sites`] moves the mesh itself.
+//!
+//! [`Synthesizer`] keeps all that does not depend on the exemplar; it can be used again, tells of its progress and can be
+//! stopped. The same passes on pixels, for plain images and for tiles, are [`synthesize_plane`].
+//!
+//! # The paper's sections
+//!
+//! | section | what it says | here |
+//! |---|---|---|
+//! | 3.1 | points on several levels, by repulsion, and their neighbors | [`mesh::Hierarchy`] |
+//! | 3.2 | interpolation, low-pass filter, down- and upsampling | [`mesh::Hierarchy::interpolate`] and beside it |
+//! | 4.1 | vector fields from a few directions, by pull and push | [`Orientation`], [`Direction`] |
+//! | 4.2, eq. 4, 5 | how far downstream a site is, and the order | [`Sweep`] |
+//! | 5.1 | one level | [`Schedule::single_level`] |
+//! | 5.2 | several levels; figure 4 | [`Schedule::paper`], [`Part`], [`Shape`] |
+//! | 5 | the pixel whose neighborhood matches best | [`Candidates`], [`Matcher`] |
+//! | 6 | the finest points with colors, as a mesh | [`site_model`], [`point_model`] |
+//! | 6 | a texture map of right triangles | [`Atlas`], [`bake()`], [`textured_model`] |
+//!
+//! # What the paper leaves open
+//!
+//! [`Options::paper`] takes every literal choice, the default what turned out better:
+//!
+//! * The neighborhood on the coarser level is centered at exactly half of the coordinates ([`CoarserCenter`]). Rounded
+//!   down, four pixels have the same one, and the first of them always wins.
+//! * A match may be a little worse if it goes on with what a neighbor took ([`Options::coherence`]). The least difference
+//!   alone tends to repeat smooth parts of the exemplar and to blur away structure like bricks.
+//!
+//! For both:
+//!
+//! * P = n × O points to the right, so that nothing is mirrored. Neighborhoods are laid out by walking over the faces of
+//!   the input, with both directions carried along, and not over the graph of sites.
+//! * Sites farther than 1.1 spacings have no part in a color between sites, and neither have those on another sheet, whose
+//!   normals are more than a right angle apart. At 2 spacings colors blur away.
+//! * H(n, 0) has the rows above the center only ([`Shape::Half`]); the row of the center is half random at that time.
+//! * Neighborhoods that cross an edge of the exemplar are left out as long as enough remain; it wraps if it says so.
+//! * A pass changes colors in place, in the order of the sweep. Of equally good pixels the first wins.
+//! * Colors are compared in their sRGB codes, and the pyramid is not rounded to codes.
+//! * Where no direction is given, texture runs down an axis. Every piece of the surface has an anchor of its own.
+//! * Where the field turns around a point, or order and field do not fit, the texture has a tear; no method has none.
+//!
+//! # Reproducibility
+//!
+//! Everything follows from the inputs and one [`Seed`](dapple_hash::Seed). Results have the same bits on every machine, with every set of
+//! vector instructions, and on any number of threads: sites are worked on at the same time only if they do not read each
+//! other.
 
 #![forbid(unsafe_code)]
 
 mod atlas;
 mod bake;
+mod bake_normals;
 mod candidates;
 mod cells;
 mod columns;
 mod directions;
+mod displaced;
+mod display;
 mod engine;
 mod error;
 mod exemplar;
@@ -16,6 +107,7 @@ mod ground;
 mod groups;
 mod likeness;
 mod links;
+mod maps;
 mod matcher;
 mod mesh_ground;
 mod neighborhood;
@@ -33,12 +125,16 @@ mod visit;
 
 pub use atlas::{Atlas, PADDING};
 pub use bake::bake;
+pub use bake_normals::bake_normals;
 pub use candidates::{Candidates, CoarserCenter};
 pub use dapple_mesh as mesh;
+pub use displaced::{displaced_mesh, displaced_sites};
+pub use display::{point_model, site_model, textured_model};
 pub use engine::Progress;
 pub use error::{SynthError, SynthErrorKind};
 pub use exemplar::{Edges, Exemplar, Pyramid};
 pub use likeness::Likeness;
+pub use maps::{bake_colors, bake_values};
 pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
 pub use options::Options;

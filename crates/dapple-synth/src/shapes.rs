@@ -1,5 +1,6 @@
 //! Small meshes for tests.
 
+use crate::{Orientation, Synthesizer};
 use dapple_hash::Seed;
 use dapple_mesh::{Hierarchy, HierarchyOptions, Mesh, Surface};
 use glam::DVec3;
@@ -128,4 +129,27 @@ pub(crate) fn sites_on(mesh: Mesh, n_sites: usize, n_levels: usize) -> Hierarchy
         ..HierarchyOptions::default()
     };
     Hierarchy::new(&Surface::new(mesh).unwrap(), &options).unwrap()
+}
+
+/// Sites on a mesh that run along a field of positions and normals.
+pub(crate) fn synthesizer(
+    mesh: Mesh,
+    n_sites: usize,
+    field: impl Fn(DVec3, DVec3) -> DVec3 + Sync,
+) -> Synthesizer {
+    let hierarchy = sites_on(mesh.clone(), n_sites, 2);
+    let orientation = Orientation::from_fn(&hierarchy, field);
+    let surface = Surface::new(mesh).unwrap();
+    Synthesizer::from_parts(surface, hierarchy, orientation, None).unwrap()
+}
+
+/// What `work` gives on 1, 2 and 7 threads.
+#[cfg(feature = "rayon")]
+pub(crate) fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> [T; 3] {
+    [1, 2, 7].map(|n_threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(n_threads)
+            .build();
+        pool.unwrap().install(&work)
+    })
 }

@@ -1,10 +1,14 @@
 //! A layout that the caller brings along.
 
+use super::tangents::center;
 use super::{Atlas, NONE, check_side, weights};
 use crate::{SynthError, SynthErrorKind};
 use dapple_mesh::Surface;
 use dapple_raster::Raster;
 use glam::DVec2;
+
+/// How far outside of a face a texel's center still counts as inside, in weights: rounding leaves no gap between faces.
+const ROUNDING: f64 = 1e-9;
 
 pub(super) fn from_uvs(
     surface: &Surface,
@@ -28,7 +32,11 @@ pub(super) fn from_uvs(
         cover(&mut faces, face, corners);
     }
     for _ in 0..padding {
-        faces = spread(&faces);
+        let wider = spread(&faces);
+        if wider == faces {
+            break;
+        }
+        faces = wider;
     }
     Ok(Atlas { faces, corners })
 }
@@ -60,10 +68,9 @@ fn cover(faces: &mut Raster<u32>, face: u32, corners: &[DVec2; 3]) {
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     for row in texels(low.y, high.y, size[1]) {
         for column in texels(low.x, high.x, size[0]) {
-            let center = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
-            let inside = weights(*corners, center)
+            let inside = weights(*corners, center([column, row]))
                 .iter()
-                .all(|&weight| weight >= 0.0);
+                .all(|&weight| weight >= -ROUNDING);
             let texel = &mut faces.pixels_mut()[(row * size[0] + column) as usize];
             if inside && *texel == NONE {
                 *texel = face;

@@ -1,6 +1,6 @@
 //! Layouts on small meshes.
 
-use super::{Atlas, PADDING, weights};
+use super::{Atlas, NONE, PADDING, weights};
 use crate::SynthErrorKind;
 use dapple_mesh::{FaceIdx, Mesh, Surface};
 use glam::{DVec2, DVec3};
@@ -160,4 +160,148 @@ fn bad_layouts_are_refused() {
     let nowhere = [[DVec2::NAN; 3]; 12];
     let atlas = Atlas::from_uvs(&surface, &nowhere, [8, 8], 1).unwrap();
     assert_eq!(atlas.coverage(), 0.0, "uv that are not finite show nothing");
+}
+
+/// The faces of each texel of a level of a mipmap: those of its 2 x 2 texels, one face or several.
+fn halved(level: &[Vec<Vec<u32>>]) -> Vec<Vec<Vec<u32>>> {
+    let side = level.len() / 2;
+    let faces = |row: usize, column: usize| {
+        let parts = [[0, 0], [0, 1], [1, 0], [1, 1]];
+        let mut faces: Vec<u32> = parts
+            .iter()
+            .flat_map(|[down, right]| &level[2 * row + down][2 * column + right])
+            .copied()
+            .collect();
+        faces.sort_unstable();
+        faces.dedup();
+        faces
+    };
+    (0..side)
+        .map(|row| (0..side).map(|column| faces(row, column)).collect())
+        .collect()
+}
+
+#[test]
+fn padding_keeps_levels_of_a_mipmap_apart() {
+    let surface = cuboid();
+    for (padding, n_levels) in [(1, 1), (2, 2), (4, 3)] {
+        for atlas in [
+            Atlas::uniform_padded(&surface, 160, padding).unwrap(),
+            Atlas::by_area_padded(&surface, 192, padding).unwrap(),
+        ] {
+            let side = atlas.size()[0];
+            let face = |column, row| vec![atlas.face([column, row]).map_or(NONE, |face| face.0)];
+            let mut level: Vec<Vec<Vec<u32>>> = (0..side)
+                .map(|row| (0..side).map(|column| face(column, row)).collect())
+                .collect();
+            for number in 0..n_levels {
+                let scale = f64::from(1 << number);
+                for (face, &[a, b, c]) in (0..).zip(&atlas.corners) {
+                    for (to_b, to_c) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5), (0.3, 0.7)]
+                    {
+                        let at = (a + (b - a) * to_b + (c - a) * to_c) / scale - 0.5;
+                        let texel = at.floor();
+                        for near in [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE] {
+                            let read = texel + near;
+                            if (at - read).abs().max_element() < 1.0 - 1e-9 {
+                                let faces = &level[read.y as usize][read.x as usize];
+                                assert_eq!(faces, &[face], "level {number}, padding {padding}");
+                            }
+                        }
+                    }
+                }
+                level = halved(&level);
+            }
+        }
+    }
+    for padding in [0, 1025, u32::MAX] {
+        assert!(
+            Atlas::uniform_padded(&surface, 160, padding).is_err(),
+            "uniform {padding}"
+        );
+        assert!(
+            Atlas::by_area_padded(&surface, 160, padding).is_err(),
+            "by area {padding}"
+        );
+    }
+}
+
+#[test]
+fn tiles_are_not_mirrored() {
+    let surface = cuboid();
+    for atlas in [
+        Atlas::uniform(&surface, 64).unwrap(),
+        Atlas::by_area(&surface, 64).unwrap(),
+    ] {
+        for [a, b, c] in atlas.uvs() {
+            // Counterclockwise in the picture, where rows go down.
+            assert!((b - a).perp_dot(c - a) < 0.0, "{a} {b} {c}");
+        }
+    }
+}
+
+#[test]
+fn padding_of_an_own_layout_ends_where_the_map_is_full() {
+    let surface = cuboid();
+    let mut uvs = vec![[DVec2::NAN; 3]; 12];
+    uvs[4] = [
+        DVec2::new(0.4, 0.4),
+        DVec2::new(0.6, 0.4),
+        DVec2::new(0.4, 0.6),
+    ];
+    let atlas = Atlas::from_uvs(&surface, &uvs, [32, 20], u32::MAX).unwrap();
+    assert_eq!(atlas.coverage(), 1.0);
+    uvs[4] = [DVec2::NAN; 3];
+    let atlas = Atlas::from_uvs(&surface, &uvs, [32, 20], u32::MAX).unwrap();
+    assert_eq!(atlas.coverage(), 0.0);
+}
+
+#[test]
+fn own_layout_has_no_gaps_between_faces() {
+    // Four faces of a fan whose edges go through centers of texels, at places that are not exact in binary.
+    let apex = DVec3::new(0.3, 0.3, 0.0);
+    let positions = vec![
+        apex,
+        DVec3::ZERO,
+        DVec3::X,
+        DVec3::new(1.0, 1.0, 0.0),
+        DVec3::Y,
+    ];
+    let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
+    let surface = Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap();
+    let uvs: Vec<[DVec2; 3]> = (0..4)
+        .map(|face| {
+            surface
+                .mesh()
+                .corners(FaceIdx(face))
+                .map(|at| at.truncate())
+        })
+        .collect();
+    for side in [5, 15, 35, 45, 115] {
+        let atlas = Atlas::from_uvs(&surface, &uvs, [side, side], 0).unwrap();
+        assert_eq!(atlas.coverage(), 1.0, "{side}");
+    }
+}
+
+#[test]
+fn texels_beside_a_sliver_are_on_the_surface() {
+    let surface = cuboid();
+    let mut uvs = vec![[DVec2::NAN; 3]; 12];
+    // A face that is not larger than rounding, around the center of a texel.
+    for size in [1e-12, 1e-15] {
+        let center = DVec2::splat(4.5 / 8.0);
+        uvs[0] = [
+            center + DVec2::new(-size, -size),
+            center + DVec2::new(size, -size),
+            center + DVec2::new(0.0, size),
+        ];
+        let atlas = Atlas::from_uvs(&surface, &uvs, [8, 8], 8).unwrap();
+        assert_eq!(atlas.coverage(), 1.0, "all is padding");
+        for texel in [[0, 0], [4, 4], [7, 3]] {
+            let point = atlas.point(&surface, texel).unwrap();
+            assert!(surface.position(point).is_finite(), "{point:?}");
+            let weights = surface.weights(point);
+            assert!(weights.iter().all(|&weight| weight > -1e-6), "{weights:?}");
+        }
+    }
 }

@@ -1,16 +1,40 @@
 //! Square tiles of two right triangles.
 
-use super::{Atlas, NONE, PADDING, check_side};
+use super::{Atlas, NONE, PADDING_MAX, check_side};
 use crate::{SynthError, SynthErrorKind};
 use dapple_mesh::{FaceIdx, Surface};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// What a tile's side has more than the legs of its triangles: padding at both ends of the legs, and twice between the long
-/// sides, where it is counted along an axis; and half a texel at both ends.
-const FRAME: u32 = 4 * PADDING + 1;
-/// The least side of a tile: its triangles have legs of one texel.
-const TILE_MIN: u32 = FRAME + 1;
+/// What is left around the triangles of a tile.
+#[derive(Clone, Copy)]
+struct Frame {
+    padding: u32,
+}
+
+impl Frame {
+    fn new(padding: u32) -> Result<Self, SynthError> {
+        let holds = (1..=PADDING_MAX).contains(&padding);
+        SynthError::check(holds, "padding", padding.into(), "from 1 to 1024")?;
+        Ok(Self { padding })
+    }
+
+    /// What a tile's side has more than the legs of its triangles: padding at both ends of the legs, and twice between the
+    /// long sides, where it is counted along an axis; and half a texel at both ends.
+    fn width(self) -> u32 {
+        4 * self.padding + 1
+    }
+
+    /// The least side of a tile: its triangles have legs of one texel.
+    fn tile_min(self) -> u32 {
+        self.width() + 1
+    }
+
+    /// What the places of tiles are multiples of: the largest power of two up to the padding.
+    fn step(self) -> u32 {
+        1 << self.padding.ilog2()
+    }
+}
 
 /// A tile of two faces, or one.
 struct Tile {
@@ -19,8 +43,9 @@ struct Tile {
     faces: [Option<u32>; 2],
 }
 
-pub(super) fn uniform(surface: &Surface, side: u32) -> Result<Atlas, SynthError> {
+pub(super) fn uniform(surface: &Surface, side: u32, padding: u32) -> Result<Atlas, SynthError> {
     check_side(side)?;
+    let frame = Frame::new(padding)?;
     let n_faces = surface.mesh().faces().len() as u32;
     let n_tiles = n_faces.div_ceil(2);
     let root = n_tiles.isqrt();
@@ -29,8 +54,8 @@ pub(super) fn uniform(surface: &Surface, side: u32) -> Result<Atlas, SynthError>
     } else {
         root
     };
-    let tile = side / across;
-    if tile < TILE_MIN {
+    let tile = side / across / frame.step() * frame.step();
+    if tile < frame.tile_min() {
         return Err(too_small(side));
     }
     let tiles = (0..n_tiles).map(|number| Tile {
@@ -38,11 +63,12 @@ pub(super) fn uniform(surface: &Surface, side: u32) -> Result<Atlas, SynthError>
         side: tile,
         faces: [2 * number, 2 * number + 1].map(|face| (face < n_faces).then_some(face)),
     });
-    fill(surface, side, tiles)
+    fill(surface, side, frame, tiles)
 }
 
-pub(super) fn by_area(surface: &Surface, side: u32) -> Result<Atlas, SynthError> {
+pub(super) fn by_area(surface: &Surface, side: u32, padding: u32) -> Result<Atlas, SynthError> {
     check_side(side)?;
+    let frame = Frame::new(padding)?;
     // The legs of a right triangle as large as each face, and the faces from the largest to the smallest.
     let n_faces = surface.mesh().faces().len() as u32;
     let leg = |face: u32| (2.0 * surface.face_area(FaceIdx(face))).sqrt();
@@ -50,26 +76,26 @@ pub(super) fn by_area(surface: &Surface, side: u32) -> Result<Atlas, SynthError>
     faces.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     // The largest scale whose tiles fit, by bisection: at zero all tiles are the smallest ones.
     let (mut low, mut high) = (0.0, f64::from(side) / faces[0].0);
-    pack(&faces, low, side).ok_or_else(|| too_small(side))?;
+    pack(&faces, low, side, frame).ok_or_else(|| too_small(side))?;
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
-        if pack(&faces, middle, side).is_some() {
+        if pack(&faces, middle, side, frame).is_some() {
             low = middle;
         } else {
             high = middle;
         }
     }
-    let tiles = pack(&faces, low, side).ok_or_else(|| too_small(side))?;
-    fill(surface, side, tiles.into_iter())
+    let tiles = pack(&faces, low, side, frame).ok_or_else(|| too_small(side))?;
+    fill(surface, side, frame, tiles.into_iter())
 }
 
 /// Packs tiles of faces with the given legs, the longest first, in shelves; nothing if they do not fit.
-fn pack(faces: &[(f64, u32)], scale: f64, side: u32) -> Option<Vec<Tile>> {
+fn pack(faces: &[(f64, u32)], scale: f64, side: u32, frame: Frame) -> Option<Vec<Tile>> {
     let mut tiles = Vec::with_capacity(faces.len().div_ceil(2));
     let (mut at, mut shelf) = ([0, 0], 0);
     for pair in faces.chunks(2) {
-        let wanted = pair[0].0 * scale + f64::from(FRAME);
-        let mut tile = TILE_MIN.next_power_of_two();
+        let wanted = pair[0].0 * scale + f64::from(frame.width());
+        let mut tile = frame.tile_min().next_power_of_two();
         while f64::from(tile) < wanted {
             tile *= 2;
         }
@@ -96,13 +122,14 @@ fn pack(faces: &[(f64, u32)], scale: f64, side: u32) -> Option<Vec<Tile>> {
 fn fill(
     surface: &Surface,
     side: u32,
+    frame: Frame,
     tiles: impl Iterator<Item = Tile>,
 ) -> Result<Atlas, SynthError> {
     let mut faces = Raster::filled([side; 2], NONE)?;
     let mut corners = vec![[DVec2::NAN; 3]; surface.mesh().faces().len()];
     for tile in tiles {
-        let legs = f64::from(tile.side - FRAME);
-        let padding = f64::from(PADDING) + 0.5;
+        let legs = f64::from(tile.side - frame.width());
+        let padding = f64::from(frame.padding) + 0.5;
         let origin = DVec2::new(f64::from(tile.first[0]), f64::from(tile.first[1]));
         for (half, face) in tile.faces.into_iter().enumerate() {
             let Some(face) = face else { continue };
@@ -111,7 +138,8 @@ fn fill(
                 0 => (origin + padding, 1.0),
                 _ => (origin + f64::from(tile.side) - padding, -1.0),
             };
-            let ends = [DVec2::ZERO, DVec2::X * legs, DVec2::Y * legs];
+            // Rows go down: so the picture of the face is not mirrored.
+            let ends = [DVec2::ZERO, DVec2::Y * legs, DVec2::X * legs];
             let first = opposite_longest(surface, FaceIdx(face));
             for (at, end) in ends.into_iter().enumerate() {
                 corners[face as usize][(first + at) % 3] = corner + end * way;
@@ -151,6 +179,6 @@ fn too_small(side: u32) -> SynthError {
     SynthError::new(SynthErrorKind::Range {
         what: "side of the texture map",
         value: side.into(),
-        range: "large enough for a tile of 6 texels for every two faces",
+        range: "large enough for a tile of 2 + 4 paddings in texels for every two faces",
     })
 }

@@ -1,0 +1,106 @@
+//! The frames of texture coordinates, as programs make them that read a file without tangents.
+//!
+//! Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis, University of
+//! Copenhagen, 2008: the tangent at a corner of a face is the mean of those of all faces that share its vertex, its place
+//! in the map and its handedness, weighted by their angles there, each at a right angle to the vertex's normal; between
+//! corners tangents are mixed linearly. Angles are those of the faces, not of their projections.
+
+use super::{Atlas, weights};
+use dapple_mesh::{FaceIdx, Surface};
+use glam::{DVec2, DVec3};
+
+/// The tangents along +u at the corners of all faces.
+#[derive(Clone, Debug)]
+pub(crate) struct Tangents {
+    corners: Vec<[DVec3; 3]>,
+    /// Whether each face is mirrored in the map.
+    is_mirrored: Vec<bool>,
+}
+
+/// What corners have in common that share a tangent: the vertex, the bits of the place in the map, and the handedness.
+type Key = (u32, [u64; 2], bool);
+
+impl Tangents {
+    pub(crate) fn new(surface: &Surface, atlas: &Atlas) -> Self {
+        let mesh = surface.mesh();
+        let normals = mesh.vertex_normals();
+        let mut tangents = Self {
+            corners: Vec::with_capacity(mesh.faces().len()),
+            is_mirrored: Vec::with_capacity(mesh.faces().len()),
+        };
+        let mut shares: Vec<(Key, FaceIdx, usize, DVec3)> = Vec::new();
+        for ((face, vertices), &places) in (0..).map(FaceIdx).zip(mesh.faces()).zip(&atlas.corners)
+        {
+            let corners = mesh.corners(face);
+            let (tangent, is_mirrored) = face_tangent(corners, places);
+            tangents.corners.push([tangent; 3]);
+            tangents.is_mirrored.push(is_mirrored);
+            for corner in 0..3 {
+                let vertex = vertices[corner];
+                let flat = flat_part(tangent, normals[vertex.index()]).normalize_or_zero();
+                // Adding zero makes both zeros the same.
+                let place = (places[corner] + 0.0).to_array().map(f64::to_bits);
+                let share = flat * angle(corners, corner);
+                shares.push(((vertex.0, place, is_mirrored), face, corner, share));
+            }
+        }
+        // Stable, so that sums run in the order of the faces.
+        shares.sort_by_key(|share| share.0);
+        for group in shares.chunk_by(|a, b| a.0 == b.0) {
+            let sum: DVec3 = group.iter().map(|share| share.3).sum();
+            for &(_, face, corner, _) in group {
+                let tangent = &mut tangents.corners[face.index()][corner];
+                *tangent = sum.normalize_or(*tangent);
+            }
+        }
+        tangents
+    }
+
+    /// The tangent and the bitangent at a texel of a face, at right angles to the unit normal there; the bitangent points
+    /// to the top of the map.
+    pub(crate) fn frame(&self, atlas: &Atlas, texel: [u32; 2], normal: DVec3) -> [DVec3; 2] {
+        let Some(face) = atlas.face(texel) else {
+            let tangent = normal.any_orthonormal_vector();
+            return [tangent, normal.cross(tangent)];
+        };
+        let weights = weights(atlas.corners[face.index()], center(texel));
+        let corners = self.corners[face.index()];
+        // In the padding, the tangent of the border goes on.
+        let mixed: DVec3 = corners
+            .iter()
+            .zip(weights)
+            .map(|(&corner, weight)| corner * weight.clamp(0.0, 1.0))
+            .sum();
+        let tangent = flat_part(mixed, normal).normalize_or(normal.any_orthonormal_vector());
+        let up = normal.cross(tangent);
+        let is_mirrored = self.is_mirrored[face.index()];
+        [tangent, if is_mirrored { -up } else { up }]
+    }
+}
+
+/// Where the center of a texel is, in texels.
+pub(super) fn center([column, row]: [u32; 2]) -> DVec2 {
+    DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5)
+}
+
+/// The direction of +u in a face, and whether the face is mirrored in the map; any without a place there.
+fn face_tangent([a, b, c]: [DVec3; 3], [ua, ub, uc]: [DVec2; 3]) -> (DVec3, bool) {
+    let (b, c, ub, uc) = (b - a, c - a, ub - ua, uc - ua);
+    // Rows go down: what is counterclockwise from outside is so in the picture if this is below zero.
+    let is_mirrored = ub.perp_dot(uc) > 0.0;
+    let along = b * uc.y - c * ub.y;
+    let tangent = if is_mirrored { along } else { -along };
+    (tangent.normalize_or_zero(), is_mirrored)
+}
+
+/// The part of a vector at a right angle to a unit vector.
+fn flat_part(vector: DVec3, normal: DVec3) -> DVec3 {
+    vector - normal * vector.dot(normal)
+}
+
+/// The angle of a triangle at a corner, in radians.
+fn angle(corners: [DVec3; 3], corner: usize) -> f64 {
+    let at = corners[corner];
+    let [to, from] = [1, 2].map(|step| (corners[(corner + step) % 3] - at).normalize_or_zero());
+    libm::acos(to.dot(from).clamp(-1.0, 1.0))
+}

@@ -1,0 +1,111 @@
+//! Normal maps, turned from the exemplar into the frames of a texture map.
+//!
+//! A normal of the exemplar has parts to the right, up or down as [`NormalY`] says, and out. On the surface these are the
+//! directions P, O (which is down) and n of the site that copies it. Between sites the vectors along the surface are
+//! mixed in space, not their parts: near a singularity of the field, where frames turn fast, parts would not fit together.
+//!
+//! A texel's frame is that of glTF 2.0: N is the normal of the smooth surface (the mixed normals of the vertices), T the
+//! tangent along +u at a right angle to it, and B = ± N × T points to the top of the map, with the sign that says whether
+//! the face is mirrored there. T is what programs work out when a file has no tangents: see
+//! [`Atlas`](crate::Atlas). Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis,
+//! University of Copenhagen, 2008.
+
+use crate::atlas::Tangents;
+use crate::maps::{check_column, check_finite};
+use crate::{Atlas, SynthError, Synthesizer, bake};
+use dapple_color::{Normal, NormalY};
+use dapple_raster::Raster;
+use glam::DVec3;
+
+/// Bakes a normal for each finest site, as [`SurfaceTexture::transfer`](crate::SurfaceTexture::transfer) copies them from
+/// a normal map of the exemplar.
+///
+/// `y` is where green points, in the exemplar and in the result. Texels without a face are flat.
+///
+/// # Errors
+///
+/// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) unless there is a normal for each site,
+/// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if a part of one is not finite.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::{Normal, NormalY};
+/// use dapple_synth::mesh::{HierarchyOptions, Surface, models};
+/// use dapple_synth::{Atlas, Synthesizer, bake_normals};
+///
+/// let sites = HierarchyOptions { n_sites: 500, ..Default::default() };
+/// let ray = Synthesizer::new(Surface::new(models::ray(500)?)?, &[], &sites)?;
+/// let atlas = Atlas::uniform(ray.surface(), 128)?;
+/// let map = bake_normals(&ray, &[Normal::FLAT; 500], NormalY::OpenGl, &atlas)?;
+/// assert!(map.pixels().iter().all(|&normal| normal == Normal::FLAT));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn bake_normals(
+    synthesizer: &Synthesizer,
+    normals: &[Normal],
+    y: NormalY,
+    atlas: &Atlas,
+) -> Result<Raster<Normal>, SynthError> {
+    check_column(synthesizer, "normals", normals.len())?;
+    for part in normals.iter().flat_map(|normal| normal.to_array()) {
+        check_finite("part of a normal", part)?;
+    }
+    let column = in_space(synthesizer, normals, y);
+    let surface = synthesizer.surface();
+    let flat = [0.0, 0.0, 0.0, 1.0];
+    let mixed = bake::<4>(surface, synthesizer.hierarchy(), &column, atlas, flat)?;
+    let tangents = Tangents::new(surface, atlas);
+    let map = Raster::from_rows(atlas.size(), |row| {
+        let (mixed, tangents) = (&mixed, &tangents);
+        (0..atlas.size()[0]).map(move |column| {
+            let Some(point) = atlas.point(surface, [column, row]) else {
+                return Normal::FLAT;
+            };
+            let out = surface.normal(point);
+            let frame = tangents.frame(atlas, [column, row], out);
+            let [x, y, z, rest] = mixed.row(row)[column as usize];
+            let along = DVec3::new(x.into(), y.into(), z.into());
+            in_frame(along, rest.into(), frame)
+        })
+    })?;
+    Ok(match y {
+        NormalY::OpenGl => map,
+        NormalY::DirectX => map.par_map(|&normal| turned_over(normal)),
+    })
+}
+
+/// For each site the part of its normal along the surface, in space, and the part out of it.
+fn in_space(synthesizer: &Synthesizer, normals: &[Normal], y: NormalY) -> Vec<f32> {
+    let outs = synthesizer.hierarchy().sites().normals();
+    let downs = synthesizer.orientation().vectors();
+    let site = |((normal, &out), &down): ((&Normal, &DVec3), &DVec3)| {
+        let normal = match y {
+            NormalY::OpenGl => *normal,
+            NormalY::DirectX => turned_over(*normal),
+        };
+        let right = out.cross(down);
+        let along = right * f64::from(normal.x) - down * f64::from(normal.y);
+        let [x, y, z] = along.as_vec3().to_array();
+        [x, y, z, normal.z]
+    };
+    normals.iter().zip(outs).zip(downs).flat_map(site).collect()
+}
+
+/// The unit normal with a part along the surface, seen in a frame of a tangent and a bitangent, and a part out of it.
+fn in_frame(along: DVec3, out: f64, [tangent, bitangent]: [DVec3; 2]) -> Normal {
+    let normal = DVec3::new(along.dot(tangent), along.dot(bitangent), out);
+    // Opposite normals may cancel.
+    let [x, y, z] = normal.normalize_or(DVec3::Z).as_vec3().to_array();
+    Normal { x, y, z }
+}
+
+/// The normal with the other direction of green.
+fn turned_over(normal: Normal) -> Normal {
+    // Zero stays what it is.
+    let y = 0.0 - normal.y;
+    Normal { y, ..normal }
+}
+
+#[cfg(test)]
+mod tests;

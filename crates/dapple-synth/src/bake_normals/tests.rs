@@ -1,0 +1,186 @@
+//! Normals on planes, where they are known, and on a sphere, beside vectors that are mixed one by one.
+
+use super::*;
+use crate::SynthErrorKind;
+use crate::shapes::{sphere, square, synthesizer};
+use glam::DVec2;
+
+const N: usize = 400;
+const TILTED: Normal = Normal {
+    x: 0.48,
+    y: 0.36,
+    z: 0.8,
+};
+
+/// The unit square, whose field has an angle to down, and its own layout, mirrored or not.
+fn plane(angle: f64, mirrored: bool) -> (Synthesizer, Atlas) {
+    let down = DVec3::new(libm::sin(angle), -libm::cos(angle), 0.0);
+    let plane = synthesizer(square(), N, |_, _| down);
+    let place = |at: DVec3| DVec2::new(if mirrored { 1.0 - at.x } else { at.x }, 1.0 - at.y);
+    let mesh = plane.surface().mesh();
+    let faces = mesh.faces().iter();
+    let uvs: Vec<[DVec2; 3]> = faces
+        .map(|face| face.map(|vertex| place(mesh.positions()[vertex.index()])))
+        .collect();
+    let atlas = Atlas::from_uvs(plane.surface(), &uvs, [40, 30], 0).unwrap();
+    (plane, atlas)
+}
+
+fn assert_all(map: &Raster<Normal>, want: [f64; 3], what: &str) {
+    for normal in map.pixels() {
+        for (got, want) in normal.to_array().into_iter().zip(want) {
+            // Some roundings to `f32`.
+            assert!(
+                (f64::from(got) - want).abs() < 1e-6,
+                "{what}: {normal:?} for {want}"
+            );
+        }
+    }
+}
+
+#[test]
+fn rotated_field_rotates_the_normals() {
+    for angle in [0.0, 0.3, 1.5, 3.0, -2.0] {
+        let (plane, atlas) = plane(angle, false);
+        let map = bake_normals(&plane, &[TILTED; N], NormalY::OpenGl, &atlas).unwrap();
+        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+        let (x, y) = (0.48, 0.36);
+        // Counterclockwise, as the field.
+        let want = [x * cos - y * sin, x * sin + y * cos, 0.8];
+        assert_all(&map, want, &format!("angle {angle}"));
+    }
+}
+
+#[test]
+fn mirrored_layout_mirrors_the_normals() {
+    let (plane, atlas) = plane(0.0, true);
+    let map = bake_normals(&plane, &[TILTED; N], NormalY::OpenGl, &atlas).unwrap();
+    assert_all(&map, [-0.48, 0.36, 0.8], "mirrored");
+}
+
+#[test]
+fn green_points_down_for_directx() {
+    let (plane, atlas) = plane(0.3, false);
+    let down = Normal {
+        y: -TILTED.y,
+        ..TILTED
+    };
+    let up = bake_normals(&plane, &[TILTED; N], NormalY::OpenGl, &atlas).unwrap();
+    let down = bake_normals(&plane, &[down; N], NormalY::DirectX, &atlas).unwrap();
+    for (up, down) in up.pixels().iter().zip(down.pixels()) {
+        assert_eq!((up.x, up.y, up.z), (down.x, -down.y, down.z));
+    }
+}
+
+#[test]
+fn flat_normals_stay_flat() {
+    let sphere = synthesizer(sphere(), N, |_, _| DVec3::NEG_Y);
+    for atlas in [
+        Atlas::uniform(sphere.surface(), 200).unwrap(),
+        Atlas::by_area(sphere.surface(), 300).unwrap(),
+    ] {
+        for y in [NormalY::OpenGl, NormalY::DirectX] {
+            let map = bake_normals(&sphere, &[Normal::FLAT; N], y, &atlas).unwrap();
+            assert!(map.pixels().iter().all(|&normal| normal == Normal::FLAT));
+        }
+    }
+}
+
+#[test]
+fn normals_cancel_to_flat() {
+    let (plane, atlas) = plane(0.0, false);
+    let inward = [Normal {
+        x: 0.0,
+        y: 0.0,
+        z: 0.0,
+    }; N];
+    let map = bake_normals(&plane, &inward, NormalY::OpenGl, &atlas).unwrap();
+    assert_all(&map, [0.0, 0.0, 1.0], "nothing");
+}
+
+/// A program that reads the map and has made its own tangents sees the vectors of the sites, mixed.
+#[test]
+fn decoded_normals_are_the_mixed_vectors_of_the_sites() {
+    let sphere = synthesizer(sphere(), N, |at, _| DVec3::Y.cross(at) + DVec3::splat(0.2));
+    let surface = sphere.surface();
+    let atlas = Atlas::uniform(surface, 300).unwrap();
+    let map = bake_normals(&sphere, &[TILTED; N], NormalY::OpenGl, &atlas).unwrap();
+    let (sites, downs) = (sphere.hierarchy().sites(), sphere.orientation().vectors());
+    let along: Vec<DVec3> = sites
+        .normals()
+        .iter()
+        .zip(downs)
+        .map(|(&out, &down)| out.cross(down) * 0.48 - down * 0.36)
+        .collect();
+    let uvs = atlas.uvs();
+    let mut shown = 0;
+    for row in (0..300).step_by(3) {
+        for column in (0..300).step_by(5) {
+            let Some(point) = atlas.point(surface, [column, row]) else {
+                continue;
+            };
+            let face = atlas.face([column, row]).unwrap();
+            if point.face != face {
+                continue;
+            }
+            shown += 1;
+            let out = surface.normal(point);
+            // The tangent solves: the edges of the face are their steps in u and v times two vectors.
+            let [a, b, c] = surface.mesh().corners(face);
+            let [ua, ub, uc] = uvs[face.index()];
+            let steps = glam::DMat2::from_cols(ub - ua, uc - ua).inverse();
+            let tangent = (b - a) * steps.x_axis.x + (c - a) * steps.x_axis.y;
+            let bottom = (b - a) * steps.y_axis.x + (c - a) * steps.y_axis.y;
+            let tangent = (tangent - out * tangent.dot(out)).normalize();
+            let up = out.cross(tangent);
+            let up = if up.dot(bottom) < 0.0 { up } else { -up };
+            let [x, y, z] = map.row(row)[column as usize].to_array().map(f64::from);
+            let seen = tangent * x + up * y + out * z;
+            let at = surface.position(point);
+            let normal = surface.face_normal(face);
+            let mixed = sphere.hierarchy().interpolate(0, &along, at, normal);
+            let mixed = mixed.unwrap().unwrap();
+            let want = (mixed - out * mixed.dot(out) + out * 0.8).normalize();
+            // The tangents of corners are mixed, not those of the face turned: second order in the angles of the mesh.
+            assert!(seen.distance(want) < 0.01, "{seen} beside {want}");
+        }
+    }
+    assert!(shown > 2000, "only {shown} texels");
+}
+
+#[test]
+fn bad_normals_are_refused() {
+    let (plane, atlas) = plane(0.0, false);
+    let error = bake_normals(&plane, &[TILTED; N + 1], NormalY::OpenGl, &atlas).unwrap_err();
+    assert!(
+        matches!(error.kind(), SynthErrorKind::Count { count: 401, .. }),
+        "{error}"
+    );
+    for bad in [f32::NAN, f32::INFINITY] {
+        let normal = Normal { y: bad, ..TILTED };
+        let error = bake_normals(&plane, &[normal; N], NormalY::OpenGl, &atlas).unwrap_err();
+        assert!(
+            matches!(error.kind(), SynthErrorKind::Range { .. }),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn value_stability_bake_normals() {
+    let (plane, atlas) = plane(0.3, false);
+    let map = bake_normals(&plane, &[TILTED; N], NormalY::OpenGl, &atlas).unwrap();
+    let bits = map.row(7)[9].to_array().map(f32::to_bits);
+    assert_eq!(bits, [1_052_004_398, 1_056_487_156, 1_061_997_773]);
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn normals_have_the_same_bits_on_any_number_of_threads() {
+    let sphere = synthesizer(sphere(), N, |_, _| DVec3::NEG_Y);
+    let atlas = Atlas::uniform(sphere.surface(), 200).unwrap();
+    let bake = || bake_normals(&sphere, &[TILTED; N], NormalY::OpenGl, &atlas).unwrap();
+    let [one, two, seven] = crate::shapes::on_threads(bake);
+    assert_eq!(one, two, "2 threads");
+    assert_eq!(one, seven, "7 threads");
+}

@@ -1,0 +1,119 @@
+//! The paper's two displays as models for files: the sites with their colors, and the input mesh with a texture map.
+//!
+//! Source: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 6, <https://doi.org/10.1145/383259.383297>.
+//! `M_1` is a graph and no mesh; [`Hierarchy::triangles`](dapple_mesh::Hierarchy::triangles) says how triangles are made
+//! of it. The fields of a [`Model`] may be changed: its mesh for one that is [displaced](crate::displaced_mesh), say.
+
+use crate::maps::check_column;
+use crate::{Atlas, SynthError, SynthErrorKind, Synthesizer};
+use dapple_color::LinearRgba;
+use dapple_mesh::{EncodedImage, Mesh, Model, Surface};
+use glam::DVec2;
+
+/// The first display: the triangles of the finest sites, with a color for each.
+///
+/// # Errors
+///
+/// [`SynthErrorKind::Count`] unless there is a color for each site.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::{LinearRgb, LinearRgba};
+/// use dapple_synth::mesh::{HierarchyOptions, Surface, models};
+/// use dapple_synth::{Synthesizer, point_model, site_model};
+///
+/// let sites = HierarchyOptions { n_sites: 2000, ..Default::default() };
+/// let tori = Synthesizer::new(Surface::new(models::blended_tori(1000)?)?, &[], &sites)?;
+/// let colors = vec![LinearRgba::opaque(LinearRgb::gray(0.5)); 2000];
+/// let (triangles, points) = (site_model(&tori, colors.clone())?, point_model(&tori, colors)?);
+/// assert!(triangles.mesh.faces().len() > 3900);
+/// assert_eq!(triangles.mesh.positions(), points.mesh.positions());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn site_model(synthesizer: &Synthesizer, colors: Vec<LinearRgba>) -> Result<Model, SynthError> {
+    let mesh = synthesizer.hierarchy().triangles(0)?.mesh;
+    sites(synthesizer, mesh, colors)
+}
+
+/// The finest sites as a cloud of points with normals and a color for each.
+///
+/// The directions of the texture, in the same order, are [`Orientation::vectors`](crate::Orientation::vectors), and the
+/// sizes of discs that touch are about half of [`Level::spacing`](dapple_mesh::Level::spacing).
+///
+/// # Errors
+///
+/// As [`site_model`].
+pub fn point_model(
+    synthesizer: &Synthesizer,
+    colors: Vec<LinearRgba>,
+) -> Result<Model, SynthError> {
+    let positions = synthesizer.hierarchy().sites().positions();
+    let mesh = Mesh::new(positions.to_vec(), &[])?;
+    sites(synthesizer, mesh, colors)
+}
+
+/// The second display: the input mesh with a texture map, of which `base_color` is the file, in the layout of an atlas.
+///
+/// Every corner of every face has a texture coordinate of its own, and every vertex a normal. More maps go into the
+/// model's [`material`](Model::material). Faces that have no place in the map show its first corner.
+///
+/// # Errors
+///
+/// [`SynthErrorKind::Count`] if the atlas was made for another number of faces.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::LinearRgb;
+/// use dapple_image::{Transfer, encode_png};
+/// use dapple_synth::mesh::{EncodedImage, HierarchyOptions, Surface, io::gltf, models};
+/// use dapple_synth::{Atlas, Synthesizer, bake_colors, textured_model};
+///
+/// let sites = HierarchyOptions { n_sites: 500, ..Default::default() };
+/// let ray = Synthesizer::new(Surface::new(models::ray(500)?)?, &[], &sites)?;
+/// let atlas = Atlas::uniform(ray.surface(), 128)?;
+/// let map = bake_colors(&ray, &[LinearRgb::gray(0.2); 500], &atlas)?;
+/// let png = encode_png(map.map(|color| color.to_srgb::<u8>()).view(), Transfer::Srgb)?;
+/// let model = textured_model(ray.surface(), &atlas, EncodedImage::new(png)?)?;
+/// let glb = gltf::write(&model)?;
+/// assert!(glb.starts_with(b"glTF"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn textured_model(
+    surface: &Surface,
+    atlas: &Atlas,
+    base_color: EncodedImage,
+) -> Result<Model, SynthError> {
+    let uvs = atlas.uvs();
+    if uvs.len() != surface.mesh().faces().len() {
+        return Err(SynthError::new(SynthErrorKind::Count {
+            what: "faces with texture coordinates",
+            count: uvs.len(),
+            needed: "as many as the mesh has",
+        }));
+    }
+    let placed = |uv: DVec2| if uv.is_finite() { uv } else { DVec2::ZERO };
+    let mut model = Model::from(surface.mesh().clone());
+    model.uvs = Some(uvs.into_iter().map(|face| face.map(placed)).collect());
+    model.normals = Some(surface.mesh().vertex_normals());
+    model.material.base_color = Some(base_color);
+    Ok(model)
+}
+
+/// A model whose vertices are the finest sites.
+fn sites(
+    synthesizer: &Synthesizer,
+    mesh: Mesh,
+    colors: Vec<LinearRgba>,
+) -> Result<Model, SynthError> {
+    check_column(synthesizer, "colors", colors.len())?;
+    let normals = synthesizer.hierarchy().sites().normals();
+    let mut model = Model::from(mesh);
+    model.colors = Some(colors);
+    model.normals = Some(normals.to_vec());
+    Ok(model)
+}
+
+#[cfg(test)]
+mod tests;

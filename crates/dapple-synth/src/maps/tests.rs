@@ -1,0 +1,132 @@
+//! Maps beside plain interpolation, and columns that are refused.
+
+use super::*;
+use crate::shapes::{sphere, synthesizer};
+use crate::{Atlas, SynthErrorKind};
+use dapple_hash::{Seed, hash1, unit_f32};
+use glam::DVec3;
+
+const N: usize = 600;
+
+fn case() -> (Synthesizer, Atlas) {
+    let sphere = synthesizer(sphere(), N, |_, _| DVec3::NEG_Y);
+    let atlas = Atlas::uniform(sphere.surface(), 200).unwrap();
+    (sphere, atlas)
+}
+
+fn random() -> Vec<f32> {
+    let value = |site| unit_f32(hash1(Seed(1), [site], 0) as u32);
+    (0..N as i64).map(value).collect()
+}
+
+#[test]
+fn values_are_those_of_plain_interpolation() {
+    let (sphere, atlas) = case();
+    let map = bake_values(&sphere, &random(), &atlas).unwrap();
+    for row in (0..200).step_by(7) {
+        for column in (0..200).step_by(5) {
+            let Some(point) = atlas.point(sphere.surface(), [column, row]) else {
+                continue;
+            };
+            let at = sphere.surface().position(point);
+            let normal = sphere.surface().face_normal(point.face);
+            let plain = sphere.hierarchy().interpolate(0, &random(), at, normal);
+            let plain = plain.unwrap().unwrap();
+            let value = map.row(row)[column as usize];
+            // Positions are rounded to `f32` in the map.
+            assert!((value - plain).abs() < 1e-4, "{value} beside {plain}");
+        }
+    }
+}
+
+#[test]
+fn colors_are_mixed_in_their_codes_and_stay_what_they_are_where_all_are_alike() {
+    let (sphere, atlas) = case();
+    let color = LinearRgb::from_srgb([12_u8, 200, 255]);
+    let map = bake_colors(&sphere, &[color; N], &atlas).unwrap();
+    let codes = |color: &LinearRgb| color.to_srgb::<u8>();
+    assert!(
+        map.pixels()
+            .iter()
+            .all(|color| codes(color) == [12, 200, 255]),
+        "alike"
+    );
+    let grays: Vec<f32> = random();
+    let colors: Vec<LinearRgb> = grays
+        .iter()
+        .map(|&gray| LinearRgb::from_srgb([u16::from_unit(gray); 3]))
+        .collect();
+    let map = bake_colors(&sphere, &colors, &atlas).unwrap();
+    let values = bake_values(&sphere, &grays, &atlas).unwrap();
+    for (color, value) in map.pixels().iter().zip(values.pixels()) {
+        let [code, _, _] = color.to_srgb::<u16>();
+        // Codes are rounded before and after.
+        assert!(
+            (code.to_unit() - value).abs() < 2.0 / 65535.0,
+            "{code} for {value}"
+        );
+    }
+}
+
+#[test]
+fn texels_without_a_face_have_the_mean_of_all_sites() {
+    let (sphere, atlas) = case();
+    let map = bake_values(&sphere, &random(), &atlas).unwrap();
+    assert_eq!(atlas.face([199, 199]), None, "beyond the tiles");
+    let mean = random().iter().map(|&value| f64::from(value)).sum::<f64>() / N as f64;
+    assert_eq!(map.row(199)[199], mean as f32);
+}
+
+#[test]
+fn bad_columns_are_refused() {
+    let (sphere, atlas) = case();
+    for count in [0, N - 1, N + 1] {
+        let errors = [
+            bake_values(&sphere, &vec![0.0; count], &atlas).unwrap_err(),
+            bake_colors(&sphere, &vec![LinearRgb::BLACK; count], &atlas).unwrap_err(),
+        ];
+        for error in errors {
+            let SynthErrorKind::Count { count: got, .. } = *error.kind() else {
+                panic!("{error}")
+            };
+            assert_eq!(got, count, "{error}");
+        }
+    }
+    for bad in [f32::NAN, f32::INFINITY] {
+        let mut values = random();
+        values[N - 1] = bad;
+        let mut colors = vec![LinearRgb::BLACK; N];
+        colors[3] = LinearRgb::new(0.0, bad, 0.0);
+        for error in [
+            bake_values(&sphere, &values, &atlas).unwrap_err(),
+            bake_colors(&sphere, &colors, &atlas).unwrap_err(),
+        ] {
+            assert!(
+                matches!(error.kind(), SynthErrorKind::Range { .. }),
+                "{error}"
+            );
+        }
+    }
+}
+
+#[test]
+fn value_stability_bake_values() {
+    let (sphere, atlas) = case();
+    let map = bake_values(&sphere, &random(), &atlas).unwrap();
+    let texels = [[10, 20], [100, 50], [150, 177]].map(|[x, y]: [u32; 2]| map.row(y)[x as usize]);
+    assert_eq!(
+        texels.map(f32::to_bits),
+        [1_057_106_225, 1_058_519_786, 1_049_384_452]
+    );
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn colors_have_the_same_bits_on_any_number_of_threads() {
+    let (sphere, atlas) = case();
+    let colors: Vec<LinearRgb> = random().into_iter().map(LinearRgb::gray).collect();
+    let [one, two, seven] =
+        crate::shapes::on_threads(|| bake_colors(&sphere, &colors, &atlas).unwrap());
+    assert_eq!(one, two, "2 threads");
+    assert_eq!(one, seven, "7 threads");
+}
