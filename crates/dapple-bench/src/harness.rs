@@ -155,9 +155,26 @@ impl Bench {
         Ok(())
     }
 
-    /// Keeps the row of a case that was measured in other processes, from the seconds for one unit of work.
+    /// Runs a job on one thread: its seconds of processor time, and what it made.
+    #[cfg(feature = "peers")]
+    pub(crate) fn on_one<T: Send>(&self, job: impl FnOnce() -> T + Send) -> (f64, T) {
+        self.one.install(|| {
+            let start = ThreadTime::now();
+            let made = black_box(job());
+            (start.elapsed().as_secs_f64(), made)
+        })
+    }
+
+    /// Keeps the row of a case that was measured in other ways, from the seconds for one unit of work.
     pub(crate) fn measured(&mut self, case: &Case, ours: f64, theirs: f64) {
         self.keep(case.row(ours, theirs));
+    }
+
+    /// As [`measured`](Self::measured), with a note that was not known before.
+    pub(crate) fn measured_with(&mut self, case: &Case, ours: f64, theirs: f64, note: String) {
+        let mut row = case.row(ours, theirs);
+        row.note = note;
+        self.keep(row);
     }
 
     /// Keeps a row and tells of it.

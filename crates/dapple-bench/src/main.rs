@@ -5,8 +5,8 @@
 //! or a part of a case's or peer's name.
 //!
 //! How rows are measured is in `harness`, how peers are used at their best in `peers`, and what each group sets side by
-//! side in `pups`, `points`, `graph`, `worley`, `wavelet` and `tile`. The peers are built only with the feature `peers`, which
-//! `cargo xtask bench` turns on; without it the rows of ours alone run.
+//! side in `pups`, `points`, `graph`, `worley`, `wavelet`, `tile`, `mesh` and `synth`. The peers are built only with the
+//! feature `peers`, which `cargo xtask bench` turns on; without it the rows of ours alone run.
 
 #![forbid(unsafe_code)]
 
@@ -26,8 +26,10 @@ mod sets;
 mod peers;
 
 mod graph;
+mod mesh;
 mod points;
 mod pups;
+mod synth;
 mod tile;
 mod wavelet;
 mod worley;
@@ -43,7 +45,7 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask bench")]
 struct Arguments {
-    /// Groups (pups, points, graph, worley, wavelet, tile), or parts of the names of cases or peers; all of them by default.
+    /// Groups (pups, points, graph, worley, wavelet, tile, mesh, synth), or parts of the names of cases or peers; all of them by default.
     filters: Vec<String>,
     /// Writes the rows as JSON to this file.
     #[arg(long, value_name = "FILE")]
@@ -54,10 +56,17 @@ struct Arguments {
     /// Keeps the table in `crates/dapple-bench/RESULTS.md`.
     #[arg(long)]
     write_results: bool,
+    /// Makes a texture of so many sites and prints what that took: a row's own process.
+    #[arg(long, hide = true, value_name = "N")]
+    synthesize: Option<usize>,
 }
 
 fn main() -> Result<ExitCode> {
     let arguments = Arguments::parse();
+    if let Some(n_sites) = arguments.synthesize {
+        synth::size::synthesize_here(n_sites)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     if cfg!(not(feature = "peers")) {
         eprintln!("built without the feature `peers`: only the rows of ours alone run");
     }
@@ -68,6 +77,8 @@ fn main() -> Result<ExitCode> {
     worley::run(&mut bench)?;
     wavelet::run(&mut bench)?;
     tile::run(&mut bench)?;
+    mesh::run(&mut bench)?;
+    synth::run(&mut bench)?;
     let rows = bench.into_rows();
     ensure!(!rows.is_empty(), "no case matches {:?}", arguments.filters);
 

@@ -6,9 +6,12 @@
 //!   always near; for scattered positions there is its hierarchy of triangulations.
 //! * `bluenoise` has few tries (10) for each point, as its own examples: more are slower.
 //! * `poisson-diskus` and `fast_poisson` have the 30 tries that they recommend. `fast_poisson` is not periodic.
-//! * `simdnoise` and `noise-functions` are in `noise`, `rustfft` is in `fourier`.
+//! * `simdnoise` and `noise-functions` are in `noise`, `rustfft` in `fourier`, `texture-synthesis` in `flat`, `kiddo` in
+//!   `kd_tree`.
 
+pub(crate) mod flat;
 pub(crate) mod fourier;
+pub(crate) mod kd_tree;
 pub(crate) mod noise;
 
 use dapple_points::glam::DVec2;

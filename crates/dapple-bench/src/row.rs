@@ -63,7 +63,7 @@ impl Case {
             })
     }
 
-    /// The row of this case from the seconds that one unit of work took each side.
+    /// The row of this case from the seconds that one unit of work took each side, or from bytes or distances.
     pub(crate) fn row(&self, ours: f64, theirs: f64) -> Row {
         let ratio = self.must.ratio(ours, theirs);
         let (must, at) = match self.must {
@@ -75,8 +75,8 @@ impl Case {
             case: self.case,
             peer: self.peer,
             unit: self.unit.name(),
-            ours: ours * self.unit.per_second(),
-            theirs: theirs * self.unit.per_second(),
+            ours: ours * self.unit.per_one(),
+            theirs: theirs * self.unit.per_one(),
             ratio,
             must,
             at,
@@ -87,9 +87,11 @@ impl Case {
 }
 
 /// The groups, in the order of the table.
-pub(crate) const GROUPS: [&str; 6] = ["pups", "points", "graph", "worley", "wavelet", "tile"];
+pub(crate) const GROUPS: [&str; 8] = [
+    "pups", "points", "graph", "worley", "wavelet", "tile", "mesh", "synth",
+];
 
-/// The unit of a time.
+/// The unit of a time, or of what else is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Unit {
     /// Nanoseconds for each pixel of the image.
@@ -102,8 +104,20 @@ pub(crate) enum Unit {
         expect(dead_code, reason = "only rows beside peers ask for positions")
     )]
     NsPerPosition,
+    /// Microseconds for each neighborhood looked for.
+    UsPerQuery,
     /// Milliseconds for the whole job.
     Ms,
+    /// Seconds for the whole job.
+    S,
+    /// Megabytes of memory, 10^6 bytes each.
+    Megabytes,
+    /// A distance from 0 to 1, in thousandths.
+    #[cfg_attr(
+        not(feature = "peers"),
+        expect(dead_code, reason = "only rows beside peers compare distances")
+    )]
+    Thousandths,
 }
 
 impl Unit {
@@ -113,15 +127,22 @@ impl Unit {
             Self::NsPerPixel => "ns/pixel",
             Self::NsPerPoint => "ns/point",
             Self::NsPerPosition => "ns/position",
+            Self::UsPerQuery => "µs/query",
             Self::Ms => "ms",
+            Self::S => "s",
+            Self::Megabytes => "MB",
+            Self::Thousandths => "distance/1000",
         }
     }
 
-    /// How many of this unit a second has.
-    pub(crate) const fn per_second(self) -> f64 {
+    /// How many of this unit one second is, or one byte, or a distance of 1.
+    pub(crate) const fn per_one(self) -> f64 {
         match self {
             Self::NsPerPixel | Self::NsPerPoint | Self::NsPerPosition => 1e9,
-            Self::Ms => 1e3,
+            Self::UsPerQuery => 1e6,
+            Self::Ms | Self::Thousandths => 1e3,
+            Self::S => 1.0,
+            Self::Megabytes => 1e-6,
         }
     }
 }

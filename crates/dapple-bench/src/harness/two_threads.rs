@@ -73,6 +73,13 @@ impl Bench {
         Ok(())
     }
 
+    /// Runs a job on two threads: its seconds by the wall, and what it made.
+    pub(crate) fn on_two<T: Send>(&self, job: impl FnOnce() -> T + Send) -> (f64, T) {
+        let start = now();
+        let made = black_box(self.two.install(job));
+        (start.elapsed().as_secs_f64(), made)
+    }
+
     /// One job on one thread, then another on two.
     fn turn_of_two(&self, on_one: impl FnOnce() + Send, on_two: impl FnOnce() + Send) -> Best {
         let one = self.one.install(|| {

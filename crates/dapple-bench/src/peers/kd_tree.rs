@@ -1,0 +1,167 @@
+//! `kiddo`, which its documentation does not mean for hundreds of dimensions: points are the rows in a few directions.
+//!
+//! Along orthogonal unit directions no distance is longer than the whole one. So the nearest of the few nearest there gives a
+//! radius, within which the tree then lists all that can be nearer; those are compared as they are. That is exact up to
+//! the rounding of the directions, for which the radius is a thousandth longer.
+//!
+//! The directions are the principal ones of the rows, by orthogonal iteration.
+
+use anyhow::{Result, anyhow};
+use dapple_synth::distance_sq;
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use std::num::NonZero;
+
+/// Most rows that directions are found from.
+const MOST_ROWS: usize = 4096;
+
+/// Iterations: the directions need not be the very best.
+const N_ITERATIONS: usize = 60;
+
+/// How many of the nearest points give the radius.
+const FIRST: NonZero<usize> = NonZero::new(4).unwrap();
+
+/// A few orthogonal unit vectors: for each dimension, its part along each of them.
+pub(crate) struct Directions<const N: usize> {
+    mean: Vec<f32>,
+    parts: Vec<[f32; N]>,
+}
+
+/// A tree of rows.
+pub(crate) struct KdTree<'a, const N: usize> {
+    dims: usize,
+    rows: &'a [f32],
+    directions: Directions<N>,
+    tree: ImmutableKdTree<f32, N>,
+}
+
+impl<'a, const N: usize> KdTree<'a, N> {
+    pub(crate) fn new(dims: usize, rows: &'a [f32], directions: Directions<N>) -> Result<Self> {
+        let points: Vec<[f32; N]> = rows
+            .chunks_exact(dims)
+            .map(|row| directions.along(row))
+            .collect();
+        let tree =
+            ImmutableKdTree::new_from_slice(&points).map_err(|error| anyhow!("{error:?}"))?;
+        Ok(Self {
+            dims,
+            rows,
+            directions,
+            tree,
+        })
+    }
+
+    /// The nearest row; of several at one distance the first.
+    pub(crate) fn nearest(&self, query: &[f32]) -> u32 {
+        let at = self.directions.along(query);
+        let mut best = (f32::INFINITY, u32::MAX);
+        let mut compare = |item: u32| {
+            let row = &self.rows[item as usize * self.dims..][..self.dims];
+            let distance = distance_sq(query, row);
+            if distance < best.0 || distance == best.0 && item < best.1 {
+                best = (distance, item);
+            }
+            best.0
+        };
+        let mut radius = f32::INFINITY;
+        let first = self
+            .tree
+            .query(&at)
+            .nearest_n::<SquaredEuclidean<f32>>(FIRST);
+        for point in first.execute() {
+            radius = compare(point.item) * 1.001;
+        }
+        let within = self.tree.query(&at).within::<SquaredEuclidean<f32>>(radius);
+        for point in within.unsorted().execute() {
+            if point.distance <= radius {
+                radius = compare(point.item) * 1.001;
+            }
+        }
+        best.1
+    }
+}
+
+impl<const N: usize> Directions<N> {
+    /// Those in which rows differ most.
+    pub(crate) fn principal(dims: usize, rows: &[f32]) -> Self {
+        let n_rows = rows.len() / dims;
+        let sample: Vec<&[f32]> = rows
+            .chunks_exact(dims)
+            .step_by(n_rows.div_ceil(MOST_ROWS))
+            .collect();
+        let mut mean = vec![0.0_f64; dims];
+        for row in &sample {
+            for (sum, &value) in mean.iter_mut().zip(*row) {
+                *sum += f64::from(value) / sample.len() as f64;
+            }
+        }
+        let mut covariance = vec![0.0_f64; dims * dims];
+        for row in &sample {
+            let centered: Vec<f64> = row
+                .iter()
+                .zip(&mean)
+                .map(|(&a, b)| f64::from(a) - b)
+                .collect();
+            for (line, a) in covariance.chunks_exact_mut(dims).zip(&centered) {
+                for (sum, b) in line.iter_mut().zip(&centered) {
+                    *sum += a * b;
+                }
+            }
+        }
+        let directions = iterate::<N>(dims, &covariance);
+        Self {
+            mean: mean.iter().map(|&value| value as f32).collect(),
+            parts: (0..dims)
+                .map(|dim| std::array::from_fn(|index| directions[index][dim] as f32))
+                .collect(),
+        }
+    }
+
+    /// How far a row is along each direction.
+    #[inline]
+    fn along(&self, row: &[f32]) -> [f32; N] {
+        let mut sums = [0.0; N];
+        for ((value, mean), parts) in row.iter().zip(&self.mean).zip(&self.parts) {
+            for (sum, part) in sums.iter_mut().zip(parts) {
+                *sum += (value - mean) * part;
+            }
+        }
+        sums
+    }
+}
+
+/// The eigenvectors of the largest eigenvalues, nearly.
+fn iterate<const N: usize>(dims: usize, matrix: &[f64]) -> Vec<Vec<f64>> {
+    // To begin with, lines of the matrix, which no two directions share.
+    let mut vectors: Vec<Vec<f64>> = (0..N)
+        .map(|index| matrix[index * dims / N * dims..][..dims].to_vec())
+        .collect();
+    for _ in 0..N_ITERATIONS {
+        orthonormalize(&mut vectors);
+        for vector in &mut vectors {
+            let dot = |line: &[f64]| line.iter().zip(&*vector).map(|(a, b)| a * b).sum::<f64>();
+            *vector = matrix.chunks_exact(dims).map(dot).collect();
+        }
+    }
+    // Twice, for what rounding leaves after the first time.
+    orthonormalize(&mut vectors);
+    orthonormalize(&mut vectors);
+    vectors
+}
+
+/// Makes vectors orthogonal, one after the other, with the length 1.
+fn orthonormalize(vectors: &mut [Vec<f64>]) {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    for index in 0..vectors.len() {
+        let (before, rest) = vectors.split_at_mut(index);
+        let vector = &mut rest[0];
+        for other in before {
+            let along = dot(vector, other);
+            vector
+                .iter_mut()
+                .zip(other)
+                .for_each(|(part, of)| *part -= along * *of);
+        }
+        let length = dot(vector, vector).sqrt().max(f64::MIN_POSITIVE);
+        vector.iter_mut().for_each(|part| *part /= length);
+    }
+}

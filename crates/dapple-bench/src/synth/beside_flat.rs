@@ -1,0 +1,157 @@
+//! Ours beside `texture-synthesis` making one flat image of 512×512 pixels of the same exemplar.
+//!
+//! Both on one thread, processor times, medians of turns. The peer makes one image in every turn for all rows.
+
+use super::scene::{self, N_SITES, exact, leaves, model, synthesizer};
+use super::whole;
+use crate::harness::{Bench, median};
+use crate::peers::flat;
+use crate::row::{Case, Must, Unit};
+use anyhow::{Result, ensure};
+use dapple_synth::{Edges, Exemplar, Options, PlaneTexture, synthesize_plane};
+
+const EXACT: Case = Case {
+    group: "synth",
+    case: "synthesis, 262,144 sites, 3 levels, 64² exemplar, exact search",
+    peer: "texture-synthesis, flat 512×512",
+    unit: Unit::S,
+    must: Must::CostAtMost(0.4),
+    note: "",
+};
+
+const DEFAULT: Case = Case {
+    case: "synthesis, 262,144 sites, 3 levels, 64² exemplar, default options",
+    ..EXACT
+};
+
+const WHOLE: Case = Case {
+    case: "whole run, 262,144 sites, 3 levels, 64² exemplar, exact search, map 2048×2048",
+    must: Must::CostAtMost(0.9),
+    ..EXACT
+};
+
+const PLANE: Case = Case {
+    case: "plane 512×512, 3 levels, 64² exemplar, default options",
+    must: Must::CostAtMost(0.35),
+    ..EXACT
+};
+
+const PLANE_EXACT: Case = Case {
+    case: "plane 512×512, 3 levels, 64² exemplar, exact search",
+    ..PLANE
+};
+
+const LARGE: Case = Case {
+    case: "synthesis, 262,144 sites, 4 levels, 256² exemplar, exact search",
+    must: Must::CostAtMost(1.0),
+    ..EXACT
+};
+
+/// Columns and rows of the flat image.
+const SIDE: u32 = 512;
+
+/// A row's job: makes something and counts it.
+type Job<'a> = Box<dyn Fn() -> Result<usize> + Sync + 'a>;
+
+pub(super) fn run(bench: &mut Bench) -> Result<()> {
+    if bench.wants_any(&[EXACT, DEFAULT, WHOLE, PLANE, PLANE_EXACT]) {
+        small(bench)?;
+    }
+    if bench.wants(&LARGE) {
+        large(bench)?;
+    }
+    Ok(())
+}
+
+fn small(bench: &mut Bench) -> Result<()> {
+    let (model, picture) = (model()?, leaves(64)?);
+    let exemplar = picture.exemplar()?;
+    let sites = synthesizer(&model, N_SITES, 3)?;
+    let on_sites = |options: Options| -> Job<'_> {
+        let (sites, exemplar) = (&sites, &exemplar);
+        Box::new(move || scene::count(&sites.synthesize(exemplar, &options)?))
+    };
+    let in_plane = |options: Options| -> Job<'_> {
+        let exemplar = &exemplar;
+        Box::new(move || {
+            count_plane(&synthesize_plane(
+                exemplar,
+                [SIDE; 2],
+                [Edges::Cut; 2],
+                &options,
+            )?)
+        })
+    };
+    let whole: Job<'_> = Box::new(|| {
+        let written = whole::run(&model, &exemplar, &exact(3))?;
+        ensure!(written.coverage > 0.9, "the map is empty");
+        ensure!(written.png.len() > 1_000_000, "the map is flat");
+        Ok(N_SITES)
+    });
+    let rows = [
+        (EXACT, on_sites(exact(3))),
+        (DEFAULT, on_sites(Options::default())),
+        (WHOLE, whole),
+        (PLANE, in_plane(Options::default())),
+        (PLANE_EXACT, in_plane(exact(3))),
+    ];
+    let note = format!("{}; {}", model.note, picture.note());
+    beside(bench, 3, &picture, rows.into(), &note)
+}
+
+fn large(bench: &mut Bench) -> Result<()> {
+    let (model, picture) = (model()?, leaves(256)?);
+    let exemplar = picture.exemplar()?;
+    let sites = synthesizer(&model, N_SITES, 4)?;
+    let job: Job<'_> = Box::new(|| scene::count(&sites.synthesize(&exemplar, &exact(4))?));
+    let note = format!("{}; {}", model.note, picture.note());
+    beside(bench, 2, &picture, vec![(LARGE, job)], &note)
+}
+
+/// Measures all wanted rows beside the flat image.
+fn beside(
+    bench: &mut Bench,
+    turns: u32,
+    picture: &scene::Picture,
+    mut rows: Vec<(Case, Job<'_>)>,
+    note: &str,
+) -> Result<()> {
+    rows.retain(|(case, _)| bench.wants(case));
+    let mut theirs = Vec::new();
+    let mut ours = vec![Vec::new(); rows.len()];
+    for _ in 0..turns {
+        let (seconds, image) = flat::synthesize(&picture.image, SIDE)?;
+        let made = Exemplar::new(&image, Edges::Cut)?;
+        let range = made
+            .pixels()
+            .iter()
+            .fold([1.0_f32, 0.0], |[low, high], &value| {
+                [low.min(value), high.max(value)]
+            });
+        ensure!(
+            range[1] - range[0] > 0.2,
+            "the flat image is flat: {range:?}"
+        );
+        theirs.push(seconds);
+        for ((_, job), seconds) in rows.iter().zip(&mut ours) {
+            let (time, made) = bench.on_one(job);
+            ensure!(made? == (SIDE * SIDE) as usize, "another number of pixels");
+            seconds.push(time);
+        }
+    }
+    let theirs = median(&mut theirs);
+    for ((case, _), mut ours) in rows.iter().zip(ours) {
+        bench.measured_with(case, median(&mut ours), theirs, note.to_owned());
+    }
+    Ok(())
+}
+
+/// The number of pixels of a texture; refuses one that is of few pixels of the exemplar.
+fn count_plane(texture: &PlaneTexture) -> Result<usize> {
+    let mut sources = texture.sources().pixels().to_vec();
+    let n_pixels = sources.len();
+    sources.sort_unstable();
+    sources.dedup();
+    ensure!(sources.len() > 500, "all is of {} pixels", sources.len());
+    Ok(n_pixels)
+}

@@ -1,0 +1,230 @@
+//! The matcher on recorded neighborhoods, beside comparing with all candidates and beside a k-d tree.
+//!
+//! The queries are the neighborhoods of the last pass, F(7,0) and F(3,1), on a tile of 320×320 pixels that all passes but
+//! that one have made: 102,400, each of 171 numbers. Exemplars of 64² and 256² pixels have 3364 and 62,500 candidates.
+//!
+//! Confirmed at 3.4 k candidates: every query has the same row as by brute force, by the same distance, with ties by index; at
+//! 62.5 k so has one query in 200. What is slow is timed on a part of the queries, spread evenly.
+
+#[cfg(feature = "peers")]
+mod beside_kiddo;
+
+use super::scene::{Picture, exact, leaves};
+use crate::harness::{Bench, Done, Side};
+use crate::row::{Case, Must, Unit};
+use anyhow::{Context as _, Result, ensure};
+use dapple_synth::{
+    Candidates, CoarserCenter, Edges, Exemplar, Matcher, MatcherMemory, Options, Pass, Schedule,
+    distance_sq, synthesize_plane,
+};
+use rayon::prelude::*;
+
+const PLAIN_SMALL: Case = Case {
+    group: "synth",
+    case: "matcher, 3.4 k candidates",
+    peer: "plain loop",
+    unit: Unit::UsPerQuery,
+    must: Must::Faster(60.0),
+    note: "102,400 queries, all with the same row as by brute force; the loop is timed on 512 of them",
+};
+
+const PLAIN_LARGE: Case = Case {
+    case: "matcher, 62.5 k candidates",
+    note: "10,240 of 102,400 queries, 512 with the same row as by brute force; the loop is timed on 64 of them",
+    ..PLAIN_SMALL
+};
+
+/// An exemplar and how its queries are used.
+struct Setting {
+    /// The side of the exemplar.
+    side: u32,
+    plain: Case,
+    /// One query in so many is timed with ours, with a peer, and with the plain loop.
+    timed: [usize; 3],
+    /// One query in so many is confirmed.
+    confirmed: usize,
+}
+
+const SETTINGS: [Setting; 2] = [
+    Setting {
+        side: 64,
+        plain: PLAIN_SMALL,
+        timed: [1, 10, 200],
+        confirmed: 1,
+    },
+    Setting {
+        side: 256,
+        plain: PLAIN_LARGE,
+        timed: [10, 100, 1600],
+        confirmed: 200,
+    },
+];
+
+/// Columns and rows of the tile whose neighborhoods are the queries.
+const TILE: u32 = 320;
+
+pub(super) fn run(bench: &mut Bench) -> Result<()> {
+    for setting in &SETTINGS {
+        #[cfg(feature = "peers")]
+        let others = beside_kiddo::cases(setting);
+        #[cfg(not(feature = "peers"))]
+        let others = [];
+        if !bench.wants(&setting.plain) && !bench.wants_any(&others) {
+            continue;
+        }
+        let recorded = Recorded::new(&leaves(setting.side)?)?;
+        recorded.confirm(setting.confirmed)?;
+        beside_plain(bench, setting, &recorded)?;
+        #[cfg(feature = "peers")]
+        beside_kiddo::run(bench, setting, &recorded)?;
+    }
+    Ok(())
+}
+
+fn beside_plain(bench: &mut Bench, setting: &Setting, recorded: &Recorded) -> Result<()> {
+    let [every, _, theirs] = setting.timed;
+    let plain = Side::new(Vec::new(), |found: &mut Vec<u32>| {
+        found.clear();
+        found.extend(
+            recorded
+                .queries(theirs)
+                .map(|query| recorded.plain_loop(query)),
+        );
+    });
+    bench.beside(
+        &setting.plain,
+        3,
+        recorded.ours(every),
+        plain,
+        |ours, plain| recorded.done([every, theirs], &ours.found, plain),
+    )
+}
+
+/// Candidates, queries, and what searches.
+struct Recorded {
+    dims: usize,
+    rows: Vec<f32>,
+    queries: Vec<f32>,
+    matcher: Matcher,
+}
+
+/// What our side works with.
+#[derive(Default)]
+struct Found {
+    memory: MatcherMemory,
+    found: Vec<u32>,
+}
+
+impl Recorded {
+    /// Makes a tile by all passes but the last, and reads its neighborhoods.
+    fn new(picture: &Picture) -> Result<Self> {
+        let exemplar = picture.exemplar()?;
+        let mut passes = Schedule::paper(3).passes;
+        let last = passes.pop().context("the last pass")?;
+        let options = Options {
+            schedule: Some(Schedule { passes }),
+            ..exact(3)
+        };
+        let tile = synthesize_plane(&exemplar, [TILE; 2], [Edges::Wrap; 2], &options)?;
+        let tile = Exemplar::new(&tile.transfer(&picture.image)?, Edges::Wrap)?;
+        let [(dims, rows), (_, queries)] = [
+            neighborhoods(&exemplar, &last)?,
+            neighborhoods(&tile, &last)?,
+        ];
+        ensure!(queries.len() >= 100_000 * dims, "there are too few queries");
+        Ok(Self {
+            dims,
+            matcher: Matcher::new(dims, &rows),
+            rows,
+            queries,
+        })
+    }
+
+    /// One query in so many.
+    fn queries(&self, every: usize) -> impl Iterator<Item = &[f32]> {
+        self.queries.chunks_exact(self.dims).step_by(every)
+    }
+
+    /// Our side.
+    fn ours(&self, every: usize) -> Side<'_, Found> {
+        Side::new(Found::default(), move |state: &mut Found| {
+            state.found.clear();
+            for query in self.queries(every) {
+                let nearest = self
+                    .matcher
+                    .nearest(query, f32::INFINITY, None, &mut state.memory);
+                state
+                    .found
+                    .push(nearest.map_or(u32::MAX, |nearest| nearest.row));
+            }
+        })
+    }
+
+    /// The row that is nearest by comparing with all of them, term by term.
+    fn plain_loop(&self, query: &[f32]) -> u32 {
+        let (mut least, mut nearest) = (f32::INFINITY, 0);
+        for (index, row) in self.rows.chunks_exact(self.dims).enumerate() {
+            let mut distance_sq = 0.0;
+            for (a, b) in query.iter().zip(row) {
+                distance_sq += (a - b) * (a - b);
+            }
+            if distance_sq < least {
+                (least, nearest) = (distance_sq, index as u32);
+            }
+        }
+        nearest
+    }
+
+    /// The first of the rows that are nearest by the distance that ours has.
+    fn brute_force(&self, query: &[f32]) -> u32 {
+        let (mut least, mut nearest) = (f32::INFINITY, 0);
+        for (index, row) in self.rows.chunks_exact(self.dims).enumerate() {
+            let distance_sq = distance_sq(query, row);
+            if distance_sq < least {
+                (least, nearest) = (distance_sq, index as u32);
+            }
+        }
+        nearest
+    }
+
+    /// Refuses a query in so many that has another row than by brute force.
+    fn confirm(&self, every: usize) -> Result<()> {
+        let queries: Vec<&[f32]> = self.queries(every).collect();
+        let wrong = queries.par_iter().filter(|query| {
+            let mut memory = MatcherMemory::default();
+            let found = self
+                .matcher
+                .nearest(query, f32::INFINITY, None, &mut memory);
+            found.map(|found| found.row) != Some(self.brute_force(query))
+        });
+        let n_wrong = wrong.count();
+        ensure!(
+            n_wrong == 0,
+            "{n_wrong} of {} queries have another row",
+            queries.len()
+        );
+        Ok(())
+    }
+
+    /// The queries of both sides, of which one in so many was asked; refuses rows that are not as near as ours.
+    fn done(&self, [ours, theirs]: [usize; 2], found: &[u32], others: &[u32]) -> Result<Done> {
+        let row = |row: u32| &self.rows[row as usize * self.dims..][..self.dims];
+        let compared = found.iter().step_by(theirs / ours).zip(others);
+        for (query, (&found, &other)) in self.queries(theirs).zip(compared) {
+            let [found, other] = [found, other].map(|index| distance_sq(query, row(index)));
+            // The loop sums 171 terms in another order.
+            ensure!((found - other).abs() <= 1e-4 * found, "{found} and {other}");
+        }
+        Ok(Done {
+            ours: found.len(),
+            theirs: others.len(),
+        })
+    }
+}
+
+/// The neighborhoods of an image that a pass compares, one after the other, and the length of each.
+fn neighborhoods(image: &Exemplar, pass: &Pass) -> Result<(usize, Vec<f32>)> {
+    let candidates = Candidates::new(&image.pyramid(2)?, pass, CoarserCenter::Exact)?;
+    let rows = (0..candidates.len()).flat_map(|row| candidates.row(row).iter().copied());
+    Ok((candidates.dims(), rows.collect()))
+}

@@ -1,0 +1,155 @@
+//! The inputs of the group: a model, photographs or drawings of the same kind, and the options of the rows.
+
+use super::drawings::{self, Drawing, draw};
+use anyhow::{Result, ensure};
+use dapple_color::LinearRgb;
+use dapple_image::{Limits, read_image};
+use dapple_mesh::models::bunny;
+use dapple_mesh::{HierarchyOptions, Surface};
+use dapple_raster::Raster;
+use dapple_synth::{Direction, Edges, Exemplar, Options, SurfaceTexture, Synthesizer};
+use glam::DVec3;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// The number of sites of most rows: as many as the flat image has pixels.
+pub(super) const N_SITES: usize = 512 * 512;
+
+/// A model as a file in memory.
+pub(super) struct Model {
+    pub(super) obj: Vec<u8>,
+    pub(super) directions: Vec<Direction>,
+    /// Which it is.
+    pub(super) note: &'static str,
+}
+
+/// An exemplar as an image.
+pub(super) struct Picture {
+    pub(super) image: Raster<LinearRgb>,
+    /// Whether it is the photograph or the drawing.
+    pub(super) is_photograph: bool,
+}
+
+/// The real model where there is one, and a procedural one elsewhere.
+pub(super) fn model() -> Result<Model> {
+    let path = data("meshes/spot.obj");
+    #[expect(clippy::disallowed_methods, reason = "the model is not of the library")]
+    let found = std::fs::read(&path);
+    let direction = |at, vector| Direction { at, vector };
+    if let Ok(obj) = found {
+        let back = direction(DVec3::new(0.0, 0.3, -0.4), DVec3::NEG_Z);
+        return Ok(Model {
+            obj,
+            directions: vec![back, direction(DVec3::new(0.4, 0.0, 0.3), DVec3::NEG_Y)],
+            note: "the model is `spot`, with 5856 triangles",
+        });
+    }
+    let mesh = bunny(6000)?;
+    let mut text = String::new();
+    for position in mesh.positions() {
+        let _ = writeln!(text, "v {} {} {}", position.x, position.y, position.z);
+    }
+    for face in mesh.faces() {
+        let [a, b, c] = face.map(|vertex| vertex.index() + 1);
+        let _ = writeln!(text, "f {a} {b} {c}");
+    }
+    Ok(Model {
+        obj: text.into_bytes(),
+        directions: vec![
+            direction(bunny::LEFT_EAR, DVec3::NEG_Y),
+            direction(bunny::TAIL, DVec3::NEG_Y),
+        ],
+        note: "the model is a procedural animal with 6000 triangles",
+    })
+}
+
+/// The photograph of leaves, 64 or 256 pixels wide, where there is one, and a drawing elsewhere.
+pub(super) fn leaves(side: u32) -> Result<Picture> {
+    picture(
+        &format!("exemplars/leaves_cc0_{side}.png"),
+        drawings::scales,
+        side,
+    )
+}
+
+/// A photograph where there is one, and a drawing elsewhere.
+pub(super) fn picture(file: &str, drawing: Drawing, side: u32) -> Result<Picture> {
+    let path = data(file);
+    if !path.is_file() {
+        if !file.is_empty() {
+            eprintln!("synth: a drawing stands in for {file}, which is skipped");
+        }
+        return Ok(Picture {
+            image: draw(drawing, side)?,
+            is_photograph: false,
+        });
+    }
+    let image = read_image(&path, &Limits::default())?.color()?;
+    ensure!(
+        image.size() == [side; 2],
+        "{file} has {:?} pixels",
+        image.size()
+    );
+    Ok(Picture {
+        image,
+        is_photograph: true,
+    })
+}
+
+impl Picture {
+    /// For matching; nothing lies past its edges.
+    pub(super) fn exemplar(&self) -> Result<Exemplar> {
+        Ok(Exemplar::new(&self.image, Edges::Cut)?)
+    }
+
+    /// Which exemplar a row has.
+    pub(super) fn note(&self) -> &'static str {
+        if self.is_photograph {
+            "the exemplar is a photograph of leaves"
+        } else {
+            "the exemplar is a drawing of scales"
+        }
+    }
+}
+
+/// The exact search of the paper: the least distance wins.
+pub(super) fn exact(n_levels: usize) -> Options {
+    Options {
+        n_levels,
+        coherence: 0.0,
+        ..Options::default()
+    }
+}
+
+/// The sites of a model, with their directions and their order.
+pub(super) fn synthesizer(model: &Model, n_sites: usize, n_levels: usize) -> Result<Synthesizer> {
+    let surface = Surface::new(super::whole::read_obj(&model.obj)?)?;
+    let sites = HierarchyOptions {
+        n_sites,
+        n_levels,
+        ..HierarchyOptions::default()
+    };
+    Ok(Synthesizer::new(surface, &model.directions, &sites)?)
+}
+
+/// The number of sites of a texture, each of which must have a color; refuses one that is of few pixels.
+pub(super) fn count(texture: &SurfaceTexture) -> Result<usize> {
+    let mut sources: Vec<[u32; 2]> = texture.sources(0).collect();
+    let n_sites = sources.len();
+    sources.sort_unstable();
+    sources.dedup();
+    ensure!(sources.len() > 500, "all is of {} pixels", sources.len());
+    let values = texture.values(0);
+    ensure!(values.len() == 3 * n_sites, "a site has no color");
+    ensure!(
+        values.iter().all(|value| (0.0..=1.0).contains(value)),
+        "a color is none"
+    );
+    Ok(n_sites)
+}
+
+/// A file of the data beside the workspace, which need not be there.
+fn data(file: &str) -> PathBuf {
+    let crate_dir = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    crate_dir.join("../../../shared/data").join(file)
+}

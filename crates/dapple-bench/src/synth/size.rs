@@ -1,0 +1,145 @@
+//! Four times as many sites: the time and the memory of whole programs.
+//!
+//! Each size runs in a process of its own, this program with the hidden argument `--synthesize`, on one thread. Linux tells
+//! in a file how much memory a process had at most; elsewhere that row is left out.
+
+use super::scene::{N_SITES, count, exact, leaves, model, synthesizer};
+use crate::harness::Bench;
+use crate::report::{print, three_digits};
+use crate::row::{Case, Must, Unit};
+use anyhow::{Context as _, Result, ensure};
+use cpu_time::ThreadTime;
+use rayon::ThreadPoolBuilder;
+use std::process::Command;
+
+const SYNTHESIS: Case = Case {
+    group: "synth",
+    case: "synthesis, 1,048,576 sites",
+    peer: "ours, 262,144 sites",
+    unit: Unit::S,
+    must: Must::CostAtMost(4.4),
+    note: "",
+};
+
+const MEMORY: Case = Case {
+    case: "memory, 1,048,576 sites",
+    peer: "the limit of 600 MB",
+    unit: Unit::Megabytes,
+    must: Must::CostAtMost(1.0),
+    note: "the most that a process had that read the model, made sites and texture, and nothing else",
+    ..SYNTHESIS
+};
+
+/// What one process took.
+struct Took {
+    /// Seconds of processor time.
+    setup: f64,
+    synthesis: f64,
+    /// Bytes; 0 where that is not known.
+    memory: f64,
+}
+
+pub(super) fn run(bench: &mut Bench) -> Result<()> {
+    if !bench.wants_any(&[SYNTHESIS, MEMORY]) {
+        return Ok(());
+    }
+    let large = in_process(4 * N_SITES)?;
+    if bench.wants(&SYNTHESIS) {
+        let small = in_process(N_SITES)?;
+        let note = format!(
+            "one thread, 3 levels; points, graph, directions and sweep took {} s more beside {} s, which is {} times as \
+             much; {}; {}",
+            three_digits(large.setup),
+            three_digits(small.setup),
+            three_digits(large.setup / small.setup),
+            model()?.note,
+            leaves(64)?.note(),
+        );
+        bench.measured_with(&SYNTHESIS, large.synthesis, small.synthesis, note);
+    }
+    if large.memory == 0.0 {
+        eprintln!(
+            "synth: {}: skipped, this system does not tell it",
+            MEMORY.case
+        );
+    } else if bench.wants(&MEMORY) {
+        bench.measured(&MEMORY, large.memory, 600e6);
+    }
+    Ok(())
+}
+
+/// Runs this program with [`synthesize_here`].
+fn in_process(n_sites: usize) -> Result<Took> {
+    let program = std::env::current_exe()?;
+    let output = Command::new(&program)
+        .args(["--synthesize", &n_sites.to_string()])
+        .output()
+        .with_context(|| format!("running {}", program.display()))?;
+    ensure!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let text = String::from_utf8(output.stdout)?;
+    let numbers: Vec<f64> = text
+        .split_whitespace()
+        .map(str::parse)
+        .collect::<Result<_, _>>()?;
+    let [setup, synthesis, memory] = numbers[..] else {
+        anyhow::bail!("`{text}` is not three numbers");
+    };
+    Ok(Took {
+        setup,
+        synthesis,
+        memory,
+    })
+}
+
+/// Makes a texture of so many sites, and prints the seconds of its setup and of its synthesis, and the most memory.
+pub(crate) fn synthesize_here(n_sites: usize) -> Result<()> {
+    let one = ThreadPoolBuilder::new().num_threads(1).build()?;
+    let (setup, synthesis) = one.install(|| -> Result<_> {
+        let exemplar = leaves(64)?.exemplar()?;
+        let start = ThreadTime::now();
+        let sites = synthesizer(&model()?, n_sites, 3)?;
+        let setup = start.elapsed().as_secs_f64();
+        let start = ThreadTime::now();
+        let texture = sites.synthesize(&exemplar, &exact(3))?;
+        let synthesis = start.elapsed().as_secs_f64();
+        // Before the check, which needs memory of its own.
+        let memory = most_memory();
+        ensure!(count(&texture)? == n_sites, "a site is missing");
+        Ok((setup, (synthesis, memory)))
+    })?;
+    let (synthesis, memory) = synthesis;
+    print(&format!("{setup} {synthesis} {}\n", memory.unwrap_or(0.0)));
+    Ok(())
+}
+
+/// The most bytes of memory that this process had at a time.
+fn most_memory() -> Option<f64> {
+    #[expect(clippy::disallowed_methods, reason = "Linux tells it in a file")]
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    high_water(&text)
+}
+
+/// The `VmHWM` in the text of `/proc/self/status`, in bytes.
+fn high_water(status: &str) -> Option<f64> {
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: f64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kibibytes * 1024.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::high_water;
+
+    #[test]
+    fn high_water_is_in_bytes() {
+        let text = "Name:\tbench\nVmPeak:\t 900 kB\nVmHWM:\t     256 kB\nVmRSS:\t 12 kB\n";
+        assert_eq!(high_water(text), Some(262_144.0), "256 KiB");
+        assert_eq!(high_water("Name:\tbench\n"), None, "another system");
+    }
+}

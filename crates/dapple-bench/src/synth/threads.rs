@@ -1,0 +1,54 @@
+//! Two threads beside one.
+
+use super::scene::{N_SITES, exact, leaves, model, synthesizer};
+use super::whole;
+use crate::harness::Bench;
+use crate::row::{Case, Must, Unit};
+use anyhow::{Context as _, Result};
+use std::time::Duration;
+
+const SYNTHESIS: Case = Case {
+    group: "synth",
+    case: "synthesis on two threads, 262,144 sites",
+    peer: "ours, one thread",
+    unit: Unit::S,
+    must: Must::Faster(1.75),
+    note: "",
+};
+
+const WHOLE: Case = Case {
+    case: "whole run on two threads, 262,144 sites, map 2048×2048",
+    must: Must::Faster(1.6),
+    ..SYNTHESIS
+};
+
+/// The time of a row, unless three turns take longer.
+const BUDGET: Duration = Duration::from_secs(20);
+
+pub(super) fn run(bench: &mut Bench) -> Result<()> {
+    if !bench.wants_any(&[SYNTHESIS, WHOLE]) {
+        return Ok(());
+    }
+    let (model, exemplar) = (model()?, leaves(64)?.exemplar()?);
+    if bench.wants(&SYNTHESIS) {
+        let sites = synthesizer(&model, N_SITES, 3)?;
+        // Checked once, so that a run of the row cannot fail.
+        sites
+            .synthesize(&exemplar, &exact(3))
+            .context("synthesis")?;
+        bench.two_threads(
+            &SYNTHESIS,
+            BUDGET,
+            [None, None],
+            |made| *made = sites.synthesize(&exemplar, &exact(3)).ok(),
+            |one, two| one.is_some() && one == two,
+        )?;
+    }
+    bench.two_threads(
+        &WHOLE,
+        BUDGET,
+        [None, None],
+        |made| *made = whole::run(&model, &exemplar, &exact(3)).ok(),
+        |one, two| one.is_some() && one == two,
+    )
+}
