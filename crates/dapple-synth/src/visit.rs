@@ -106,7 +106,12 @@ impl<'a, G: Ground> Visit<'a, G> {
         for (row, &pixel) in (0..).zip(&candidates.pixels) {
             rows[pixel as usize] = row;
         }
-        let [same, coarser] = [Reads::Same, Reads::Coarser].map(|reads| half_of(pass, reads));
+        let same = half_of(pass, Reads::Same);
+        // All of it, since its middle says which pixels continue the coarser level.
+        let coarser = half_of(pass, Reads::Coarser).map(|half| Half {
+            rows: Rows::All,
+            ..half
+        });
         let terms = terms_of(
             pass,
             [same, coarser].map(|half| half.map_or(0, |half| half.half)),

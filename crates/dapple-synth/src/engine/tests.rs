@@ -179,7 +179,6 @@ fn passes_are_those_of_the_pseudo_code() {
         };
         let mut started = vec![LevelTexture::default(); 2];
         super::fill_randomly(&ground, &pyramid, 1, options.seed, &mut started);
-        let passes: Vec<Pass> = schedule.passes.clone();
         let expected = pseudo_code(&ground, &pyramid, &schedule.passes, &options, &started);
         let found = run(&ground, &pyramid, &options, &mut go_on).unwrap();
         assert!(

@@ -103,11 +103,14 @@ impl Case {
     fn mix(&self, level: usize, position: DVec3, normal: DVec3, column: &[f32]) -> Option<f64> {
         let radius = self.hierarchy.levels()[level].spacing() * INTERPOLATION_RADIUS;
         let (mut sum, mut weights) = (0.0, 0.0);
-        for site in 0..self.hierarchy.levels()[level].n_sites() {
-            let x = self.hierarchy.sites().positions()[site].distance(position) / radius;
-            if x < 1.0 && self.hierarchy.sites().normals()[site].dot(normal) >= 0.0 {
+        let n_sites = self.hierarchy.levels()[level].n_sites();
+        for (site, &value) in self.hierarchy.sites().iter().zip(&column[..n_sites]) {
+            let at = self.hierarchy.sites().positions()[site.index()];
+            let opposed = self.hierarchy.sites().normals()[site.index()].dot(normal) < 0.0;
+            let x = at.distance(position) / radius;
+            if x < 1.0 && !opposed {
                 let weight = (2.0 * x - 3.0) * x * x + 1.0;
-                sum += weight * f64::from(column[site]);
+                sum += weight * f64::from(value);
                 weights += weight;
             }
         }
