@@ -4,6 +4,9 @@
 //! what was matched. All maps that are baked with one [`Atlas`] fit together texel by texel.
 //!
 //! Texels without a face, which only coarse levels of a mipmap can show, have the mean of all sites.
+//!
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 6; the tangent
+//! frame is that of glTF 2.0.
 
 use crate::{Atlas, SynthError, SynthErrorKind, Synthesizer, bake};
 use dapple_color::{Code, LinearRgb};
