@@ -6,9 +6,9 @@
 //!
 //! A texel's frame is that of glTF 2.0: N is the normal of the smooth surface (the mixed normals of the vertices), T the
 //! tangent along +u at a right angle to it, and B = ± N × T points to the top of the map, with the sign that says whether
-//! the face is mirrored there. T is what programs work out when a file has no tangents: see
-//! [`Atlas`](crate::Atlas). Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis,
-//! University of Copenhagen, 2008.
+//! the face is mirrored there. T is what programs work out when a file has no tangents.
+//!
+//! Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis, University of Copenhagen, 2008.
 
 use crate::atlas::Tangents;
 use crate::maps::{check_column, check_finite};

@@ -1,5 +1,7 @@
 //! Heights that move a mesh: displaced along the normals, not only shaded.
 //!
+//! Reference: our own.
+//!
 //! Units: heights times the scale are lengths in units of the mesh; positive ones go out. A mesh shows only heights that
 //! change more slowly than its edges are long: the triangles of the sites show all, those of the input often do not.
 

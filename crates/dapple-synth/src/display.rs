@@ -1,6 +1,6 @@
 //! The paper's two displays as models for files: the sites with their colors, and the input mesh with a texture map.
 //!
-//! Source: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 6, <https://doi.org/10.1145/383259.383297>.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 6, <https://doi.org/10.1145/383259.383297>.
 //! `M_1` is a graph and no mesh; [`Hierarchy::triangles`](dapple_mesh::Hierarchy::triangles) says how triangles are made
 //! of it. The fields of a [`Model`] may be changed: its mesh for one that is [displaced](crate::displaced_mesh), say.
 

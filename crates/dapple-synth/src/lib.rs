@@ -84,9 +84,9 @@
 //!
 //! # Reproducibility
 //!
-//! Everything follows from the inputs and one [`Seed`](dapple_hash::Seed). Results have the same bits on every machine, with every set of
-//! vector instructions, and on any number of threads: sites are worked on at the same time only if they do not read each
-//! other.
+//! Everything follows from the inputs, of which two are seeds: that of the sites and that of [`Options`]. Results have the
+//! same bits on every machine, with every set of vector instructions, and on any number of threads: sites are worked on at
+//! the same time only if they do not read each other.
 
 #![forbid(unsafe_code)]
 

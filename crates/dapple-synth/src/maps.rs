@@ -3,6 +3,8 @@
 //! [`SurfaceTexture::transfer`](crate::SurfaceTexture::transfer) makes the columns: any map of the exemplar's size follows
 //! what was matched. All maps that are baked with one [`Atlas`] fit together texel by texel.
 //!
+//! Reference: our own; [`bake()`] has that of baking.
+//!
 //! Texels without a face, which only coarse levels of a mipmap can show, have the mean of all sites.
 //!
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 6; the tangent

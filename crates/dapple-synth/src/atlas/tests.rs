@@ -1,7 +1,8 @@
 //! Layouts on small meshes.
 
-use super::{Atlas, NONE, PADDING, weights};
+use super::{Atlas, NONE, PADDING, Tangents, weights};
 use crate::SynthErrorKind;
+use crate::shapes::{cap, moved, square};
 use dapple_mesh::{FaceIdx, Mesh, Surface};
 use glam::{DVec2, DVec3};
 
@@ -257,30 +258,24 @@ fn padding_of_an_own_layout_ends_where_the_map_is_full() {
 }
 
 #[test]
-fn own_layout_has_no_gaps_between_faces() {
-    // Four faces of a fan whose edges go through centers of texels, at places that are not exact in binary.
-    let apex = DVec3::new(0.3, 0.3, 0.0);
-    let positions = vec![
-        apex,
-        DVec3::ZERO,
-        DVec3::X,
-        DVec3::new(1.0, 1.0, 0.0),
-        DVec3::Y,
+fn own_layout_has_no_gap_where_an_edge_goes_through_the_center_of_a_texel() {
+    // By rounding, the center of texel (3, 3) is a little outside of both.
+    let [p, q] = [
+        DVec2::new(0.32, 0.53),
+        DVec2::new(0.5549999999999999, 0.345),
     ];
-    let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
-    let surface = Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap();
-    let uvs: Vec<[DVec2; 3]> = (0..4)
-        .map(|face| {
-            surface
-                .mesh()
-                .corners(FaceIdx(face))
-                .map(|at| at.truncate())
-        })
-        .collect();
-    for side in [5, 15, 35, 45, 115] {
-        let atlas = Atlas::from_uvs(&surface, &uvs, [side, side], 0).unwrap();
-        assert_eq!(atlas.coverage(), 1.0, "{side}");
+    let above = DVec2::new(0.53, 0.5549999999999999);
+    let below = DVec2::new(0.345, 0.32000000000000006);
+    let center = DVec2::splat(3.5);
+    for face in [[above, p, q], [q, p, below]] {
+        let least = weights(face.map(|uv| uv * 8.0), center).map(|weight| weight < 0.0);
+        assert!(least.contains(&true), "the case: {face:?}");
     }
+    let positions = [above, p, q, below].map(|uv| DVec3::new(uv.x, 1.0 - uv.y, 0.0));
+    let mesh = Mesh::new(positions.to_vec(), &[[0, 1, 2], [2, 1, 3]]).unwrap();
+    let surface = Surface::new(mesh).unwrap();
+    let atlas = Atlas::from_uvs(&surface, &[[above, p, q], [q, p, below]], [8, 8], 0).unwrap();
+    assert_eq!(atlas.face([3, 3]), Some(FaceIdx(0)));
 }
 
 #[test]
@@ -304,4 +299,70 @@ fn texels_beside_a_sliver_are_on_the_surface() {
             assert!(weights.iter().all(|&weight| weight > -1e-6), "{weights:?}");
         }
     }
+}
+
+/// The places of the vertices of a mesh above the unit square.
+fn from_above(surface: &Surface) -> Vec<[DVec2; 3]> {
+    let faces = 0..surface.mesh().faces().len() as u32;
+    let place = |at: DVec3| DVec2::new(at.x, 1.0 - at.y);
+    faces
+        .map(|face| surface.mesh().corners(FaceIdx(face)).map(place))
+        .collect()
+}
+
+#[test]
+fn padding_continues_the_plane_up_to_its_border() {
+    let surface = Surface::new(square()).unwrap();
+    let atlas = Atlas::uniform_padded(&surface, 128, 3).unwrap();
+    let mut met = 0;
+    for row in 0..128 {
+        for column in 0..128 {
+            let Some(face) = atlas.face([column, row]) else {
+                continue;
+            };
+            let [a, b, c] = surface.mesh().corners(face);
+            let center = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
+            let [of_a, of_b, of_c] = weights(atlas.corners[face.index()], center);
+            let want = a * of_a + b * of_b + c * of_c;
+            let point = atlas.point(&surface, [column, row]).unwrap();
+            let at = surface.position(point);
+            if want.min(DVec3::ONE - want).truncate().min_element() >= 0.0 {
+                assert!(at.distance(want) < 1e-12, "{at} for {want}");
+            } else {
+                met += 1;
+                let nearest = at.min(DVec3::ONE - at).truncate().min_element();
+                assert!(
+                    nearest.abs() < 1e-12,
+                    "{at} for {want} is not on the border"
+                );
+            }
+        }
+    }
+    assert!(met > 100, "only {met} texels lie past the border");
+}
+
+#[test]
+fn tangents_do_not_jump_across_the_edges_of_a_continuous_layout() {
+    let mesh = moved(&cap(), |at| at + DVec3::new(0.5, 0.5, 0.0));
+    let surface = Surface::new(mesh).unwrap();
+    let atlas = Atlas::from_uvs(&surface, &from_above(&surface), [200, 200], 0).unwrap();
+    let tangents = Tangents::new(&surface, &atlas);
+    let mut jumps = 0;
+    for row in 0..200 {
+        for column in 1..200 {
+            let pair = [[column - 1, row], [column, row]];
+            let [Some(left), Some(right)] = pair.map(|texel| atlas.face(texel)) else {
+                continue;
+            };
+            let [[a, up], [b, _]] = pair.map(|texel| {
+                let point = atlas.point(&surface, texel).unwrap();
+                tangents.frame(&atlas, texel, surface.normal(point))
+            });
+            // A texel is 1/25 of a face of the cap, over which normals turn by less than 0.2.
+            assert!(a.distance(b) < 0.02, "{a} beside {b}");
+            assert!(up.y > 0.5 && a.x > 0.5, "{a} and {up} are right and up");
+            jumps += usize::from(left != right);
+        }
+    }
+    assert!(jumps > 500, "only {jumps} edges are crossed");
 }
