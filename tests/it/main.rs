@@ -6,6 +6,7 @@ mod figures;
 mod golden;
 mod readme;
 mod seams;
+mod surfaces;
 mod tiles;
 
 /// The result of `work` in a pool of `n` threads.
