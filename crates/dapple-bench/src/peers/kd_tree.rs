@@ -165,3 +165,52 @@ fn orthonormalize(vectors: &mut [Vec<f64>]) {
         vector.iter_mut().for_each(|part| *part /= length);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dapple_hash::{Seed, hash1, unit_f32};
+
+    #[test]
+    fn nearest_is_that_of_all_rows() {
+        let dims = 24;
+        let values = |n: i64, seed| -> Vec<f32> {
+            (0..n)
+                .map(|at| unit_f32(hash1(Seed(seed), [at], 0) as u32))
+                .collect()
+        };
+        let (rows, queries) = (values(500 * 24, 1), values(40 * 24, 2));
+        let tree = KdTree::new(dims, &rows, Directions::<8>::principal(dims, &rows)).unwrap();
+        for query in queries.chunks_exact(dims) {
+            let distances: Vec<f32> = rows
+                .chunks_exact(dims)
+                .map(|row| distance_sq(query, row))
+                .collect();
+            let found = distances[tree.nearest(query) as usize];
+            assert!(
+                distances.iter().all(|&distance| found <= distance),
+                "{found} is not least"
+            );
+        }
+    }
+
+    #[test]
+    fn directions_are_orthonormal() {
+        let rows: Vec<f32> = (0..300 * 9)
+            .map(|at| unit_f32(hash1(Seed(3), [at], 0) as u32))
+            .collect();
+        let directions = Directions::<8>::principal(9, &rows);
+        for a in 0..8 {
+            for b in 0..8 {
+                let dot: f32 = directions
+                    .parts
+                    .iter()
+                    .map(|parts| parts[a] * parts[b])
+                    .sum();
+                let expected = if a == b { 1.0 } else { 0.0 };
+                // Parts are rounded to f32.
+                assert!((dot - expected).abs() < 1e-5, "{a} and {b}: {dot}");
+            }
+        }
+    }
+}

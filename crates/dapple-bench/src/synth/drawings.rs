@@ -81,12 +81,14 @@ pub(super) fn weave(at: DVec2) -> [f64; 3] {
     let cell = scaled.floor();
     let place = scaled - cell - 0.5;
     let over = (cell.x + cell.y) as i64 % 2 == 0;
-    let [across, along] = if over {
-        [place.y, place.x]
+    let [across, along, strand] = if over {
+        [place.y, place.x, cell.y]
     } else {
-        [place.x, place.y]
+        [place.x, place.y, cell.x]
     };
-    let shade = (1.0 - 3.2 * across * across) * (1.0 - 1.2 * along * along);
+    // Each strand has a shade of its own, or all copies of two strands would be the same.
+    let strand = roll([(strand as i64).rem_euclid(8), i64::from(over)], 10);
+    let shade = (0.7 + 0.4 * strand) * (1.0 - 3.2 * across * across) * (1.0 - 1.2 * along * along);
     let color = if over {
         [215.0, 170.0, 90.0]
     } else {
@@ -100,11 +102,13 @@ pub(super) fn weave(at: DVec2) -> [f64; 3] {
 
 /// Lines of letters that nobody can read.
 pub(super) fn text(at: DVec2) -> [f64; 3] {
-    let [columns, lines] = [22.0, 14.0];
-    let scaled = DVec2::new(at.x * columns, at.y * lines);
+    let scaled = at * DVec2::new(22.0, 14.0);
     let letter = scaled.floor();
-    let cell = [letter.x as i64, letter.y as i64];
-    // Four by five places, of which the outer ones are left out.
+    let cell = [
+        (letter.x as i64).rem_euclid(22),
+        (letter.y as i64).rem_euclid(14),
+    ];
+    // Three by five places, and a gap to the right and below.
     let place = ((scaled - letter) * DVec2::new(4.0, 6.0)).floor();
     let inside = place.x < 3.0 && place.y < 5.0;
     // One of 24 letters; one in six is a space.
@@ -204,4 +208,43 @@ fn wave(at: f64) -> f64 {
 fn mix(a: [f64; 3], b: [f64; 3], part: f64) -> [f64; 3] {
     let part = part.clamp(0.0, 1.0);
     [0, 1, 2].map(|channel| a[channel] + (b[channel] - a[channel]) * part)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DRAWINGS: [(&str, Drawing); 6] = [
+        ("checker", checker),
+        ("suckers", suckers),
+        ("scales", scales),
+        ("weave", weave),
+        ("text", text),
+        ("puzzle", puzzle),
+    ];
+
+    #[test]
+    fn drawings_repeat() {
+        for (name, drawing) in DRAWINGS {
+            for step in 0..100 {
+                // None of these lies where rounding could take it over an edge of what is drawn.
+                let at = DVec2::new(0.0371, 0.0213) * f64::from(step) + 0.0017;
+                let at = at - at.floor();
+                let [here, there] = [at, at + 1.0].map(drawing);
+                let same = here.iter().zip(there).all(|(a, b)| (a - b).abs() < 1e-6);
+                assert!(same, "{name} has {here:?} and {there:?} at {at}");
+            }
+        }
+    }
+
+    #[test]
+    fn drawings_have_much_to_synthesize_from() {
+        for (name, drawing) in DRAWINGS {
+            let picture = draw(drawing, 64).unwrap();
+            let light = |color: &LinearRgb| color.to_srgb::<u8>()[1];
+            let dark = picture.pixels().iter().filter(|color| light(color) < 110);
+            let part = dark.count() as f64 / picture.pixels().len() as f64;
+            assert!((0.02..0.98).contains(&part), "{name} is dark in {part}");
+        }
+    }
 }

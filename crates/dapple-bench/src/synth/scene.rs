@@ -138,7 +138,7 @@ pub(super) fn count(texture: &SurfaceTexture) -> Result<usize> {
     let n_sites = sources.len();
     sources.sort_unstable();
     sources.dedup();
-    ensure!(sources.len() > 500, "all is of {} pixels", sources.len());
+    ensure!(sources.len() > 400, "all is of {} pixels", sources.len());
     let values = texture.values(0);
     ensure!(values.len() == 3 * n_sites, "a site has no color");
     ensure!(

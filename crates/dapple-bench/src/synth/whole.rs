@@ -65,3 +65,34 @@ pub(super) fn read_obj(bytes: &[u8]) -> Result<Mesh> {
     let (mesh, _) = Mesh::new(positions, &faces)?.repair();
     Ok(mesh)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::read_obj;
+
+    #[test]
+    fn read_obj_makes_fans_of_faces() {
+        let text = "# a pyramid\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1\nvt 0 0\n\
+                    f 4/1 3/1 2/1 1/1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+        let mesh = read_obj(text.as_bytes()).unwrap();
+        assert_eq!(
+            (mesh.positions().len(), mesh.faces().len()),
+            (5, 6),
+            "the square is two triangles"
+        );
+        assert_eq!(mesh.report().boundary_edges, 0, "it is closed");
+    }
+
+    #[test]
+    fn read_obj_refuses_what_is_no_number() {
+        for text in [
+            "v 0 0",
+            "v 0 0 x",
+            "v 0 0 0\nf 1 2 3",
+            "v 0 0 0\nf 1 0 1",
+            "f a b c",
+        ] {
+            assert!(read_obj(text.as_bytes()).is_err(), "{text}");
+        }
+    }
+}
