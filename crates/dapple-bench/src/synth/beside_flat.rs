@@ -85,7 +85,7 @@ fn small(bench: &mut Bench) -> Result<()> {
     let whole: Job<'_> = Box::new(|| {
         let written = whole::run(&model, &exemplar, &exact(3))?;
         ensure!(written.coverage > 0.9, "the map is empty");
-        ensure!(written.png.len() > 1_000_000, "the map is flat");
+        ensure!(written.glb.len() > 1_000_000, "the map is flat");
         Ok(N_SITES)
     });
     let rows = [

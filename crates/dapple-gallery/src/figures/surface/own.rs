@@ -8,7 +8,7 @@ use dapple_color::LinearRgb;
 use dapple_image::{Transfer, encode_png};
 use dapple_raster::Raster;
 use dapple_synth::mesh::{EncodedImage, HierarchyOptions, Mesh, Model};
-use dapple_synth::{Direction, Edges};
+use dapple_synth::{Direction, Edges, textured_model};
 use glam::DVec3;
 
 /// What is to be put on what, and how.
@@ -101,12 +101,12 @@ fn views(mesh: &Mesh) -> [(&'static str, View); 4] {
 
 /// The mesh with its map as an embedded PNG.
 fn model(textured: &Textured) -> Result<Model> {
-    let mesh = textured.synthesizer.surface().mesh().clone();
     let codes = textured.map.map(|color| color.to_srgb::<u8>());
     let png = encode_png(codes.view(), Transfer::Srgb)?;
-    let mut model = Model::from(mesh);
-    model.normals = Some(model.mesh.vertex_normals());
-    model.uvs = Some(textured.uvs.clone());
-    model.material.base_color = Some(EncodedImage::new(png)?);
-    Ok(model)
+    let surface = textured.synthesizer.surface();
+    Ok(textured_model(
+        surface,
+        &textured.atlas,
+        EncodedImage::new(png)?,
+    )?)
 }

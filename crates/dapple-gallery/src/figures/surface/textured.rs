@@ -26,7 +26,8 @@ pub(super) struct Job {
 pub(super) struct Textured {
     pub(super) synthesizer: Synthesizer,
     pub(super) map: Raster<LinearRgb>,
-    pub(super) uvs: Vec<[DVec2; 3]>,
+    pub(super) atlas: Atlas,
+    uvs: Vec<[DVec2; 3]>,
 }
 
 impl Job {
@@ -53,6 +54,7 @@ impl Job {
         Ok(Textured {
             map: map.map(|codes| srgb(*codes)),
             uvs: atlas.uvs(),
+            atlas,
             synthesizer,
         })
     }
