@@ -49,7 +49,7 @@ fn texels_are_those_of_plain_interpolation() {
                 continue;
             };
             shown += 1;
-            let normal = surface.face_normal(point.face);
+            let normal = surface.normal(point);
             let plain = hierarchy.interpolate(0, &pairs, surface.position(point), normal);
             let plain = plain.unwrap().unwrap();
             // Positions are rounded to f32, 1e-6 of a radius here.

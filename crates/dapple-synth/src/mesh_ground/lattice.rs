@@ -25,7 +25,7 @@ pub(crate) struct Row {
     pub(crate) first_column: usize,
     /// How many lanes are used.
     pub(crate) n_lanes: usize,
-    /// x, y and z relative to the middle of the square, and of the normals of the faces.
+    /// x, y and z relative to the middle of the square, and of the normals.
     pub(crate) lanes: [[f32; LANES]; 6],
 }
 
@@ -85,7 +85,9 @@ impl Lattice {
         for (number, points) in points.chunks(LANES).enumerate() {
             self.rows.push(Row::new(0, number * LANES, points.len()));
             for (lane, &point) in points.iter().enumerate() {
-                self.put(surface, point, 0, number * LANES + lane, center);
+                // The smooth normal, which does not change from face to face.
+                let normal = surface.normal(point);
+                self.put(surface, (point, normal), [0, number * LANES + lane], center);
             }
         }
     }
@@ -123,14 +125,22 @@ impl Lattice {
         let half = square.half;
         let last = *square.range().end();
         if last >= 0 {
-            self.put(surface, start.point, half as usize, column, center);
+            let normal = surface.face_normal(start.point.face);
+            self.put(
+                surface,
+                (start.point, normal),
+                [half as usize, column],
+                center,
+            );
         }
         for (way, n_steps) in [(-1, half), (1, last)] {
             let (mut point, mut direction) = (start.point, start.direction * f64::from(way));
             for step in 1..=n_steps {
                 let walk = surface.walk(point, direction, spacing);
                 (point, direction) = (walk.point, walk.direction);
-                self.put(surface, point, (half + way * step) as usize, column, center);
+                let normal = surface.face_normal(point.face);
+                let row = (half + way * step) as usize;
+                self.put(surface, (point, normal), [row, column], center);
             }
         }
     }
@@ -139,13 +149,12 @@ impl Lattice {
     fn put(
         &mut self,
         surface: &Surface,
-        point: SurfacePoint,
-        row: usize,
-        column: usize,
+        (point, normal): (SurfacePoint, DVec3),
+        [row, column]: [usize; 2],
         center: DVec3,
     ) {
         let position = (surface.position(point) - center).as_vec3();
-        let normal = surface.face_normal(point.face).as_vec3();
+        let normal = normal.as_vec3();
         let blocks = self.side.div_ceil(LANES);
         let row = &mut self.rows[row * blocks + column / LANES];
         let lane = column % LANES;
