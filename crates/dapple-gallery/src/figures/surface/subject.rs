@@ -6,8 +6,8 @@ use super::textured::{Job, Textured};
 use anyhow::{Context, Result};
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
-use dapple_synth::Direction;
 use dapple_synth::mesh::{HierarchyOptions, Mesh, MeshError, models};
+use dapple_synth::{Direction, Options};
 use glam::DVec3;
 
 /// The size of a figure from which on a subject has as many sites as the paper's.
@@ -29,7 +29,6 @@ pub(super) struct Subject {
     /// Sites of the finest level at full size, and levels: those of table 1.
     n_sites: usize,
     n_levels: usize,
-    coherence: f32,
     /// Positions, and the directions there that are the texture's down.
     directions: &'static [[DVec3; 2]],
     pub(super) view: View,
@@ -45,7 +44,6 @@ pub(super) const RAY: Subject = Subject {
     exemplar: "wiggly checker",
     n_sites: 64_000,
     n_levels: 3,
-    coherence: 0.0,
     directions: &[
         [DVec3::new(0.15, 0.1, 0.75), DVec3::new(0.9, 0.0, -0.6)],
         [DVec3::new(-0.15, 0.1, 0.75), DVec3::new(-0.9, 0.0, -0.6)],
@@ -69,7 +67,6 @@ const OCTOPUS: Subject = Subject {
     exemplar: "suckers",
     n_sites: 256_000,
     n_levels: 3,
-    coherence: 1.0,
     directions: &[
         [DVec3::new(0.0, 0.5, 0.4), DVec3::NEG_Y],
         [DVec3::new(0.0, 0.5, -0.6), DVec3::NEG_Y],
@@ -96,7 +93,6 @@ const BUNNY: Subject = Subject {
     exemplar: "scales",
     n_sites: 256_000,
     n_levels: 3,
-    coherence: 1.0,
     directions: &[
         [models::bunny::LEFT_EAR, DVec3::NEG_Y],
         [DVec3::new(-0.25, 1.05, -0.05), DVec3::NEG_Y],
@@ -121,7 +117,6 @@ pub(super) const TORI: Subject = Subject {
     exemplar: "woven hooks",
     n_sites: 256_000,
     n_levels: 4,
-    coherence: 1.0,
     directions: &[
         [DVec3::new(0.55, 0.55, 0.2), DVec3::new(-1.0, 1.0, 0.0)],
         [DVec3::new(-0.55, -0.55, 0.2), DVec3::new(1.0, -1.0, 0.0)],
@@ -144,7 +139,6 @@ const ZEBRA: Subject = Subject {
     exemplar: "text",
     n_sites: 256_000,
     n_levels: 4,
-    coherence: 1.0,
     directions: &[
         [models::zebra::BACK, DVec3::X],
         [DVec3::new(0.4, 0.0, 0.0), DVec3::NEG_Y],
@@ -165,7 +159,6 @@ const ELEPHANT: Subject = Subject {
     exemplar: "puzzle pieces",
     n_sites: 256_000,
     n_levels: 4,
-    coherence: 1.0,
     directions: &[
         [models::elephant::BACK, DVec3::NEG_Z],
         [models::elephant::FOREHEAD, DVec3::new(0.0, -1.0, 0.5)],
@@ -222,7 +215,7 @@ impl Subject {
             edges,
             directions: self.directions(),
             sites: self.sites(size),
-            coherence: self.coherence,
+            coherence: Options::default().coherence,
             map_side: (TEXELS * size).max(512),
         };
         job.run()
