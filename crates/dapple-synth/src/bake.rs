@@ -4,6 +4,7 @@
 //! also read the neighborhoods.
 
 use crate::atlas::Atlas;
+use crate::columns;
 use crate::ground::Samples;
 use crate::mesh_ground::{Interpolation, Lattice, Nearby, interpolate};
 use crate::{SynthError, SynthErrorKind};
@@ -62,13 +63,7 @@ pub fn bake<const N: usize>(
         let rows = band * BLOCK..((band + 1) * BLOCK).min(size[1]);
         baker.bake_rows::<N>(rows, background)
     };
-    #[cfg(feature = "rayon")]
-    let bands: Vec<Vec<[f32; N]>> = {
-        use rayon::prelude::*;
-        (0..n_bands).into_par_iter().map(band).collect()
-    };
-    #[cfg(not(feature = "rayon"))]
-    let bands: Vec<Vec<[f32; N]>> = (0..n_bands).map(band).collect();
+    let bands = columns::tasks(n_bands as usize, |number| band(number as u32));
     Ok(Raster::from_vec(size, bands.concat())?)
 }
 

@@ -1,4 +1,4 @@
-//! Columns computed row by row, on all cores where the feature `rayon` is on; the bits do not depend on the cores.
+//! Columns computed row by row, and other tasks, on all cores where the feature `rayon` is on; the bits do not depend on the cores.
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
@@ -6,6 +6,14 @@ use rayon::prelude::*;
 /// Rows that one task takes at least: less would not pay for handing it over. Also the length of the blocks in which
 /// [`sum`] adds.
 const BLOCK: usize = 1024;
+
+/// What `make` gives for each number below `count`, in order; each is worth a task of its own.
+pub(crate) fn tasks<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    #[cfg(feature = "rayon")]
+    return (0..count).into_par_iter().map(make).collect();
+    #[cfg(not(feature = "rayon"))]
+    return (0..count).map(make).collect();
+}
 
 /// The column whose rows are those of `row`.
 pub(crate) fn column<T: Send>(n_rows: usize, row: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
@@ -62,12 +70,7 @@ pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync + Send) -> f6
         }
         sum
     };
-    let n_blocks = n_rows.div_ceil(BLOCK);
-    #[cfg(feature = "rayon")]
-    let sums: Vec<f64> = (0..n_blocks).into_par_iter().map(block).collect();
-    #[cfg(not(feature = "rayon"))]
-    let sums: Vec<f64> = (0..n_blocks).map(block).collect();
-    sums.into_iter().sum()
+    tasks(n_rows.div_ceil(BLOCK), block).into_iter().sum()
 }
 
 /// Whether something holds for every row.

@@ -12,7 +12,6 @@ mod distance;
 mod jacobi;
 mod lattice;
 mod margin;
-mod parallel;
 mod search;
 #[cfg(test)]
 mod tests;

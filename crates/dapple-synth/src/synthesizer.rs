@@ -111,18 +111,22 @@ impl Synthesizer {
             }));
         }
         let pyramid = exemplar.pyramid(options.n_levels)?;
-        let ground = MeshGround {
-            surface: &self.surface,
-            hierarchy: &self.hierarchy,
-            orientation: &self.orientation,
-            sweep: &self.sweep,
-        };
-        let levels = engine::run(&ground, &pyramid, options, &mut callback)?;
+        let levels = engine::run(&self.ground(), &pyramid, options, &mut callback)?;
         Ok(SurfaceTexture {
             levels,
             sizes: pyramid.levels().iter().map(Exemplar::size).collect(),
             n_channels: exemplar.n_channels,
         })
+    }
+
+    /// What the texture grows on.
+    pub(crate) fn ground(&self) -> MeshGround<'_> {
+        MeshGround {
+            surface: &self.surface,
+            hierarchy: &self.hierarchy,
+            orientation: &self.orientation,
+            sweep: &self.sweep,
+        }
     }
 
     /// The surface.

@@ -4,7 +4,7 @@ use crate::engine::LevelTexture;
 use crate::ground::{Ground, Rows, Samples, Square};
 use crate::groups::Groups;
 use crate::neighborhood::{Pass, Reads, Shape};
-use crate::{Candidates, Edges, Matcher, MatcherMemory, Options, Pyramid, SynthError, distance_sq};
+use crate::{Candidates, Matcher, MatcherMemory, Options, Pyramid, SynthError, distance_sq};
 use std::sync::{Mutex, PoisonError};
 
 /// The most sites between two calls of the callback.
@@ -20,13 +20,10 @@ pub(crate) struct Visit<'a, G: Ground> {
     prepared: G::Prepared,
     level: usize,
     n_channels: usize,
-    size: [u32; 2],
-    edges: Edges,
+    width: u32,
     coarser_width: u32,
     pixels: &'a [f32],
     candidates: Candidates,
-    /// The row of every pixel of the level.
-    rows: Vec<u32>,
     matcher: Matcher,
     coherence: f32,
     /// Where the values of a query come from.
@@ -102,10 +99,6 @@ impl<'a, G: Ground> Visit<'a, G> {
     ) -> Result<Self, SynthError> {
         let candidates = Candidates::new(pyramid, pass, options.center)?;
         let exemplar = &pyramid.levels()[pass.level];
-        let mut rows = vec![NOWHERE; exemplar.size[0] as usize * exemplar.size[1] as usize];
-        for (row, &pixel) in (0..).zip(&candidates.pixels) {
-            rows[pixel as usize] = row;
-        }
         let same = half_of(pass, Reads::Same);
         // All of it, since its middle says which pixels continue the coarser level.
         let coarser = half_of(pass, Reads::Coarser).map(|half| Half {
@@ -125,8 +118,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             ),
             level: pass.level,
             n_channels: exemplar.n_channels,
-            size: exemplar.size,
-            edges: exemplar.edges,
+            width: exemplar.size[0],
             coarser_width: pyramid
                 .levels()
                 .get(pass.level + 1)
@@ -134,7 +126,6 @@ impl<'a, G: Ground> Visit<'a, G> {
             pixels: &exemplar.pixels,
             matcher: Matcher::new(candidates.dims, &candidates.rows),
             candidates,
-            rows,
             coherence: options.coherence,
             terms,
             same,
@@ -251,7 +242,7 @@ impl<'a, G: Ground> Visit<'a, G> {
                 let half = self.coarser.map_or(0, |half| half.half);
                 keep.copy(at, &worker.coarser, 2 * half as usize + 1, self.n_channels);
             }
-            *row = self.best_row(worker, state);
+            *row = self.best_row(worker);
         }
     }
 
@@ -320,7 +311,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             }
             let source = sources[nearest as usize];
             if source != NOWHERE {
-                let [x, y] = [source % self.size[0], source / self.size[0]].map(i64::from);
+                let [x, y] = [source % self.width, source / self.width].map(i64::from);
                 self.add_coherent([x - i64::from(i), y - i64::from(j)], coherent);
             }
         }
@@ -347,21 +338,15 @@ impl<'a, G: Ground> Visit<'a, G> {
 
     /// Adds the row of a pixel, if there is one and it is not yet there.
     fn add_coherent(&self, pixel: [i64; 2], coherent: &mut Vec<u32>) {
-        let [width, height] = self.size.map(i64::from);
-        let [x, y] = match self.edges {
-            Edges::Wrap => [pixel[0].rem_euclid(width), pixel[1].rem_euclid(height)],
-            Edges::Cut => pixel,
-        };
-        if (0..width).contains(&x) && (0..height).contains(&y) {
-            let row = self.rows[(y * width + x) as usize];
-            if row != NOWHERE && !coherent.contains(&row) {
-                coherent.push(row);
-            }
+        if let Some(row) = self.candidates.row_of_pixel(pixel)
+            && !coherent.contains(&row)
+        {
+            coherent.push(row);
         }
     }
 
     /// The row that the site takes: the nearest one, or a coherent one that is not much farther.
-    fn best_row(&self, worker: &mut Worker<G::Memory>, _: &State<'_>) -> u32 {
+    fn best_row(&self, worker: &mut Worker<G::Memory>) -> u32 {
         let Worker {
             query,
             coherent,

@@ -5,13 +5,13 @@ use crate::ground::{Ground, Rows, Samples, Square};
 use crate::mesh_ground::MeshGround;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::{
-    Candidates, Edges, Exemplar, Options, Orientation, Pyramid, Schedule, Shape, Sweep,
-    SynthErrorKind, distance_sq,
+    Candidates, Edges, Exemplar, Options, Pyramid, Schedule, Shape, SynthErrorKind, Synthesizer,
+    distance_sq,
 };
 use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
 use dapple_hash::{Seed, hash2, unit_f32};
-use dapple_mesh::{Hierarchy, HierarchyOptions, Surface};
+use dapple_mesh::{HierarchyOptions, Surface};
 use dapple_raster::Raster;
 
 /// Stripes and noise, 16 pixels square.
@@ -24,41 +24,16 @@ fn pyramid(edges: Edges, n_levels: usize) -> Pyramid {
     exemplar.pyramid(n_levels).unwrap()
 }
 
-struct Case {
-    surface: Surface,
-    hierarchy: Hierarchy,
-    orientation: Orientation,
-    sweep: Sweep,
-}
-
-impl Case {
-    fn new(n_sites: usize) -> Self {
-        let surface = Surface::new(crate::shapes::sphere()).unwrap();
-        let options = HierarchyOptions {
-            n_sites,
-            n_levels: 2,
-            seed: Seed(1),
-            ..HierarchyOptions::default()
-        };
-        let hierarchy = Hierarchy::new(&surface, &options).unwrap();
-        let orientation = Orientation::new(&hierarchy, &[]).unwrap();
-        let sweep = Sweep::new(&hierarchy, &orientation, None).unwrap();
-        Self {
-            surface,
-            hierarchy,
-            orientation,
-            sweep,
-        }
-    }
-
-    fn ground(&self) -> MeshGround<'_> {
-        MeshGround {
-            surface: &self.surface,
-            hierarchy: &self.hierarchy,
-            orientation: &self.orientation,
-            sweep: &self.sweep,
-        }
-    }
+/// A sphere with sites on two levels.
+fn sphere(n_sites: usize) -> Synthesizer {
+    let options = HierarchyOptions {
+        n_sites,
+        n_levels: 2,
+        seed: Seed(1),
+        ..HierarchyOptions::default()
+    };
+    let surface = Surface::new(crate::shapes::sphere()).unwrap();
+    Synthesizer::new(surface, &[], &options).unwrap()
 }
 
 /// The neighborhood colors N(v).
@@ -143,7 +118,7 @@ fn go_on(_: Progress) -> ControlFlow<()> {
 
 #[test]
 fn passes_are_those_of_the_pseudo_code() {
-    let case = Case::new(300);
+    let case = sphere(300);
     let ground = case.ground();
     let paper = Schedule::paper(2);
     let part = |shape, side, reads| Part::new(shape, side, reads);
@@ -191,7 +166,7 @@ fn passes_are_those_of_the_pseudo_code() {
 #[cfg(feature = "rayon")]
 #[test]
 fn texture_has_the_same_bits_on_any_number_of_threads() {
-    let case = Case::new(3000);
+    let case = sphere(3000);
     let ground = case.ground();
     let pyramid = pyramid(Edges::Wrap, 2);
     for coherence in [0.0, 1.0] {
@@ -218,7 +193,7 @@ fn texture_has_the_same_bits_on_any_number_of_threads() {
 
 #[test]
 fn coherent_texture_has_more_neighbors_that_continue_each_other() {
-    let case = Case::new(2000);
+    let case = sphere(2000);
     let ground = case.ground();
     let pyramid = pyramid(Edges::Wrap, 2);
     let continued = |coherence: f32| {
@@ -229,7 +204,7 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
         };
         let levels = run(&ground, &pyramid, &options, &mut go_on).unwrap();
         let sources = &levels[0].sources;
-        let graph = case.hierarchy.levels()[0].graph();
+        let graph = case.hierarchy().levels()[0].graph();
         let near = |a: u32, b: u32| {
             let step = |a: u32, b: u32| {
                 let steps = (a + 16 - b) % 16;
@@ -237,7 +212,7 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
             };
             step(a % 16, b % 16) <= 1 && step(a / 16, b / 16) <= 1
         };
-        case.hierarchy
+        case.hierarchy()
             .sites()
             .iter()
             .flat_map(|site| {
@@ -255,7 +230,7 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
 
 #[test]
 fn callback_hears_of_every_pass_and_can_stop_any() {
-    let case = Case::new(500);
+    let case = sphere(500);
     let ground = case.ground();
     let pyramid = pyramid(Edges::Wrap, 2);
     let options = Options {
@@ -297,7 +272,7 @@ fn callback_hears_of_every_pass_and_can_stop_any() {
 
 #[test]
 fn value_stability_of_a_texture() {
-    let case = Case::new(400);
+    let case = sphere(400);
     let ground = case.ground();
     let pyramid = pyramid(Edges::Wrap, 2);
     let options = Options {

@@ -1,10 +1,10 @@
 //! Squares on surfaces, beside samples that are walked to one by one and mixed from all sites.
 
 use super::{MeshGround, MeshMemory, interpolate};
+use crate::Synthesizer;
 use crate::ground::{Ground, Rows, Samples, Square};
-use crate::{Orientation, Sweep};
 use dapple_hash::Seed;
-use dapple_mesh::{Hierarchy, HierarchyOptions, INTERPOLATION_RADIUS, Mesh, Surface};
+use dapple_mesh::{HierarchyOptions, INTERPOLATION_RADIUS, Mesh, Surface};
 use dapple_raster::simd::for_every_level;
 use glam::{DVec2, DVec3};
 
@@ -37,12 +37,7 @@ fn torus(n_around: u32, is_open: bool) -> Surface {
     Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
 }
 
-struct Case {
-    surface: Surface,
-    hierarchy: Hierarchy,
-    orientation: Orientation,
-    sweep: Sweep,
-}
+struct Case(Synthesizer);
 
 impl Case {
     fn new(surface: Surface, n_sites: usize) -> Self {
@@ -52,35 +47,27 @@ impl Case {
             seed: Seed(5),
             ..HierarchyOptions::default()
         };
-        let hierarchy = Hierarchy::new(&surface, &options).unwrap();
-        let orientation = Orientation::new(&hierarchy, &[]).unwrap();
-        let sweep = Sweep::new(&hierarchy, &orientation, None).unwrap();
-        Self {
-            surface,
-            hierarchy,
-            orientation,
-            sweep,
-        }
+        Self(Synthesizer::new(surface, &[], &options).unwrap())
     }
 
     fn ground(&self) -> MeshGround<'_> {
-        MeshGround {
-            surface: &self.surface,
-            hierarchy: &self.hierarchy,
-            orientation: &self.orientation,
-            sweep: &self.sweep,
-        }
+        self.0.ground()
     }
 
     /// Walks to one sample, i along P and j along O.
     fn walk(&self, square: &Square, [i, j]: [i32; 2]) -> (DVec3, DVec3) {
-        let spacing = self.hierarchy.levels()[square.reads].spacing();
+        let spacing = self.0.hierarchy().levels()[square.reads].spacing();
         let at = square.site as usize;
-        let mut point = self.hierarchy.sites().points()[at];
-        let down = self.orientation.vectors()[at];
-        let mut right = self.surface.flatten(point.face, down).normalize().perp();
+        let mut point = self.0.hierarchy().sites().points()[at];
+        let down = self.0.orientation().vectors()[at];
+        let mut right = self
+            .0
+            .surface()
+            .flatten(point.face, down)
+            .normalize()
+            .perp();
         let mut go = |way: f64, turn: fn(DVec2) -> DVec2| {
-            let walk = self.surface.walk(point, turn(right) * way, spacing);
+            let walk = self.0.surface().walk(point, turn(right) * way, spacing);
             point = walk.point;
             let direction = walk.direction * way;
             right = if turn(DVec2::X) == DVec2::X {
@@ -95,18 +82,18 @@ impl Case {
         for _ in 0..j.abs() {
             go(f64::from(j.signum()), |right| -right.perp());
         }
-        let position = self.surface.position(point);
-        (position, self.surface.face_normal(point.face))
+        let position = self.0.surface().position(point);
+        (position, self.0.surface().face_normal(point.face))
     }
 
     /// Equation 1 in `f64`, from all sites of the level.
     fn mix(&self, level: usize, position: DVec3, normal: DVec3, column: &[f32]) -> Option<f64> {
-        let radius = self.hierarchy.levels()[level].spacing() * INTERPOLATION_RADIUS;
+        let radius = self.0.hierarchy().levels()[level].spacing() * INTERPOLATION_RADIUS;
         let (mut sum, mut weights) = (0.0, 0.0);
-        let n_sites = self.hierarchy.levels()[level].n_sites();
-        for (site, &value) in self.hierarchy.sites().iter().zip(&column[..n_sites]) {
-            let at = self.hierarchy.sites().positions()[site.index()];
-            let opposed = self.hierarchy.sites().normals()[site.index()].dot(normal) < 0.0;
+        let n_sites = self.0.hierarchy().levels()[level].n_sites();
+        for (site, &value) in self.0.hierarchy().sites().iter().zip(&column[..n_sites]) {
+            let at = self.0.hierarchy().sites().positions()[site.index()];
+            let opposed = self.0.hierarchy().sites().normals()[site.index()].dot(normal) < 0.0;
             let x = at.distance(position) / radius;
             if x < 1.0 && !opposed {
                 let weight = (2.0 * x - 3.0) * x * x + 1.0;
@@ -180,7 +167,7 @@ fn squares_have_the_same_bits_at_every_simd_level() {
             samples.make_room(7, 3);
             let square = square(site, 0, 3);
             ground.read(square, &prepared, &column, &mut samples, &mut memory);
-            let radius = (case.hierarchy.levels()[0].spacing() * INTERPOLATION_RADIUS) as f32;
+            let radius = (case.0.hierarchy().levels()[0].spacing() * INTERPOLATION_RADIUS) as f32;
             let again = (column.as_slice(), &mut samples);
             interpolate(
                 level,
