@@ -5,7 +5,7 @@
 
 use crate::atlas::Atlas;
 use crate::columns;
-use crate::ground::Samples;
+use crate::ground::{Plain, Samples};
 use crate::mesh_ground::{Interpolation, Lattice, Nearby, interpolate};
 use crate::{SynthError, SynthErrorKind};
 use dapple_mesh::{FaceIdx, Hierarchy, INTERPOLATION_RADIUS, Surface, SurfacePoint};
@@ -129,12 +129,16 @@ impl Baker<'_> {
         memory.lattice.line_up(surface, &memory.points, center);
         memory.samples.values.resize(memory.points.len() * N, 0.0);
         memory.samples.nearest.resize(memory.points.len(), 0);
+        let colors = Plain {
+            values: self.column,
+            n_channels: N,
+        };
         interpolate(
             simd::level(),
             &memory.lattice,
             &memory.nearby,
             (spacing * INTERPOLATION_RADIUS) as f32,
-            (self.column, &mut memory.samples),
+            (colors, &mut memory.samples),
             &mut memory.interpolation,
         );
     }

@@ -16,6 +16,7 @@
 
 use crate::error::{SynthError, SynthErrorKind};
 use crate::grid::Grid;
+use crate::ground::Plain;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::{Edges, Exemplar, Pyramid};
 
@@ -188,7 +189,7 @@ pub(crate) fn halves(pixel: [u32; 2], reads: Reads, center: CoarserCenter) -> [i
 
 /// Reads one part of a neighborhood.
 struct PartReader<'a> {
-    grid: Grid<'a>,
+    grid: Grid<Plain<'a>>,
     reads: Reads,
     half: i32,
     /// The root of the part's weight.
@@ -212,7 +213,7 @@ impl<'a> PartReader<'a> {
 
     /// Appends the values of the part around a position.
     fn read(&self, halves: [i64; 2], samples: &mut Vec<f32>, target: &mut Vec<f32>) {
-        let (half, n) = (self.half, self.grid.n_channels);
+        let (half, n) = (self.half, self.grid.colors.n_channels);
         let side = 2 * half as usize + 1;
         samples.resize(side * side * n, 0.0);
         self.grid.read(halves, half, -half..=half, samples);

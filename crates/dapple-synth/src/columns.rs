@@ -15,6 +15,33 @@ pub(crate) fn tasks<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync + Se
     return (0..count).map(make).collect();
 }
 
+/// The number of threads that can work at once.
+pub(crate) fn n_threads() -> usize {
+    #[cfg(feature = "rayon")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "rayon"))]
+    return 1;
+}
+
+/// Lets all workers work at once, as far as there are threads: `work` takes the number of a worker and the worker.
+///
+/// A thread that comes late may find that the others have done all of it.
+pub(crate) fn together<W: Send>(workers: &mut [W], work: impl Fn(usize, &mut W) + Sync) {
+    #[cfg(feature = "rayon")]
+    if workers.len() > 1 {
+        let work = &work;
+        rayon::scope(|scope| {
+            for (number, worker) in workers.iter_mut().enumerate() {
+                scope.spawn(move |_| work(number, worker));
+            }
+        });
+        return;
+    }
+    for (number, worker) in workers.iter_mut().enumerate() {
+        work(number, worker);
+    }
+}
+
 /// The column whose rows are those of `row`.
 pub(crate) fn column<T: Send>(n_rows: usize, row: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     #[cfg(feature = "rayon")]

@@ -3,20 +3,13 @@
 //! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 5.
 
 use crate::ground::Ground;
+use crate::kept::Kept;
 use crate::neighborhood::{Part, Pass, Reads};
-use crate::visit::{Kept, Visit};
+use crate::visit::Visit;
 use crate::{Options, Pyramid, SynthError, SynthErrorKind};
 use core::ops::ControlFlow;
+use core::sync::atomic::AtomicU32;
 use dapple_hash::{Seed, hash1};
-
-/// What is known at every site of a level.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct LevelTexture {
-    /// `n_channels` values for each site; empty if no pass visited the level.
-    pub(crate) colors: Vec<f32>,
-    /// The pixel that each site's color is from, as `row * width + column` of the same level of the pyramid.
-    pub(crate) sources: Vec<u32>,
-}
 
 /// How far a synthesis has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,21 +27,30 @@ pub struct Progress {
 /// What is called now and then on the way; it can stop the synthesis.
 pub(crate) type Callback<'a> = &'a mut dyn FnMut(Progress) -> ControlFlow<()>;
 
-/// Runs all passes; the textures of the levels, the finest first.
+/// Runs all passes. For each level, the finest first, the pixel that each site is from, as `row * width + column` of the same
+/// level of the pyramid; nothing for a level that no pass visited.
 pub(crate) fn run<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
     options: &Options,
     callback: Callback<'_>,
-) -> Result<Vec<LevelTexture>, SynthError> {
+) -> Result<Vec<Vec<u32>>, SynthError> {
     let passes = options.passes()?.passes;
-    let mut levels = vec![LevelTexture::default(); pyramid.levels().len()];
+    let mut levels: Vec<Vec<AtomicU32>> = Vec::new();
+    levels.resize_with(pyramid.levels().len(), Vec::new);
     let mut kept = Kept::default();
     let n_passes = passes.len();
     for (index, pass) in passes.iter().enumerate() {
-        let reads_itself = pass.parts.iter().any(|part| part.reads == Reads::Same);
-        if reads_itself && levels[pass.level].colors.is_empty() {
-            fill_randomly(ground, pyramid, pass.level, options.seed, &mut levels);
+        let n_sites = ground.n_sites(pass.level);
+        if levels[pass.level].is_empty() {
+            let reads_itself = pass.parts.iter().any(|part| part.reads == Reads::Same);
+            let first: Vec<u32> = if reads_itself {
+                random_pixels(n_sites, pyramid, pass.level, options.seed)
+            } else {
+                // Nobody reads them before all are visited.
+                vec![0; n_sites]
+            };
+            levels[pass.level] = first.into_iter().map(AtomicU32::new).collect();
         }
         let keep = side_to_keep(pass, passes.get(index + 1));
         let visit = Visit::new(ground, pyramid, pass, options)?;
@@ -57,39 +59,27 @@ pub(crate) fn run<G: Ground>(
                 pass: index,
                 n_passes,
                 done,
-                n_sites: ground.n_sites(pass.level),
+                n_sites,
             };
             match callback(progress) {
                 ControlFlow::Continue(()) => Ok(()),
                 ControlFlow::Break(()) => Err(SynthError::new(SynthErrorKind::Cancelled)),
             }
         };
-        kept = visit.run(&mut levels, &kept, keep, &mut tell)?;
+        kept = visit.run(&levels, &kept, keep, &mut tell)?;
     }
-    Ok(levels)
+    let plain = |level: Vec<AtomicU32>| level.into_iter().map(AtomicU32::into_inner).collect();
+    Ok(levels.into_iter().map(plain).collect())
 }
 
-/// Gives every site of a level the color of a random pixel.
-fn fill_randomly<G: Ground>(
-    ground: &G,
-    pyramid: &Pyramid,
-    level: usize,
-    seed: Seed,
-    levels: &mut [LevelTexture],
-) {
-    let exemplar = &pyramid.levels()[level];
-    let n_pixels = u64::from(exemplar.size[0]) * u64::from(exemplar.size[1]);
+/// A random pixel for every site of a level.
+fn random_pixels(n_sites: usize, pyramid: &Pyramid, level: usize, seed: Seed) -> Vec<u32> {
+    let size = pyramid.levels()[level].size;
+    let n_pixels = u64::from(size[0]) * u64::from(size[1]);
     let seed = seed.child("first colors", level as u64);
-    let texture = &mut levels[level];
-    for site in 0..ground.n_sites(level) as i64 {
-        // The upper 32 bits of a product with a number below 2^32 are spread evenly over that number.
-        let pixel = ((hash1(seed, [site], 0) >> 32) * n_pixels) >> 32;
-        texture.sources.push(pixel as u32);
-        let at = pixel as usize * exemplar.n_channels;
-        texture
-            .colors
-            .extend_from_slice(&exemplar.pixels[at..at + exemplar.n_channels]);
-    }
+    // The upper 32 bits of a product with a number below 2^32 are spread evenly over that number.
+    let pixel = |site| (((hash1(seed, [site], 0) >> 32) * n_pixels) >> 32) as u32;
+    (0..n_sites as i64).map(pixel).collect()
 }
 
 /// The side of the coarser square of the next pass, if that can be kept from this one: it is on the same level and no larger,

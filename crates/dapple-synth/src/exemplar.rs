@@ -13,6 +13,7 @@
 
 use crate::error::{SynthError, SynthErrorKind};
 use crate::grid::Grid;
+use crate::ground::Plain;
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Wrap};
 
@@ -162,16 +163,23 @@ impl Exemplar {
     }
 
     /// The pixels, and what lies past the edges; past a cut that is the mirrored image.
-    pub(crate) fn grid(&self) -> Grid<'_> {
+    pub(crate) fn grid(&self) -> Grid<Plain<'_>> {
         let wrap = match self.edges {
             Edges::Cut => Wrap::Mirror,
             Edges::Wrap => Wrap::Repeat,
         };
         Grid {
-            values: &self.pixels,
+            colors: self.plain(),
             size: self.size,
-            n_channels: self.n_channels,
             wrap: [wrap; 2],
+        }
+    }
+
+    /// The values of the pixels.
+    pub(crate) fn plain(&self) -> Plain<'_> {
+        Plain {
+            values: &self.pixels,
+            n_channels: self.n_channels,
         }
     }
 

@@ -1,7 +1,32 @@
 //! What a texture grows on: sites on several levels, their order, and how neighborhoods are read.
 
-use crate::groups::Groups;
+use crate::turns::Turns;
 use core::ops::RangeInclusive;
+use core::sync::atomic::{AtomicU32, Ordering};
+
+/// What is at each site, or at each pixel of a grid.
+pub(crate) trait Colors: Copy + Sync {
+    /// The number of values of each.
+    fn n_channels(&self) -> usize;
+
+    /// The values of one.
+    fn of(&self, at: usize) -> &[f32];
+}
+
+/// Values side by side, `n_channels` for each site or pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plain<'a> {
+    pub(crate) values: &'a [f32],
+    pub(crate) n_channels: usize,
+}
+
+/// Sites that have the colors of pixels; other threads may give them others in the meantime.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Painted<'a> {
+    pub(crate) pixels: Plain<'a>,
+    /// The pixel of each site.
+    pub(crate) sources: &'a [AtomicU32],
+}
 
 /// Where a square of samples is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,18 +76,51 @@ pub(crate) trait Ground: Sync {
     /// What a pass over a level needs that reads squares of these halves on the level itself and on the next coarser one.
     fn prepare(&self, level: usize, same: Option<i32>, coarser: Option<i32>) -> Self::Prepared;
 
-    /// The sites of a level in groups, for a pass that reads squares on the level itself.
-    fn groups(&self, level: usize, prepared: &Self::Prepared) -> Groups;
+    /// The order in which threads share the sites of a level, in a pass that reads squares on the level itself.
+    fn turns(&self, level: usize, prepared: &Self::Prepared) -> Turns;
 
-    /// Reads a square of samples of a column of the level `square.reads`: as many values for each sample as for a site.
+    /// Reads a square of samples on the level `square.reads`, which has these colors.
     fn read(
         &self,
         square: Square,
         prepared: &Self::Prepared,
-        column: &[f32],
+        colors: impl Colors,
         samples: &mut Samples,
         memory: &mut Self::Memory,
     );
+}
+
+impl Colors for Plain<'_> {
+    #[inline(always)]
+    fn n_channels(&self) -> usize {
+        self.n_channels
+    }
+
+    #[inline(always)]
+    fn of(&self, at: usize) -> &[f32] {
+        &self.values[at * self.n_channels..][..self.n_channels]
+    }
+}
+
+impl Colors for Painted<'_> {
+    #[inline(always)]
+    fn n_channels(&self) -> usize {
+        self.pixels.n_channels
+    }
+
+    #[inline(always)]
+    fn of(&self, at: usize) -> &[f32] {
+        self.pixels.of(self.source(at) as usize)
+    }
+}
+
+impl Painted<'_> {
+    /// The pixel of a site.
+    #[inline(always)]
+    pub(crate) fn source(&self, site: usize) -> u32 {
+        // Whoever reads a site that another thread writes waits for its turn to be over, which makes an order of both.
+        self.sources[site].load(Ordering::Relaxed)
+    }
 }
 
 impl Square {

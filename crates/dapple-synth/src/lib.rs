@@ -104,7 +104,7 @@ mod error;
 mod exemplar;
 mod grid;
 mod ground;
-mod groups;
+mod kept;
 mod likeness;
 mod links;
 mod maps;
@@ -121,6 +121,7 @@ mod solve;
 mod surface_texture;
 mod sweep;
 mod synthesizer;
+mod turns;
 mod visit;
 
 pub use atlas::{Atlas, PADDING};

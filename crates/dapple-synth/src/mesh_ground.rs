@@ -8,8 +8,8 @@ mod interpolate;
 mod lattice;
 mod nearby;
 
-use crate::ground::{Ground, Samples, Square};
-use crate::groups::Groups;
+use crate::ground::{Colors, Ground, Samples, Square};
+use crate::turns::Turns;
 use crate::{Orientation, Sweep};
 use dapple_mesh::{Hierarchy, INTERPOLATION_RADIUS, SiteIdx, Surface};
 use dapple_raster::simd;
@@ -82,11 +82,11 @@ impl Ground for MeshGround<'_> {
         }
     }
 
-    fn groups(&self, level: usize, prepared: &Prepared) -> Groups {
+    fn turns(&self, level: usize, prepared: &Prepared) -> Turns {
         let order = self.order(level);
         match &prepared.same {
-            Some(around) => Groups::by_cells(&order, around.cells()),
-            None => Groups::one_by_one(order),
+            Some(around) => Turns::by_cells(&order, around.cells()),
+            None => Turns::in_order(order),
         }
     }
 
@@ -94,7 +94,7 @@ impl Ground for MeshGround<'_> {
         &self,
         square: Square,
         prepared: &Prepared,
-        column: &[f32],
+        colors: impl Colors,
         samples: &mut Samples,
         memory: &mut MeshMemory,
     ) {
@@ -116,7 +116,7 @@ impl Ground for MeshGround<'_> {
             lattice,
             &memory.nearby,
             (spacing * INTERPOLATION_RADIUS) as f32,
-            (column, samples),
+            (colors, samples),
             &mut memory.interpolation,
         );
     }

@@ -14,9 +14,9 @@
 use crate::candidates::halves;
 use crate::engine::{self, Progress};
 use crate::grid::{self, Grid};
-use crate::ground::{Ground, Samples, Square};
-use crate::groups::Groups;
+use crate::ground::{Colors, Ground, Samples, Square};
 use crate::neighborhood::Reads;
+use crate::turns::Turns;
 use crate::{CoarserCenter, Edges, Exemplar, Options, SynthError};
 use core::ops::ControlFlow;
 use dapple_raster::{Raster, Wrap};
@@ -86,7 +86,7 @@ pub fn synthesize_plane_with(
     let ground = PlaneGround::new(size, edges, options)?;
     let mut levels = engine::run(&ground, &pyramid, options, &mut callback)?;
     let width = exemplar.size[0];
-    let sources = levels.swap_remove(0).sources.into_iter();
+    let sources = levels.swap_remove(0).into_iter();
     let sources = sources
         .map(|pixel| [pixel % width, pixel / width])
         .collect();
@@ -184,31 +184,33 @@ impl Ground for PlaneGround {
         same.unwrap_or(0)
     }
 
-    fn groups(&self, level: usize, &half: &i32) -> Groups {
-        let order = self.order(level);
+    fn turns(&self, level: usize, &half: &i32) -> Turns {
         let size = self.sizes[level];
-        // One more than the group of a site; 0 for those that come later.
-        let mut next = vec![0_u32; order.len()];
-        let mut group_of = Vec::with_capacity(order.len());
-        for &site in &order {
+        let side = 2 * half as usize + 1;
+        let latest = |site, marks: &[u32]| {
             let at = self.pixel(level, site).map(|at| 2 * i64::from(at));
             let [columns, rows] = grid::square(at, half, size, self.wrap);
-            let side = 2 * half as usize + 1;
-            let mut group = 0;
+            let mut latest = 0;
             for row in &rows[..side] {
-                let line = &next[row * size[0] as usize..][..size[0] as usize];
+                let line = &marks[row * size[0] as usize..][..size[0] as usize];
                 for &column in &columns[..side] {
-                    group = group.max(line[column]);
+                    latest = latest.max(line[column]);
                 }
             }
-            next[site as usize] = group + 1;
-            group_of.push(group);
-        }
-        Groups::by_number(&order, &group_of)
+            latest
+        };
+        let order = self.order(level);
+        Turns::new(&order, order.len(), |site| site as usize, latest)
     }
 
-    fn read(&self, square: Square, _: &i32, column: &[f32], samples: &mut Samples, (): &mut ()) {
-        let n_channels = samples.values.len() / samples.nearest.len().max(1);
+    fn read(
+        &self,
+        square: Square,
+        _: &i32,
+        colors: impl Colors,
+        samples: &mut Samples,
+        (): &mut (),
+    ) {
         let reads = if square.reads == square.level {
             Reads::Same
         } else {
@@ -216,14 +218,10 @@ impl Ground for PlaneGround {
         };
         let at = halves(self.pixel(square.level, square.site), reads, self.center);
         let size = self.sizes[square.reads];
-        let grid = Grid {
-            values: column,
-            size,
-            n_channels,
-            wrap: self.wrap,
-        };
+        let wrap = self.wrap;
+        let grid = Grid { colors, size, wrap };
         grid.read(at, square.half, square.range(), &mut samples.values);
-        let [columns, rows] = grid::square(at, square.half, size, self.wrap);
+        let [columns, rows] = grid::square(at, square.half, size, wrap);
         for (row, nearest) in rows
             .iter()
             .zip(samples.nearest.chunks_exact_mut(square.side()))

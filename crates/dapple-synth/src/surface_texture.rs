@@ -1,19 +1,45 @@
 //! What a synthesis on a surface made.
 
-use crate::engine::LevelTexture;
-use crate::{SynthError, SynthErrorKind};
+use crate::ground::Colors as _;
+use crate::{Pyramid, SynthError, SynthErrorKind};
 use dapple_raster::Raster;
 
 /// Colors at the sites of a hierarchy, and which pixels of the exemplar they are from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceTexture {
-    pub(crate) levels: Vec<LevelTexture>,
-    /// The sizes of the levels of the exemplar.
-    pub(crate) sizes: Vec<[u32; 2]>,
-    pub(crate) n_channels: usize,
+    levels: Vec<Level>,
+    n_channels: usize,
+}
+
+/// What is known at every site of a level; nothing if no pass visited it.
+#[derive(Clone, Debug, PartialEq)]
+struct Level {
+    values: Vec<f32>,
+    /// The pixel that each site is from, as `row * width + column`.
+    sources: Vec<u32>,
+    /// The size of the exemplar's level.
+    size: [u32; 2],
 }
 
 impl SurfaceTexture {
+    /// The texture whose sites are from these pixels of the levels of a pyramid.
+    pub(crate) fn new(pyramid: &Pyramid, sources: Vec<Vec<u32>>) -> Self {
+        let exemplars = pyramid.levels();
+        let levels = exemplars.iter().zip(sources).map(|(exemplar, sources)| {
+            let colors = exemplar.plain();
+            let values = sources.iter().flat_map(|&pixel| colors.of(pixel as usize));
+            Level {
+                values: values.copied().collect(),
+                size: exemplar.size(),
+                sources,
+            }
+        });
+        Self {
+            levels: levels.collect(),
+            n_channels: exemplars.first().map_or(0, |exemplar| exemplar.n_channels),
+        }
+    }
+
     /// The number of values at a site, that of the exemplar's channels.
     #[must_use]
     pub fn n_channels(&self) -> usize {
@@ -28,7 +54,7 @@ impl SurfaceTexture {
     /// If there is no such level.
     #[must_use]
     pub fn values(&self, level: usize) -> &[f32] {
-        &self.levels[level].colors
+        &self.levels[level].values
     }
 
     /// The column and row of the pixel that each site of a level is from, in that level of the exemplar's pyramid.
@@ -37,9 +63,10 @@ impl SurfaceTexture {
     ///
     /// If there is no such level.
     pub fn sources(&self, level: usize) -> impl ExactSizeIterator<Item = [u32; 2]> {
-        let width = self.sizes[level][0].max(1);
-        let sources = &self.levels[level].sources;
-        sources
+        let level = &self.levels[level];
+        let width = level.size[0].max(1);
+        level
+            .sources
             .iter()
             .map(move |pixel| [pixel % width, pixel / width])
     }
@@ -51,8 +78,8 @@ impl SurfaceTexture {
     ///
     /// [`SynthErrorKind::Raster`] for a map of another size, [`SynthErrorKind::Count`] if no pass visited the finest level.
     pub fn transfer<T: Copy>(&self, map: &Raster<T>) -> Result<Vec<T>, SynthError> {
-        map.check_same_size(self.sizes[0])?;
-        let sources = &self.levels[0].sources;
+        let Level { size, sources, .. } = &self.levels[0];
+        map.check_same_size(*size)?;
         if sources.is_empty() {
             return Err(SynthError::new(SynthErrorKind::Count {
                 what: "passes over the finest level",

@@ -111,12 +111,8 @@ impl Synthesizer {
             }));
         }
         let pyramid = exemplar.pyramid(options.n_levels)?;
-        let levels = engine::run(&self.ground(), &pyramid, options, &mut callback)?;
-        Ok(SurfaceTexture {
-            levels,
-            sizes: pyramid.levels().iter().map(Exemplar::size).collect(),
-            n_channels: exemplar.n_channels,
-        })
+        let sources = engine::run(&self.ground(), &pyramid, options, &mut callback)?;
+        Ok(SurfaceTexture::new(&pyramid, sources))
     }
 
     /// What the texture grows on.

@@ -1,17 +1,22 @@
 //! One visit of all sites of a level.
 
-use crate::engine::LevelTexture;
-use crate::ground::{Ground, Rows, Samples, Square};
-use crate::groups::Groups;
+use crate::ground::{Ground, Painted, Rows, Samples, Square};
+use crate::kept::Kept;
 use crate::neighborhood::{Pass, Reads, Shape};
-use crate::{Candidates, Matcher, MatcherMemory, Options, Pyramid, SynthError, distance_sq};
+use crate::turns::{Board, Turns};
+use crate::{
+    Candidates, Exemplar, Matcher, MatcherMemory, Options, Pyramid, SynthError, columns,
+    distance_sq,
+};
+use core::iter::repeat_with;
+use core::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// The most sites between two calls of the callback.
 const STRETCH: usize = 1 << 14;
-/// How many sites a thread takes at once, at the most and at the least.
-const PIECE: [usize; 2] = [4, 256];
-/// No pixel or no row.
+/// How many sites that do not wait a thread takes at once.
+const PIECE: usize = 64;
+/// No row.
 const NOWHERE: u32 = u32::MAX;
 
 /// A pass with everything that it needs.
@@ -22,7 +27,7 @@ pub(crate) struct Visit<'a, G: Ground> {
     n_channels: usize,
     width: u32,
     coarser_width: u32,
-    pixels: &'a [f32],
+    pyramid: &'a [Exemplar],
     candidates: Candidates,
     matcher: Matcher,
     coherence: f32,
@@ -50,14 +55,6 @@ struct Term {
     root_weight: f32,
 }
 
-/// Samples of the coarser level that the next pass needs again: the middle of the squares of this one.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Kept {
-    side: usize,
-    values: Vec<f32>,
-    nearest: Vec<u32>,
-}
-
 /// What a thread works in.
 struct Worker<M> {
     same: Samples,
@@ -68,25 +65,12 @@ struct Worker<M> {
     ground: M,
 }
 
-/// What all threads read.
+/// What all threads read; [`Painted`] of the level itself is also written.
 #[derive(Clone, Copy)]
 struct State<'a> {
-    here: &'a LevelTexture,
-    coarser: Option<&'a LevelTexture>,
+    here: Painted<'a>,
+    coarser: Option<Painted<'a>>,
     kept: &'a Kept,
-}
-
-/// What a thread writes for some sites: the row that matches, and what is kept.
-struct Piece<'a> {
-    sites: &'a [u32],
-    rows: &'a mut [u32],
-    keep: Option<KeptPiece<'a>>,
-}
-
-struct KeptPiece<'a> {
-    side: usize,
-    values: &'a mut [f32],
-    nearest: &'a mut [u32],
 }
 
 impl<'a, G: Ground> Visit<'a, G> {
@@ -123,7 +107,7 @@ impl<'a, G: Ground> Visit<'a, G> {
                 .levels()
                 .get(pass.level + 1)
                 .map_or(1, |level| level.size[0]),
-            pixels: &exemplar.pixels,
+            pyramid: pyramid.levels(),
             matcher: Matcher::new(candidates.dims, &candidates.rows),
             candidates,
             coherence: options.coherence,
@@ -133,116 +117,107 @@ impl<'a, G: Ground> Visit<'a, G> {
         })
     }
 
-    /// Visits all sites. `kept` is what the pass before kept; the result is what this one keeps of squares of the coarser
-    /// level, `keep` samples wide.
+    /// Visits all sites, whose pixels are in `levels`. `kept` is what the pass before kept; the result is what this one keeps
+    /// of squares of the coarser level, `keep` samples wide.
     pub(crate) fn run(
         &self,
-        levels: &mut [LevelTexture],
+        levels: &[Vec<AtomicU32>],
         kept: &Kept,
         keep: u32,
         tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
     ) -> Result<Kept, SynthError> {
-        let n_sites = self.ground.n_sites(self.level);
-        let (finer, coarser) = levels.split_at_mut(self.level + 1);
-        let here = &mut finer[self.level];
-        here.colors.resize(n_sites * self.n_channels, 0.0);
-        here.sources.resize(n_sites, NOWHERE);
-        let n_threads = n_threads();
+        let painted = |level: usize| Painted {
+            pixels: self.pyramid[level].plain(),
+            sources: &levels[level],
+        };
+        let state = State {
+            here: painted(self.level),
+            coarser: self.coarser.map(|_| painted(self.level + 1)),
+            kept,
+        };
         let mut workers = Vec::new();
-        workers.resize_with(n_threads, || Mutex::new(Worker::<G::Memory>::default()));
-        // Sites that read only the coarser level do not wait for each other, and may be visited in any order.
-        let groups = match self.same {
-            None => Groups::stretches(n_sites, STRETCH),
-            Some(_) if n_threads == 1 => Groups::one_by_one(self.ground.order(self.level)),
-            Some(_) => self.ground.groups(self.level, &self.prepared),
-        };
-        let side = if self.same.is_none() {
-            keep as usize
+        workers.resize_with(columns::n_threads(), Worker::default);
+        if self.same.is_some() {
+            self.visit_in_turns(&state, &mut workers, tell)?;
+            Ok(Kept::default())
         } else {
-            0
-        };
-        let n_kept = side * side;
-        let mut keeps = Kept {
-            side,
-            values: vec![0.0; n_sites * n_kept * self.n_channels],
-            nearest: vec![0; n_sites * n_kept],
-        };
-        let mut rows = Vec::new();
-        let mut done = 0;
-        for group in groups.iter() {
-            rows.clear();
-            rows.resize(group.len(), NOWHERE);
-            let state = State {
-                here,
-                coarser: coarser.first(),
-                kept,
-            };
-            let pieces = pieces(
-                group,
-                &mut rows,
-                &mut keeps,
-                done,
-                self.n_channels,
-                n_threads,
-            );
-            self.visit_pieces(pieces, &workers, &state);
-            self.write(group, &rows, here);
-            let before = done / STRETCH;
-            done += group.len();
-            if done / STRETCH > before || done == n_sites {
-                tell(done)?;
-            }
-        }
-        Ok(keeps)
-    }
-
-    /// Gives sites the pixels of their rows.
-    fn write(&self, sites: &[u32], rows: &[u32], here: &mut LevelTexture) {
-        let n_channels = self.n_channels;
-        for (&site, &row) in sites.iter().zip(rows) {
-            let Some(&pixel) = self.candidates.pixels.get(row as usize) else {
-                continue;
-            };
-            here.sources[site as usize] = pixel;
-            let [to, from] = [site as usize, pixel as usize].map(|at| at * n_channels);
-            here.colors[to..to + n_channels].copy_from_slice(&self.pixels[from..from + n_channels]);
+            self.visit_freely(&state, &mut workers, keep as usize, tell)
         }
     }
 
-    fn visit_pieces(
+    /// Visits sites that may read each other.
+    fn visit_in_turns(
         &self,
-        mut pieces: Vec<Piece<'_>>,
-        workers: &[Mutex<Worker<G::Memory>>],
         state: &State<'_>,
-    ) {
-        #[cfg(feature = "rayon")]
-        if pieces.len() > 1 {
-            use rayon::prelude::*;
-            pieces.into_par_iter().for_each(|piece| {
-                // Each thread of the pool has a worker of its own, so that nobody waits.
-                let thread = rayon::current_thread_index().unwrap_or(0) % workers.len();
-                let mut worker = workers[thread]
-                    .lock()
-                    .unwrap_or_else(PoisonError::into_inner);
-                self.visit_piece(piece, &mut worker, state);
+        workers: &mut [Worker<G::Memory>],
+        tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
+    ) -> Result<(), SynthError> {
+        let turns = if workers.len() == 1 {
+            Turns::in_order(self.ground.order(self.level))
+        } else {
+            self.ground.turns(self.level, &self.prepared)
+        };
+        for first in (0..turns.len()).step_by(STRETCH) {
+            let end = turns.len().min(first + STRETCH);
+            let board = Board::new(first..end, workers.len());
+            columns::together(workers, |thread, worker| {
+                while let Some(turn) = board.take(thread) {
+                    let (site, wait) = turns.turn(turn);
+                    board.wait(wait);
+                    self.visit(site, worker, state);
+                }
             });
-            return;
+            tell(end)?;
         }
-        let mut worker = workers[0].lock().unwrap_or_else(PoisonError::into_inner);
-        for piece in pieces.drain(..) {
-            self.visit_piece(piece, &mut worker, state);
-        }
+        Ok(())
     }
 
-    fn visit_piece(&self, piece: Piece<'_>, worker: &mut Worker<G::Memory>, state: &State<'_>) {
-        let mut keep = piece.keep;
-        for (at, (&site, row)) in piece.sites.iter().zip(piece.rows).enumerate() {
-            self.gather(site, worker, state);
-            if let Some(keep) = &mut keep {
-                let half = self.coarser.map_or(0, |half| half.half);
-                keep.copy(at, &worker.coarser, 2 * half as usize + 1, self.n_channels);
-            }
-            *row = self.best_row(worker);
+    /// Visits sites that read only the coarser level: they do not wait for each other, and may be visited in any order.
+    fn visit_freely(
+        &self,
+        state: &State<'_>,
+        workers: &mut [Worker<G::Memory>],
+        keep: usize,
+        tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
+    ) -> Result<Kept, SynthError> {
+        let n_sites = self.ground.n_sites(self.level);
+        let mut kept = Kept::new(n_sites, keep, self.n_channels);
+        let side = self.coarser.map_or(0, |half| 2 * half.half as usize + 1);
+        let rooms = kept.sites().map(Some).chain(repeat_with(|| None));
+        let mut sites = (0..n_sites as u32).zip(rooms);
+        for first in (0..n_sites).step_by(STRETCH) {
+            let end = n_sites.min(first + STRETCH);
+            let left = Mutex::new(sites.by_ref().take(end - first));
+            columns::together(workers, |_, worker| {
+                loop {
+                    let mut left = left.lock().unwrap_or_else(PoisonError::into_inner);
+                    let piece: Vec<_> = left.by_ref().take(PIECE).collect();
+                    drop(left);
+                    if piece.is_empty() {
+                        return;
+                    }
+                    for (site, room) in piece {
+                        self.visit(site, worker, state);
+                        if let Some(mut room) = room {
+                            room.copy(&worker.coarser, side);
+                        }
+                    }
+                }
+            });
+            tell(end)?;
+        }
+        drop(sites);
+        Ok(kept)
+    }
+
+    /// Gives a site the pixel of the row that matches.
+    fn visit(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) {
+        self.gather(site, worker, state);
+        let row = self.best_row(worker);
+        // Without any row, which finite values do not lead to, the site keeps what it has.
+        if let Some(&pixel) = self.candidates.pixels.get(row as usize) {
+            // Turns of other threads that read it are ordered by the board.
+            state.here.sources[site as usize].store(pixel, Ordering::Relaxed);
         }
     }
 
@@ -268,17 +243,17 @@ impl<'a, G: Ground> Visit<'a, G> {
             let square = square(self.level, half);
             same.make_room(square.side(), self.n_channels);
             self.ground
-                .read(square, &self.prepared, &state.here.colors, same, ground);
-            self.continue_same(&square, same, &state.here.sources, coherent);
+                .read(square, &self.prepared, state.here, same, ground);
+            self.continue_same(&square, same, &state.here, coherent);
         }
-        if let (Some(half), Some(texture)) = (self.coarser, state.coarser) {
+        if let (Some(half), Some(painted)) = (self.coarser, state.coarser) {
             let square = square(self.level + 1, half);
             coarser.make_room(square.side(), self.n_channels);
-            if !state.kept.paste(site, &square, coarser, self.n_channels) {
+            if !state.kept.paste(site, &square, coarser) {
                 self.ground
-                    .read(square, &self.prepared, &texture.colors, coarser, ground);
+                    .read(square, &self.prepared, painted, coarser, ground);
             }
-            self.continue_coarser(&square, coarser, &texture.sources, coherent);
+            self.continue_coarser(&square, coarser, &painted, coherent);
         }
         query.clear();
         for term in &self.terms {
@@ -297,7 +272,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         &self,
         square: &Square,
         samples: &Samples,
-        sources: &[u32],
+        painted: &Painted<'_>,
         coherent: &mut Vec<u32>,
     ) {
         for term in &self.terms {
@@ -309,11 +284,9 @@ impl<'a, G: Ground> Visit<'a, G> {
             if nearest == square.site {
                 continue;
             }
-            let source = sources[nearest as usize];
-            if source != NOWHERE {
-                let [x, y] = [source % self.width, source / self.width].map(i64::from);
-                self.add_coherent([x - i64::from(i), y - i64::from(j)], coherent);
-            }
+            let source = painted.source(nearest as usize);
+            let [x, y] = [source % self.width, source / self.width].map(i64::from);
+            self.add_coherent([x - i64::from(i), y - i64::from(j)], coherent);
         }
     }
 
@@ -322,14 +295,11 @@ impl<'a, G: Ground> Visit<'a, G> {
         &self,
         square: &Square,
         samples: &Samples,
-        sources: &[u32],
+        painted: &Painted<'_>,
         coherent: &mut Vec<u32>,
     ) {
         let middle = (square.side() * square.side()) / 2;
-        let source = sources[samples.nearest[middle] as usize];
-        if source == NOWHERE {
-            return;
-        }
+        let source = painted.source(samples.nearest[middle] as usize);
         let [x, y] = [source % self.coarser_width, source / self.coarser_width].map(i64::from);
         for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
             self.add_coherent([2 * x + i, 2 * y + j], coherent);
@@ -371,41 +341,6 @@ impl<'a, G: Ground> Visit<'a, G> {
         };
         let found = self.matcher.nearest(query, below, Some(row), matcher);
         found.map_or(fallback, |found| found.row)
-    }
-}
-
-impl Kept {
-    /// Puts what was kept of a site's square into samples; whether it was all of it.
-    fn paste(&self, site: u32, square: &Square, samples: &mut Samples, n_channels: usize) -> bool {
-        let n = self.side * self.side;
-        if self.side != square.side() {
-            return false;
-        }
-        let first = site as usize * n;
-        samples
-            .nearest
-            .copy_from_slice(&self.nearest[first..first + n]);
-        samples
-            .values
-            .copy_from_slice(&self.values[first * n_channels..(first + n) * n_channels]);
-        true
-    }
-}
-
-impl KeptPiece<'_> {
-    /// Keeps the middle of a square `from` samples wide.
-    fn copy(&mut self, at: usize, samples: &Samples, from: usize, n_channels: usize) {
-        let margin = (from - self.side) / 2;
-        for row in 0..self.side {
-            let source = (row + margin) * from + margin;
-            let target = (at * self.side + row) * self.side;
-            let side = self.side;
-            self.nearest[target..target + side]
-                .copy_from_slice(&samples.nearest[source..source + side]);
-            self.values[target * n_channels..(target + side) * n_channels].copy_from_slice(
-                &samples.values[source * n_channels..(source + side) * n_channels],
-            );
-        }
     }
 }
 
@@ -456,49 +391,4 @@ fn terms_of(pass: &Pass, halves: [i32; 2]) -> Vec<Term> {
         }
     }
     terms
-}
-
-/// Splits a group for the threads. What is kept is only for groups of consecutive sites, of which `first` is the first.
-fn pieces<'a>(
-    group: &'a [u32],
-    rows: &'a mut [u32],
-    keeps: &'a mut Kept,
-    first: usize,
-    n_channels: usize,
-    n_threads: usize,
-) -> Vec<Piece<'a>> {
-    let length = match n_threads {
-        1 => group.len().max(1),
-        _ => (group.len() / (4 * n_threads)).clamp(PIECE[0], PIECE[1]),
-    };
-    let side = keeps.side;
-    let n_kept = side * side;
-    let from = first * n_kept;
-    let mut values =
-        keeps.values[from * n_channels..].chunks_mut((length * n_kept * n_channels).max(1));
-    let mut nearest = keeps.nearest[from..].chunks_mut((length * n_kept).max(1));
-    group
-        .chunks(length)
-        .zip(rows.chunks_mut(length))
-        .map(|(sites, rows)| Piece {
-            sites,
-            rows,
-            keep: values
-                .next()
-                .zip(nearest.next())
-                .map(|(values, nearest)| KeptPiece {
-                    side,
-                    values,
-                    nearest,
-                }),
-        })
-        .collect()
-}
-
-fn n_threads() -> usize {
-    #[cfg(feature = "rayon")]
-    let n = rayon::current_num_threads();
-    #[cfg(not(feature = "rayon"))]
-    let n = 1;
-    n
 }

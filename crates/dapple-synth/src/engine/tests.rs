@@ -1,7 +1,7 @@
 //! The engine beside the paper's pseudo-code, which compares every neighborhood with every pixel's.
 
-use super::{LevelTexture, Progress, run};
-use crate::ground::{Ground, Rows, Samples, Square};
+use super::{Progress, random_pixels, run};
+use crate::ground::{Ground, Plain, Rows, Samples, Square};
 use crate::mesh_ground::MeshGround;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::{
@@ -41,7 +41,8 @@ fn neighborhood(
     ground: &MeshGround<'_>,
     pass: &Pass,
     site: u32,
-    levels: &[LevelTexture],
+    pyramid: &Pyramid,
+    levels: &[Vec<u32>],
 ) -> Vec<f32> {
     let mut query = Vec::new();
     for part in &pass.parts {
@@ -58,7 +59,13 @@ fn neighborhood(
         let coarser = (reads > pass.level).then(|| ground.prepare(pass.level, None, Some(half)));
         let mut samples = Samples::default();
         samples.make_room(square.side(), 3);
-        let colors = &levels[reads].colors;
+        let pixels = &pyramid.levels()[reads].pixels;
+        let of = |&pixel: &u32| &pixels[3 * pixel as usize..][..3];
+        let values: Vec<f32> = levels[reads].iter().flat_map(of).copied().collect();
+        let colors = Plain {
+            values: &values,
+            n_channels: 3,
+        };
         let prepared = coarser.as_ref().unwrap_or(&prepared);
         ground.read(
             square,
@@ -76,25 +83,20 @@ fn neighborhood(
     query
 }
 
-/// The passes as the paper's pseudo-code has them; the first colors are those of `started`.
+/// The passes as the paper's pseudo-code has them; the first pixels are those of `started`.
 fn pseudo_code(
     ground: &MeshGround<'_>,
     pyramid: &Pyramid,
     passes: &[Pass],
     options: &Options,
-    started: &[LevelTexture],
-) -> Vec<LevelTexture> {
+    started: &[Vec<u32>],
+) -> Vec<Vec<u32>> {
     let mut levels = started.to_vec();
     for pass in passes {
         let candidates = Candidates::new(pyramid, pass, options.center).unwrap();
-        levels[pass.level]
-            .colors
-            .resize(3 * ground.n_sites(pass.level), 0.0);
-        levels[pass.level]
-            .sources
-            .resize(ground.n_sites(pass.level), u32::MAX);
+        levels[pass.level].resize(ground.n_sites(pass.level), 0);
         for site in ground.order(pass.level) {
-            let query = neighborhood(ground, pass, site, &levels);
+            let query = neighborhood(ground, pass, site, pyramid, &levels);
             let (mut smallest, mut best) = (f32::INFINITY, 0);
             for row in 0..candidates.len() {
                 let new = distance_sq(&query, candidates.row(row));
@@ -102,11 +104,7 @@ fn pseudo_code(
                     (smallest, best) = (new, row);
                 }
             }
-            let pixel = candidates.pixels[best];
-            let from = 3 * pixel as usize;
-            levels[pass.level].sources[site as usize] = pixel;
-            let color = &pyramid.levels()[pass.level].pixels[from..from + 3];
-            levels[pass.level].colors[3 * site as usize..][..3].copy_from_slice(color);
+            levels[pass.level][site as usize] = candidates.pixels[best];
         }
     }
     levels
@@ -152,13 +150,13 @@ fn passes_are_those_of_the_pseudo_code() {
             coherence: 0.0,
             ..Options::default()
         };
-        let mut started = vec![LevelTexture::default(); 2];
-        super::fill_randomly(&ground, &pyramid, 1, options.seed, &mut started);
+        let started = random_pixels(ground.n_sites(1), &pyramid, 1, options.seed);
+        let started = [Vec::new(), started];
         let expected = pseudo_code(&ground, &pyramid, &schedule.passes, &options, &started);
         let found = run(&ground, &pyramid, &options, &mut go_on).unwrap();
         assert!(
             found == expected,
-            "{edges:?}: other colors than the pseudo-code's"
+            "{edges:?}: other pixels than the pseudo-code's"
         );
     }
 }
@@ -203,7 +201,7 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
             ..Options::default()
         };
         let levels = run(&ground, &pyramid, &options, &mut go_on).unwrap();
-        let sources = &levels[0].sources;
+        let sources = &levels[0];
         let graph = case.hierarchy().levels()[0].graph();
         let near = |a: u32, b: u32| {
             let step = |a: u32, b: u32| {
@@ -281,5 +279,5 @@ fn value_stability_of_a_texture() {
         ..Options::default()
     };
     let levels = run(&ground, &pyramid, &options, &mut go_on).unwrap();
-    assert_eq!(levels[0].sources[..8], [40, 39, 3, 251, 1, 23, 248, 42]);
+    assert_eq!(levels[0][..8], [40, 39, 3, 251, 1, 23, 248, 42]);
 }

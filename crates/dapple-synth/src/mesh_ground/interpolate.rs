@@ -5,8 +5,9 @@
 
 use super::lattice::{Lattice, Row};
 use super::nearby::{Nearby, Record};
-use crate::ground::Samples;
+use crate::ground::{Colors, Samples};
 use core::array;
+use core::ops::Range;
 use fearless_simd::{Level, dispatch, f32x8, prelude::*, u32x8};
 
 /// Below this sum of weights the nearest site counts alone.
@@ -40,13 +41,13 @@ struct Terms<'a> {
     check: bool,
 }
 
-/// Fills samples; `column` has as many values for a site as `samples.values` has room for at a sample.
+/// Fills samples with means of the colors of the nearby sites.
 pub(crate) fn interpolate(
     level: Level,
     lattice: &Lattice,
     nearby: &Nearby,
     radius: f32,
-    (column, samples): (&[f32], &mut Samples),
+    (colors, samples): (impl Colors, &mut Samples),
     memory: &mut Interpolation,
 ) {
     let terms = Terms {
@@ -55,18 +56,17 @@ pub(crate) fn interpolate(
         radius,
         check: !is_one_sheet(lattice, &nearby.records),
     };
-    let n_channels = samples.values.len() / samples.nearest.len().max(1);
+    let n_channels = colors.n_channels();
     dispatch!(level, simd => list(simd, &terms, memory));
     for first in (0..n_channels).step_by(CHANNELS) {
         let here = CHANNELS.min(n_channels - first);
         memory.colors.clear();
         memory.colors.extend(terms.nearby.iter().map(|record| {
-            let from = record.site as usize * n_channels + first;
-            let values = &column[from..from + here];
+            let values = &colors.of(record.site as usize)[first..first + here];
             array::from_fn(|channel| if channel < here { values[channel] } else { 0.0 })
         }));
         let channels = first..first + here;
-        dispatch!(level, simd => add_up(simd, &terms, memory, (n_channels, channels), column, samples));
+        dispatch!(level, simd => add_up(simd, &terms, memory, channels, colors, samples));
     }
 }
 
@@ -108,10 +108,11 @@ fn add_up<S: Simd>(
     simd: S,
     terms: &Terms<'_>,
     memory: &Interpolation,
-    (n_channels, channels): (usize, core::ops::Range<usize>),
-    column: &[f32],
+    channels: Range<usize>,
+    colors: impl Colors,
     samples: &mut Samples,
 ) {
+    let n_channels = colors.n_channels();
     let n = terms.nearby.len();
     let side = terms.lattice.side;
     for (at, row) in terms.lattice.rows.iter().enumerate() {
@@ -128,8 +129,7 @@ fn add_up<S: Simd>(
             } else {
                 let site = nearest(row, terms.nearby, lane);
                 samples.nearest[sample] = site;
-                let from = &column[site as usize * n_channels..][channels.clone()];
-                to.copy_from_slice(from);
+                to.copy_from_slice(&colors.of(site as usize)[channels.clone()]);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{MeshGround, MeshMemory, interpolate};
 use crate::Synthesizer;
-use crate::ground::{Ground, Rows, Samples, Square};
+use crate::ground::{Ground, Plain, Rows, Samples, Square};
 use dapple_hash::Seed;
 use dapple_mesh::{HierarchyOptions, INTERPOLATION_RADIUS, Mesh, Surface};
 use dapple_raster::simd::for_every_level;
@@ -120,6 +120,10 @@ fn column(n: usize) -> Vec<f32> {
     (0..n).map(|at| (at * 7919 % 101) as f32 / 101.0).collect()
 }
 
+fn plain(values: &[f32], n_channels: usize) -> Plain<'_> {
+    Plain { values, n_channels }
+}
+
 #[test]
 fn squares_are_those_of_single_walks_and_of_all_sites() {
     for is_open in [false, true] {
@@ -132,7 +136,8 @@ fn squares_are_those_of_single_walks_and_of_all_sites() {
             for site in (0..3000).step_by(97) {
                 let square = square(site, reads, half);
                 samples.make_room(square.side(), 1);
-                ground.read(square, &prepared, &column, &mut samples, &mut memory);
+                let colors = plain(&column, 1);
+                ground.read(square, &prepared, colors, &mut samples, &mut memory);
                 for (sample, &value) in samples.values.iter().enumerate() {
                     let [i, j] =
                         [sample % square.side(), sample / square.side()].map(|at| at as i32 - half);
@@ -166,9 +171,10 @@ fn squares_have_the_same_bits_at_every_simd_level() {
             let mut samples = Samples::default();
             samples.make_room(7, 3);
             let square = square(site, 0, 3);
-            ground.read(square, &prepared, &column, &mut samples, &mut memory);
+            let colors = plain(&column, 3);
+            ground.read(square, &prepared, colors, &mut samples, &mut memory);
             let radius = (case.0.hierarchy().levels()[0].spacing() * INTERPOLATION_RADIUS) as f32;
-            let again = (column.as_slice(), &mut samples);
+            let again = (colors, &mut samples);
             interpolate(
                 level,
                 &memory.lattice,
@@ -195,7 +201,8 @@ fn square_of_constant_values_is_constant() {
     for site in 0..500 {
         let square = square(site, 0, 7);
         samples.make_room(15, 1);
-        ground.read(square, &prepared, &[0.75; 500], &mut samples, &mut memory);
+        let colors = plain(&[0.75; 500], 1);
+        ground.read(square, &prepared, colors, &mut samples, &mut memory);
         // A weighted mean of equal values is off by some roundings.
         let off = samples
             .values
@@ -212,43 +219,32 @@ fn square_of_constant_values_is_constant() {
 }
 
 #[test]
-fn sites_of_one_group_do_not_read_each_other() {
+fn turns_keep_the_order_of_sites_that_read_each_other() {
     let case = Case::new(torus(40, false), 4000);
     let ground = case.ground();
     let prepared = ground.prepare(0, Some(3), None);
-    let groups = ground.groups(0, &prepared);
+    let turns = ground.turns(0, &prepared);
     let around = prepared.same.as_ref().unwrap();
     let mut memory = MeshMemory::default();
-    let mut group_of = vec![usize::MAX; 4000];
-    for (number, group) in groups.iter().enumerate() {
-        for &site in group {
-            group_of[site as usize] = number;
-        }
+    let mut turn_of = vec![usize::MAX; 4000];
+    for turn in 0..turns.len() {
+        turn_of[turns.turn(turn).0 as usize] = turn;
     }
     let mut rank = vec![0; 4000];
     for (at, site) in ground.order(0).into_iter().enumerate() {
         rank[site as usize] = at;
     }
-    assert!(!group_of.contains(&usize::MAX), "a site is missing");
-    for site in 0..4000_u32 {
+    assert!(!turn_of.contains(&usize::MAX), "a site is missing");
+    for turn in 0..4000 {
+        let (site, wait) = turns.turn(turn);
         around.collect(site, &mut memory.nearby);
-        for other in memory
-            .nearby
-            .records
-            .iter()
-            .map(|record| record.site as usize)
-        {
-            let site = site as usize;
-            if other != site {
-                assert_eq!(
-                    rank[site] < rank[other],
-                    group_of[site] < group_of[other],
-                    "{site} and {other} are out of order"
-                );
-                assert_ne!(
-                    group_of[site], group_of[other],
-                    "{site} and {other} are together"
-                );
+        for record in &memory.nearby.records {
+            let (site, other) = (site as usize, record.site as usize);
+            if rank[other] < rank[site] {
+                assert!(turn_of[other] < wait, "{site} does not wait for {other}");
+            } else if other != site {
+                let (_, wait) = turns.turn(turn_of[other]);
+                assert!(turn < wait, "{other} does not wait for {site}");
             }
         }
     }
@@ -276,7 +272,7 @@ fn piece_without_a_coarse_site_reads_the_nearest_one() {
         ground.read(
             square(site, 1, 1),
             &prepared,
-            &column(60),
+            plain(&column(60), 1),
             &mut samples,
             &mut memory,
         );

@@ -232,7 +232,7 @@ fn textures_do_not_depend_on_threads() {
 }
 
 #[test]
-fn groups_keep_the_order_of_sites_that_read_each_other() {
+fn turns_keep_the_order_of_sites_that_read_each_other() {
     use Edges::{Cut, Wrap};
     for (size, edges) in [
         ([21, 9], [Cut, Cut]),
@@ -247,23 +247,26 @@ fn groups_keep_the_order_of_sites_that_read_each_other() {
             for (at, &site) in order.iter().enumerate() {
                 rank[site as usize] = at;
             }
-            let groups = ground.groups(level, &half);
-            let mut group_of = vec![usize::MAX; order.len()];
-            for (group, sites) in groups.iter().enumerate() {
-                for &site in sites {
-                    group_of[site as usize] = group;
-                }
+            let turns = ground.turns(level, &half);
+            let mut turn_of = vec![usize::MAX; order.len()];
+            for turn in 0..turns.len() {
+                turn_of[turns.turn(turn).0 as usize] = turn;
             }
             for &site in &order {
                 for &other in near(&ground, level, site, half)
                     .iter()
                     .filter(|&&other| other != site)
                 {
-                    let [a, b] = [site, other].map(|site| site as usize);
-                    let same = (rank[a] < rank[b]) == (group_of[a] < group_of[b]);
+                    let [first, second] = [site, other].map(|site| site as usize);
+                    let (first, second) = if rank[first] < rank[second] {
+                        (first, second)
+                    } else {
+                        (second, first)
+                    };
+                    let (_, wait) = turns.turn(turn_of[second]);
                     assert!(
-                        same && group_of[a] != group_of[b],
-                        "{size:?} {edges:?} {site} {other}"
+                        turn_of[first] < wait && wait <= turn_of[second],
+                        "{size:?} {edges:?}: {second} does not wait for {first}"
                     );
                 }
             }
@@ -288,16 +291,23 @@ fn near(ground: &PlaneGround, level: usize, site: u32, half: i32) -> Vec<u32> {
 }
 
 #[test]
-fn slanted_lines_of_a_torus_are_groups() {
+fn slanted_lines_of_a_torus_wait_only_for_earlier_lines() {
     let ground = PlaneGround::new(
         [512, 256],
         [Edges::Wrap; 2],
         &paper(2, CoarserCenter::Exact),
     )
     .unwrap();
-    let n_groups = ground.groups(0, &3).iter().count();
+    let turns = ground.turns(0, &3);
+    // A line begins with the first site that waits for one of the line before it.
+    let (mut n_lines, mut first) = (1, 0);
+    for turn in 0..turns.len() {
+        if turns.turn(turn).1 > first {
+            (n_lines, first) = (n_lines + 1, turn);
+        }
+    }
     // As many as on a plane: lines through the corners are 511 + 4 · 255 apart.
-    assert_eq!(n_groups, 512 + 4 * 255, "groups of 512 x 256 pixels");
+    assert_eq!(n_lines, 512 + 4 * 255, "lines of 512 x 256 pixels");
 }
 
 /// Soft waves of 8 pixels in both directions.

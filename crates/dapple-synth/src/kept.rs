@@ -1,0 +1,80 @@
+//! Samples of the coarser level that the next pass needs again: the middle of the squares of the pass before.
+
+use crate::ground::{Samples, Square};
+
+/// What a pass keeps: for every site a square, `side` samples wide.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Kept {
+    side: usize,
+    n_channels: usize,
+    values: Vec<f32>,
+    nearest: Vec<u32>,
+}
+
+/// What is kept of one site.
+#[derive(Debug)]
+pub(crate) struct KeptSite<'a> {
+    side: usize,
+    values: &'a mut [f32],
+    nearest: &'a mut [u32],
+}
+
+impl Kept {
+    /// Room for the squares of all sites; none for a side of 0.
+    pub(crate) fn new(n_sites: usize, side: usize, n_channels: usize) -> Self {
+        let n_samples = n_sites * side * side;
+        Self {
+            side,
+            n_channels,
+            values: vec![0.0; n_samples * n_channels],
+            nearest: vec![0; n_samples],
+        }
+    }
+
+    /// The room of each site; nothing if nothing is kept.
+    pub(crate) fn sites(&mut self) -> impl Iterator<Item = KeptSite<'_>> {
+        let side = self.side;
+        let n_samples = (side * side).max(1);
+        let values = self
+            .values
+            .chunks_exact_mut((n_samples * self.n_channels).max(1));
+        let nearest = self.nearest.chunks_exact_mut(n_samples);
+        values.zip(nearest).map(move |(values, nearest)| KeptSite {
+            side,
+            values,
+            nearest,
+        })
+    }
+
+    /// Puts what was kept of a site's square into samples; whether it was all of it.
+    pub(crate) fn paste(&self, site: u32, square: &Square, samples: &mut Samples) -> bool {
+        let n = self.side * self.side;
+        if self.side != square.side() {
+            return false;
+        }
+        let first = site as usize * n;
+        samples
+            .nearest
+            .copy_from_slice(&self.nearest[first..first + n]);
+        samples
+            .values
+            .copy_from_slice(&self.values[first * self.n_channels..][..n * self.n_channels]);
+        true
+    }
+}
+
+impl KeptSite<'_> {
+    /// Keeps the middle of a square `from` samples wide.
+    pub(crate) fn copy(&mut self, samples: &Samples, from: usize) {
+        let side = self.side;
+        let n_channels = self.values.len() / self.nearest.len();
+        let margin = (from - side) / 2;
+        for row in 0..side {
+            let source = (row + margin) * from + margin;
+            let target = row * side;
+            self.nearest[target..][..side].copy_from_slice(&samples.nearest[source..][..side]);
+            self.values[target * n_channels..][..side * n_channels]
+                .copy_from_slice(&samples.values[source * n_channels..][..side * n_channels]);
+        }
+    }
+}
