@@ -63,13 +63,14 @@ impl Surface {
             return walk;
         }
         if distance >= 0.0 {
-            return self.forward(walk);
+            return self.forward(walk, |_, _| ());
         }
-        let walk = self.forward(Walk {
+        let back = Walk {
             direction: -direction,
             left: -distance,
             ..walk
-        });
+        };
+        let walk = self.forward(back, |_, _| ());
         Walk {
             direction: -walk.direction,
             left: -walk.left,
@@ -77,12 +78,85 @@ impl Surface {
         }
     }
 
-    /// Goes the distance that is left.
+    /// Goes straight as [`walk`](Self::walk) does, and tells of every stop on the way: the first one, `step` away, has the
+    /// number 1, the last one `n_steps`.
+    ///
+    /// Stops past a border are where the path met it. A step below 0, and one that leads nowhere finite, is one of 0.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such face.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_mesh::{FaceIdx, Mesh, Surface, glam::DVec3};
+    ///
+    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)];
+    /// let square = Surface::new(Mesh::new(corners, &[[0, 1, 2], [3, 2, 1]])?)?;
+    /// let start = square.project(FaceIdx(0), DVec3::new(0.25, 0.25, 0.0));
+    /// let right = square.flatten(FaceIdx(0), DVec3::X);
+    /// let mut stops = Vec::new();
+    /// square.walk_in_steps(start, right, 0.5, 2, |_, stop| stops.push(square.position(stop.point).x));
+    /// assert_eq!(stops, [0.75, 1.0]);
+    /// # Ok::<(), dapple_mesh::MeshError>(())
+    /// ```
     #[inline]
-    fn forward(&self, mut walk: Walk) -> Walk {
+    pub fn walk_in_steps(
+        &self,
+        from: SurfacePoint,
+        direction: DVec2,
+        step: f64,
+        n_steps: u32,
+        mut stop: impl FnMut(u32, Walk),
+    ) {
+        let is_path = from.flat.is_finite() && direction.is_finite();
+        let is_path = is_path && (step * f64::from(n_steps)).is_finite();
+        let step = if is_path { step.max(0.0) } else { 0.0 };
+        let total = step * f64::from(n_steps);
+        let walk = Walk {
+            point: from,
+            direction,
+            left: total,
+        };
+        let (mut next, mut gone) = (1, 0.0);
+        let end = self.forward(walk, |start, walk| {
+            let until = total - walk.left;
+            while next <= n_steps && step * f64::from(next) <= until {
+                let distance = step * f64::from(next) - gone;
+                let point = SurfacePoint {
+                    flat: start.flat + walk.direction * distance,
+                    ..start
+                };
+                let (direction, left) = (walk.direction, 0.0);
+                stop(
+                    next,
+                    Walk {
+                        point,
+                        direction,
+                        left,
+                    },
+                );
+                next += 1;
+            }
+            gone = until;
+        });
+        for next in next..=n_steps {
+            let left = step * f64::from(next) - gone;
+            stop(next, Walk { left, ..end });
+        }
+    }
+
+    /// Goes the distance that is left; `piece` hears of each face where the path enters it, and how it stands at the end of
+    /// its piece there.
+    #[inline]
+    fn forward(&self, mut walk: Walk, mut piece: impl FnMut(SurfacePoint, &Walk)) -> Walk {
         let mut entered = None;
         for _ in 0..CROSSINGS_MAX {
-            let Some(fold) = self.leave_face(&mut walk, entered) else {
+            let start = walk.point;
+            let fold = self.leave_face(&mut walk, entered);
+            piece(start, &walk);
+            let Some(fold) = fold else {
                 break;
             };
             walk.point.face = fold.to.face;

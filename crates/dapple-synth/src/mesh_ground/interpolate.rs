@@ -1,7 +1,7 @@
 //! Equation 1 for all samples of a square at once.
 //!
 //! The lanes of a register are samples of a row. A row takes the sites that can reach it, one after the other in the order of
-//! [`Nearby`], so that sums have one order at every SIMD level.
+//! [`Nearby`], so that sums have one order at every SIMD level. Sites out of reach would add zeros.
 
 use super::lattice::{Lattice, Row};
 use super::nearby::{Nearby, Record};
@@ -25,11 +25,20 @@ const LANES: usize = 8;
 /// What interpolation works in.
 #[derive(Debug, Default)]
 pub(crate) struct Interpolation {
-    /// The values of the nearby sites.
+    /// The sites that can reach a row, and their values.
+    reaching: Vec<Record>,
     colors: Vec<[f32; CHANNELS]>,
-    /// For each row the sites that can reach it, and their number.
+    bounds: Vec<Bounds>,
+    /// For each row the numbers of the sites that can reach it, and how many there are.
     lists: Vec<u32>,
     lengths: Vec<usize>,
+}
+
+/// What can reach eight rows: how far down, and how far to the right of the middle of the square, a site may be.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    least: [[f32; LANES]; 2],
+    most: [[f32; LANES]; 2],
 }
 
 /// Everything that the sums of a square are made of.
@@ -37,8 +46,6 @@ struct Terms<'a> {
     lattice: &'a Lattice,
     nearby: &'a [Record],
     radius: f32,
-    /// Whether normals have to be compared.
-    check: bool,
 }
 
 /// Fills samples with means of the colors of the nearby sites.
@@ -54,51 +61,88 @@ pub(crate) fn interpolate(
         lattice,
         nearby: &nearby.records,
         radius,
-        check: !is_one_sheet(lattice, &nearby.records),
     };
     let n_channels = colors.n_channels();
     dispatch!(level, simd => list(simd, &terms, memory));
+    let check = !is_one_sheet(lattice, &memory.reaching);
     for first in (0..n_channels).step_by(CHANNELS) {
         let here = CHANNELS.min(n_channels - first);
         memory.colors.clear();
-        memory.colors.extend(terms.nearby.iter().map(|record| {
+        memory.colors.extend(memory.reaching.iter().map(|record| {
             let values = &colors.of(record.site as usize)[first..first + here];
             array::from_fn(|channel| if channel < here { values[channel] } else { 0.0 })
         }));
         let channels = first..first + here;
-        dispatch!(level, simd => add_up(simd, &terms, memory, channels, colors, samples));
+        dispatch!(level, simd => add_up(simd, &terms, (memory, check), channels, colors, samples));
     }
 }
 
 /// Lists the sites that can reach each row.
 #[inline(always)]
 fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Interpolation) {
-    let _ = simd;
-    let down = terms.lattice.down.as_vec3().to_array();
+    let axes = [terms.lattice.down, terms.lattice.right].map(|axis| axis.as_vec3().to_array());
+    bound(simd, terms, axes, &mut memory.bounds);
+    let n_rows = terms.lattice.rows.len();
     let n = terms.nearby.len();
-    memory.lists.resize(terms.lattice.rows.len() * n, 0);
+    memory.lists.resize(n_rows * n, 0);
     memory.lengths.clear();
+    memory.lengths.resize(n_rows, 0);
+    memory.reaching.clear();
+    for record in terms.nearby {
+        let place = axes.map(|axis| f32x8::splat(simd, dot(record.position, axis)));
+        let number = memory.reaching.len() as u32;
+        let mut reaches = false;
+        for (bounds, first) in memory.bounds.iter().zip((0..).step_by(LANES)) {
+            let within = |axis: usize| {
+                let [least, most] =
+                    [bounds.least, bounds.most].map(|bound| f32x8::from_slice(simd, &bound[axis]));
+                place[axis].simd_ge(least) & place[axis].simd_le(most)
+            };
+            let mut rows = (within(0) & within(1)).to_bitmask();
+            reaches |= rows != 0;
+            while rows != 0 {
+                let row = first + rows.trailing_zeros() as usize;
+                rows &= rows - 1;
+                memory.lists[row * n + memory.lengths[row]] = number;
+                memory.lengths[row] += 1;
+            }
+        }
+        if reaches {
+            memory.reaching.push(*record);
+        }
+    }
+}
+
+/// Finds how far along two axes the sites may be that reach each row.
+#[inline(always)]
+fn bound<S: Simd>(
+    simd: S,
+    terms: &Terms<'_>,
+    axes: [[f32; 3]; 2],
+    bounds: &mut Vec<Bounds>,
+) {
     let reach = terms.radius * (1.0 + MARGIN);
-    for (row, list) in terms
-        .lattice
-        .rows
-        .iter()
-        .zip(memory.lists.chunks_exact_mut(n))
-    {
-        let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
-        for lane in 0..row.n_lanes {
-            let depth = dot(array::from_fn(|part| row.lanes[part][lane]), down);
-            least = if depth < least { depth } else { least };
-            most = if depth > most { depth } else { most };
+    bounds.clear();
+    for rows in terms.lattice.rows.chunks(LANES) {
+        let (never, always) = (f32::INFINITY, f32::NEG_INFINITY);
+        let mut here = Bounds {
+            least: [[never; LANES]; 2],
+            most: [[always; LANES]; 2],
+        };
+        for (at, row) in rows.iter().enumerate() {
+            let [x, y, z] = [0, 1, 2].map(|part| f32x8::from_slice(simd, &row.lanes[part]));
+            for (axis, [ax, ay, az]) in axes.into_iter().enumerate() {
+                let places: [f32; LANES] = (x * ax + y * ay + z * az).into();
+                let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
+                for &place in &places[..row.n_lanes] {
+                    least = if place < least { place } else { least };
+                    most = if place > most { place } else { most };
+                }
+                here.least[axis][at] = least - reach;
+                here.most[axis][at] = most + reach;
+            }
         }
-        let (least, most) = (least - reach, most + reach);
-        let mut length = 0;
-        for (record, at) in terms.nearby.iter().zip(0..) {
-            let depth = dot(record.position, down);
-            list[length] = at;
-            length += usize::from(depth >= least && depth <= most);
-        }
-        memory.lengths.push(length);
+        bounds.push(here);
     }
 }
 
@@ -107,7 +151,7 @@ fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Interpolation) {
 fn add_up<S: Simd>(
     simd: S,
     terms: &Terms<'_>,
-    memory: &Interpolation,
+    (memory, check): (&Interpolation, bool),
     channels: Range<usize>,
     colors: impl Colors,
     samples: &mut Samples,
@@ -117,12 +161,13 @@ fn add_up<S: Simd>(
     let side = terms.lattice.side;
     for (at, row) in terms.lattice.rows.iter().enumerate() {
         let list = &memory.lists[at * n..][..memory.lengths[at]];
-        let sums = add_up_row(simd, terms, row, list, &memory.colors);
+        let sites = (memory.reaching.as_slice(), memory.colors.as_slice());
+        let sums = add_up_row(simd, row, (terms.radius, check), list, sites);
         for lane in 0..row.n_lanes {
             let sample = row.at * side + row.first_column + lane;
             let to = &mut samples.values[sample * n_channels..][channels.clone()];
             if sums.weights[lane] > WEIGHT_MIN {
-                samples.nearest[sample] = terms.nearby[sums.nearest[lane] as usize].site;
+                samples.nearest[sample] = memory.reaching[sums.nearest[lane] as usize].site;
                 for (channel, value) in to.iter_mut().enumerate() {
                     *value = sums.values[channel][lane] / sums.weights[lane];
                 }
@@ -146,28 +191,28 @@ struct Sums {
 #[inline(always)]
 fn add_up_row<S: Simd>(
     simd: S,
-    terms: &Terms<'_>,
     row: &Row,
+    (radius, check): (f32, bool),
     list: &[u32],
-    colors: &[[f32; CHANNELS]],
+    (reaching, colors): (&[Record], &[[f32; CHANNELS]]),
 ) -> Sums {
     let zero = f32x8::splat(simd, 0.0);
     let load = |part: usize| f32x8::from_slice(simd, &row.lanes[part]);
     let (x, y, z) = (load(0), load(1), load(2));
     let (nx, ny, nz) = (load(3), load(4), load(5));
-    let inverse_sq = 1.0 / (terms.radius * terms.radius);
+    let inverse_sq = 1.0 / (radius * radius);
     let (mut sum, mut largest) = (zero, zero);
     let mut nearest = u32x8::splat(simd, 0);
     let [mut a, mut b, mut c, mut d] = [zero; CHANNELS];
     for &at in list {
-        let record = &terms.nearby[at as usize];
+        let record = &reaching[at as usize];
         let [px, py, pz] = record.position;
         let (dx, dy, dz) = (x - px, y - py, z - pz);
         // w(x) = 2x³ − 3x² + 1, of distances in radii.
         let part_sq = (dx * dx + dy * dy + dz * dz) * inverse_sq;
         let weight = (part_sq.sqrt() * 2.0 - 3.0) * part_sq + 1.0;
         let mut weight = part_sq.simd_lt(1.0).select(weight, zero);
-        if terms.check {
+        if check {
             let [mx, my, mz] = record.normal;
             let opposed = (nx * mx + ny * my + nz * mz).simd_lt(0.0);
             weight = opposed.select(zero, weight);
@@ -196,12 +241,12 @@ fn add_up_row<S: Simd>(
 }
 
 /// Whether no site can have a normal that is more than a right angle from a sample's.
-fn is_one_sheet(lattice: &Lattice, nearby: &[Record]) -> bool {
-    let Some(middle) = nearby.first().map(|record| record.normal) else {
+fn is_one_sheet(lattice: &Lattice, reaching: &[Record]) -> bool {
+    let Some(middle) = reaching.first().map(|record| record.normal) else {
         return true;
     };
     let near = |normal: [f32; 3]| dot(normal, middle) >= SAME_SHEET;
-    nearby.iter().all(|record| near(record.normal))
+    reaching.iter().all(|record| near(record.normal))
         && lattice.rows.iter().all(|row| {
             (0..row.n_lanes).all(|lane| near(array::from_fn(|part| row.lanes[3 + part][lane])))
         })

@@ -12,8 +12,9 @@ const LANES: usize = 8;
 pub(crate) struct Lattice {
     /// The number of samples along a side.
     pub(crate) side: usize,
-    /// The direction at the middle in which rows follow each other.
+    /// The directions at the middle in which rows follow each other, and along which they lie.
     pub(crate) down: DVec3,
+    pub(crate) right: DVec3,
     pub(crate) rows: Vec<Row>,
 }
 
@@ -47,6 +48,7 @@ impl Lattice {
             .flatten(middle.face, orientation)
             .normalize_or(DVec2::X);
         self.down = surface.lift(middle.face, down);
+        self.right = surface.lift(middle.face, down.perp());
         let center = surface.position(middle);
         let half = square.half;
         let start = Walk {
@@ -54,21 +56,18 @@ impl Lattice {
             direction: down,
             left: 0.0,
         };
-        self.lay_column(surface, &start, half as usize, square, (center, spacing));
+        let around = (center, spacing);
+        self.lay_column(surface, &start, half as usize, square, around);
         for way in [1.0, -1.0] {
-            let mut walk = Walk {
-                direction: down.perp() * way,
-                ..start
-            };
-            for step in 1..=half {
-                walk = surface.walk(walk.point, walk.direction, spacing);
+            let side = down.perp() * way;
+            surface.walk_in_steps(middle, side, spacing, half as u32, |step, walk| {
                 let column = Walk {
                     direction: -walk.direction.perp() * way,
                     ..walk
                 };
-                let at = half + step * way as i32;
-                self.lay_column(surface, &column, at as usize, square, (center, spacing));
-            }
+                let at = half + step as i32 * way as i32;
+                self.lay_column(surface, &column, at as usize, square, around);
+            });
         }
     }
 
@@ -81,6 +80,7 @@ impl Lattice {
             _ => DVec3::ZERO,
         }
         .normalize_or(DVec3::Z);
+        self.right = self.down.any_orthonormal_vector();
         self.rows.clear();
         for (number, points) in points.chunks(LANES).enumerate() {
             self.rows.push(Row::new(0, number * LANES, points.len()));
@@ -124,24 +124,22 @@ impl Lattice {
     ) {
         let half = square.half;
         let last = *square.range().end();
+        let mut normal = (start.point.face, surface.face_normal(start.point.face));
         if last >= 0 {
-            let normal = surface.face_normal(start.point.face);
-            self.put(
-                surface,
-                (start.point, normal),
-                [half as usize, column],
-                center,
-            );
+            let at = [half as usize, column];
+            self.put(surface, (start.point, normal.1), at, center);
         }
-        for (way, n_steps) in [(-1, half), (1, last)] {
-            let (mut point, mut direction) = (start.point, start.direction * f64::from(way));
-            for step in 1..=n_steps {
-                let walk = surface.walk(point, direction, spacing);
-                (point, direction) = (walk.point, walk.direction);
-                let normal = surface.face_normal(point.face);
-                let row = (half + way * step) as usize;
-                self.put(surface, (point, normal), [row, column], center);
-            }
+        for (way, n_steps) in [(-1, half), (1, last.max(0))] {
+            let direction = start.direction * f64::from(way);
+            let n_steps = n_steps as u32;
+            surface.walk_in_steps(start.point, direction, spacing, n_steps, |step, walk| {
+                let point = walk.point;
+                if point.face != normal.0 {
+                    normal = (point.face, surface.face_normal(point.face));
+                }
+                let at = [(half + way * step as i32) as usize, column];
+                self.put(surface, (point, normal.1), at, center);
+            });
         }
     }
 
