@@ -125,7 +125,7 @@ impl Baker<'_> {
             .fold(0.0, f64::max);
         let spacing = self.hierarchy.levels()[0].spacing();
         let reach = far_sq.sqrt() + REACH * spacing;
-        memory.nearby.collect_ball(self.hierarchy, 0, center, reach);
+        let sites = memory.nearby.collect_ball(self.hierarchy, 0, center, reach);
         memory.lattice.line_up(surface, &memory.points, center);
         memory.samples.values.resize(memory.points.len() * N, 0.0);
         memory.samples.nearest.resize(memory.points.len(), 0);
@@ -136,7 +136,7 @@ impl Baker<'_> {
         interpolate(
             simd::level(),
             &memory.lattice,
-            &memory.nearby,
+            sites,
             (spacing * INTERPOLATION_RADIUS) as f32,
             (colors, &mut memory.samples),
             &mut memory.interpolation,

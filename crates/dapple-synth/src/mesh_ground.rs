@@ -108,13 +108,14 @@ impl Ground for MeshGround<'_> {
         let spacing = self.hierarchy.levels()[square.reads].spacing();
         let point = self.hierarchy.sites().points()[at];
         let orientation = self.orientation.vectors()[at];
-        around.collect(square.site, &mut memory.nearby);
+        let level = simd::level();
+        let sites = around.collect(level, square.site, &mut memory.nearby);
         let lattice = &mut memory.lattice;
         lattice.lay(self.surface, point, orientation, &square, spacing);
         interpolate(
-            simd::level(),
+            level,
             lattice,
-            &memory.nearby,
+            sites,
             (spacing * INTERPOLATION_RADIUS) as f32,
             (colors, samples),
             &mut memory.interpolation,

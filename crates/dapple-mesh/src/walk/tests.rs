@@ -225,13 +225,22 @@ fn stops_are_the_ends_of_walks_of_their_distance() {
                 let walk = surface.walk(from, direction, 0.61 * f64::from(step));
                 let off = surface.position(stop.point) - surface.position(walk.point);
                 // At most 16 faces on the way, whose sides are at most 2 long; the distance is at most 6.
-                assert!(off.length() < 8.0 * ROUNDING, "step {step} along {turn}: {off}");
-                assert!((stop.left - walk.left).abs() < 8.0 * ROUNDING, "left {stop:?}");
+                assert!(
+                    off.length() < 8.0 * ROUNDING,
+                    "step {step} along {turn}: {off}"
+                );
+                assert!(
+                    (stop.left - walk.left).abs() < 8.0 * ROUNDING,
+                    "left {stop:?}"
+                );
                 let turned = surface.lift(stop.point.face, stop.direction)
                     - surface.lift(walk.point.face, walk.direction);
                 // A stop on an edge may be in either face.
                 let same_face = stop.point.face == walk.point.face;
-                assert!(!same_face || turned.length() < ROUNDING, "turned by {turned}");
+                assert!(
+                    !same_face || turned.length() < ROUNDING,
+                    "turned by {turned}"
+                );
                 numbers.push(step);
             });
             assert!(numbers.into_iter().eq(1..=n_steps), "each stop once");

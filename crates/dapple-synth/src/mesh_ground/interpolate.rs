@@ -1,10 +1,10 @@
 //! Equation 1 for all samples of a square at once.
 //!
 //! The lanes of a register are samples of a row. A row takes the sites that can reach it, one after the other in the order of
-//! [`Nearby`], so that sums have one order at every SIMD level. Sites out of reach would add zeros.
+//! [`Around`], so that sums have one order at every SIMD level. Sites out of reach would add zeros.
 
 use super::lattice::{Lattice, Row};
-use super::nearby::{Nearby, Record};
+use super::nearby::{Around, Record};
 use crate::ground::{Colors, Samples};
 use core::array;
 use core::ops::Range;
@@ -21,6 +21,8 @@ const MARGIN: f32 = 1e-3;
 const CHANNELS: usize = 4;
 /// The samples in a register.
 const LANES: usize = 8;
+/// How many rows of samples most sites reach at the most: rows are a spacing apart, and a site reaches 1.1 to both sides.
+const USUAL_ROWS: usize = 3;
 
 /// What interpolation works in.
 #[derive(Debug, Default)]
@@ -31,7 +33,7 @@ pub(crate) struct Interpolation {
     bounds: Vec<Bounds>,
     /// For each row the numbers of the sites that can reach it, and how many there are.
     lists: Vec<u32>,
-    lengths: Vec<usize>,
+    lengths: Vec<[usize; LANES]>,
 }
 
 /// What can reach eight rows: how far down, and how far to the right of the middle of the square, a site may be.
@@ -44,7 +46,7 @@ struct Bounds {
 /// Everything that the sums of a square are made of.
 struct Terms<'a> {
     lattice: &'a Lattice,
-    nearby: &'a [Record],
+    around: Around<'a>,
     radius: f32,
 }
 
@@ -52,14 +54,14 @@ struct Terms<'a> {
 pub(crate) fn interpolate(
     level: Level,
     lattice: &Lattice,
-    nearby: &Nearby,
+    around: Around<'_>,
     radius: f32,
     (colors, samples): (impl Colors, &mut Samples),
     memory: &mut Interpolation,
 ) {
     let terms = Terms {
         lattice,
-        nearby: &nearby.records,
+        around,
         radius,
     };
     let n_channels = colors.n_channels();
@@ -82,17 +84,20 @@ pub(crate) fn interpolate(
 fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Interpolation) {
     let axes = [terms.lattice.down, terms.lattice.right].map(|axis| axis.as_vec3().to_array());
     bound(simd, terms, axes, &mut memory.bounds);
-    let n_rows = terms.lattice.rows.len();
-    let n = terms.nearby.len();
-    memory.lists.resize(n_rows * n, 0);
+    let n = terms.around.len();
+    memory
+        .lists
+        .resize(memory.bounds.len() * LANES * (n + 1), 0);
     memory.lengths.clear();
-    memory.lengths.resize(n_rows, 0);
-    memory.reaching.clear();
-    for record in terms.nearby {
+    memory.lengths.resize(memory.bounds.len(), [0; LANES]);
+    memory.reaching.resize(n + 1, Record::default());
+    let mut n_reaching = 0;
+    for record in terms.around.sites() {
         let place = axes.map(|axis| f32x8::splat(simd, dot(record.position, axis)));
-        let number = memory.reaching.len() as u32;
+        memory.reaching[n_reaching] = record;
         let mut reaches = false;
-        for (bounds, first) in memory.bounds.iter().zip((0..).step_by(LANES)) {
+        let lists = memory.lists.chunks_exact_mut(LANES * (n + 1));
+        for ((bounds, lengths), lists) in memory.bounds.iter().zip(&mut memory.lengths).zip(lists) {
             let within = |axis: usize| {
                 let [least, most] =
                     [bounds.least, bounds.most].map(|bound| f32x8::from_slice(simd, &bound[axis]));
@@ -100,27 +105,28 @@ fn list<S: Simd>(simd: S, terms: &Terms<'_>, memory: &mut Interpolation) {
             };
             let mut rows = (within(0) & within(1)).to_bitmask();
             reaches |= rows != 0;
+            // Most sites reach two or three rows; without branches on how many, which a processor could not predict.
+            for _ in 0..USUAL_ROWS {
+                let row = rows.trailing_zeros() as usize % LANES;
+                lists[row * (n + 1) + lengths[row]] = n_reaching as u32;
+                lengths[row] += usize::from(rows != 0);
+                rows &= rows.wrapping_sub(1);
+            }
             while rows != 0 {
-                let row = first + rows.trailing_zeros() as usize;
+                let row = rows.trailing_zeros() as usize;
+                lists[row * (n + 1) + lengths[row]] = n_reaching as u32;
+                lengths[row] += 1;
                 rows &= rows - 1;
-                memory.lists[row * n + memory.lengths[row]] = number;
-                memory.lengths[row] += 1;
             }
         }
-        if reaches {
-            memory.reaching.push(*record);
-        }
+        n_reaching += usize::from(reaches);
     }
+    memory.reaching.truncate(n_reaching);
 }
 
 /// Finds how far along two axes the sites may be that reach each row.
 #[inline(always)]
-fn bound<S: Simd>(
-    simd: S,
-    terms: &Terms<'_>,
-    axes: [[f32; 3]; 2],
-    bounds: &mut Vec<Bounds>,
-) {
+fn bound<S: Simd>(simd: S, terms: &Terms<'_>, axes: [[f32; 3]; 2], bounds: &mut Vec<Bounds>) {
     let reach = terms.radius * (1.0 + MARGIN);
     bounds.clear();
     for rows in terms.lattice.rows.chunks(LANES) {
@@ -157,10 +163,11 @@ fn add_up<S: Simd>(
     samples: &mut Samples,
 ) {
     let n_channels = colors.n_channels();
-    let n = terms.nearby.len();
+    let n = terms.around.len();
     let side = terms.lattice.side;
+    let lengths = memory.lengths.as_flattened();
     for (at, row) in terms.lattice.rows.iter().enumerate() {
-        let list = &memory.lists[at * n..][..memory.lengths[at]];
+        let list = &memory.lists[at * (n + 1)..][..lengths[at]];
         let sites = (memory.reaching.as_slice(), memory.colors.as_slice());
         let sums = add_up_row(simd, row, (terms.radius, check), list, sites);
         for lane in 0..row.n_lanes {
@@ -172,7 +179,7 @@ fn add_up<S: Simd>(
                     *value = sums.values[channel][lane] / sums.weights[lane];
                 }
             } else {
-                let site = nearest(row, terms.nearby, lane);
+                let site = nearest(row, terms.around, lane);
                 samples.nearest[sample] = site;
                 to.copy_from_slice(&colors.of(site as usize)[channels.clone()]);
             }
@@ -254,11 +261,11 @@ fn is_one_sheet(lattice: &Lattice, reaching: &[Record]) -> bool {
 
 /// The site nearest to a sample among those whose normals are not opposed; without any, the nearest of all.
 #[cold]
-fn nearest(row: &Row, nearby: &[Record], lane: usize) -> u32 {
+fn nearest(row: &Row, around: Around<'_>, lane: usize) -> u32 {
     let sample: [f32; 3] = array::from_fn(|part| row.lanes[part][lane]);
     let normal: [f32; 3] = array::from_fn(|part| row.lanes[3 + part][lane]);
     let mut best = (true, f32::INFINITY, u32::MAX);
-    for record in nearby {
+    for record in around.sites() {
         let from: [f32; 3] = array::from_fn(|part| record.position[part] - sample[part]);
         let found = (
             dot(record.normal, normal) < 0.0,

@@ -5,10 +5,13 @@
 
 use crate::cells::Cells;
 use dapple_mesh::{Hierarchy, Sites};
+use fearless_simd::{Level, dispatch, f32x8, prelude::*};
 use glam::{DVec3, Vec3};
 
 /// The side of a cell in spacings.
 const CELL: f64 = 3.0;
+/// The sites in a register.
+const LANES: usize = 8;
 
 /// The sites that may be near each site of a level.
 #[derive(Clone, Debug)]
@@ -16,24 +19,38 @@ pub(crate) struct Neighborhoods {
     cells: Cells,
     /// Where the sites that are read begin in each cell.
     first: Vec<u32>,
+    /// Cell after cell, the positions also coordinate by coordinate, with a register more at the end.
     records: Vec<Record>,
+    columns: [Vec<f32>; 3],
     /// The positions of the sites in the middle.
     centers: Vec<Vec3>,
     reach_sq: f32,
 }
 
 /// A site that is read.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Record {
     pub(crate) position: [f32; 3],
     pub(crate) normal: [f32; 3],
     pub(crate) site: u32,
 }
 
-/// The sites near one site, relative to it.
+/// The sites near a position, in the order in which their values are added up.
 #[derive(Debug, Default)]
 pub(crate) struct Nearby {
-    pub(crate) records: Vec<Record>,
+    numbers: Vec<u32>,
+    /// The sites that are not of [`Neighborhoods`].
+    records: Vec<Record>,
+}
+
+/// Sites near a position: some of a list, which is not in their order.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Around<'a> {
+    records: &'a [Record],
+    /// Which of `records` they are.
+    numbers: &'a [u32],
+    /// What positions are relative to.
+    center: [f32; 3],
 }
 
 impl Neighborhoods {
@@ -63,12 +80,7 @@ impl Neighborhoods {
             .iter()
             .map(|&at| (at - middle).as_vec3())
             .collect();
-        let empty = Record {
-            position: [0.0; 3],
-            normal: [0.0; 3],
-            site: 0,
-        };
-        let mut records = vec![empty; n_reads];
+        let mut records = vec![Record::default(); n_reads];
         let mut next = first.clone();
         for site in 0..n_reads {
             let to = &mut next[cells.of_site(site as u32)];
@@ -79,7 +91,12 @@ impl Neighborhoods {
             };
             *to += 1;
         }
+        let column = |part: usize| {
+            let column = records.iter().map(|record| record.position[part]);
+            column.chain([f32::MAX; LANES]).collect()
+        };
         Self {
+            columns: [0, 1, 2].map(column),
             cells,
             first,
             records,
@@ -96,43 +113,106 @@ impl Neighborhoods {
     /// Takes the sites in the ball of a site; a small piece of the surface that has no site of a coarse level takes the
     /// nearest one of all.
     #[inline]
-    pub(crate) fn collect(&self, site: u32, nearby: &mut Nearby) {
+    pub(crate) fn collect<'a>(
+        &'a self,
+        level: Level,
+        site: u32,
+        nearby: &'a mut Nearby,
+    ) -> Around<'a> {
         let center = self.centers[site as usize].to_array();
-        nearby.records.clear();
-        for cells in self.cells.near(self.cells.of_site(site)) {
-            let [from, until] = [cells.start, cells.end].map(|cell| self.first[cell as usize]);
-            for record in &self.records[from as usize..until as usize] {
-                let position = core::array::from_fn(|part| record.position[part] - center[part]);
-                if length_sq(position) < self.reach_sq {
-                    nearby.records.push(Record {
-                        position,
-                        ..*record
-                    });
-                }
-            }
+        let cell = self.cells.of_site(site);
+        let numbers = &mut nearby.numbers;
+        dispatch!(level, simd => self.collect_ball(simd, cell, center, numbers));
+        if numbers.is_empty() {
+            numbers.extend(self.nearest(center));
         }
-        if nearby.records.is_empty() {
-            nearby.records.extend(self.nearest(center));
+        Around {
+            records: &self.records,
+            numbers,
+            center,
         }
     }
 
-    /// The site nearest to a position, relative to it; of several the first.
+    /// Lists the sites in the ball around a center in a cell.
+    #[inline(always)]
+    fn collect_ball<S: Simd>(
+        &self,
+        simd: S,
+        cell: usize,
+        center: [f32; 3],
+        numbers: &mut Vec<u32>,
+    ) {
+        let [x, y, z] = &self.columns;
+        let mut length = 0;
+        for cells in self.cells.near(cell) {
+            let [from, until] =
+                [cells.start, cells.end].map(|cell| self.first[cell as usize] as usize);
+            // Room for all, and for the rest of the last register.
+            if numbers.len() < length + until - from + LANES {
+                numbers.resize(length + until - from + LANES, 0);
+            }
+            for first in (from..until).step_by(LANES) {
+                let load = |column: &[f32]| f32x8::from_slice(simd, &column[first..first + LANES]);
+                let [x, y, z] = [
+                    load(x) - center[0],
+                    load(y) - center[1],
+                    load(z) - center[2],
+                ];
+                let near = (x * x + y * y + z * z).simd_lt(self.reach_sq).to_bitmask();
+                // The last register of a row of cells also holds sites of the next one.
+                let near = near & ((1 << (until - first).min(LANES)) - 1);
+                // Without branches on which ones are near, which a processor could not predict.
+                let room: &mut [u32] = &mut numbers[length..length + LANES];
+                let mut n_near = 0;
+                for lane in 0..LANES {
+                    room[n_near % LANES] = (first + lane) as u32;
+                    n_near += (near >> lane & 1) as usize;
+                }
+                length += n_near;
+            }
+        }
+        numbers.truncate(length);
+    }
+
+    /// The number of the site nearest to a position; of several the first.
     #[cold]
-    fn nearest(&self, center: [f32; 3]) -> Option<Record> {
-        let relative = self.records.iter().map(|record| Record {
-            position: core::array::from_fn(|part| record.position[part] - center[part]),
-            ..*record
-        });
-        relative.min_by(|a, b| {
-            let [from_a, from_b] = [a, b].map(|record| length_sq(record.position));
-            from_a.total_cmp(&from_b).then(a.site.cmp(&b.site))
-        })
+    fn nearest(&self, center: [f32; 3]) -> Option<u32> {
+        let far = |record: &Record| length_sq(difference(record.position, center));
+        let numbers = (0..).zip(&self.records);
+        let nearest =
+            numbers.min_by(|(_, a), (_, b)| far(a).total_cmp(&far(b)).then(a.site.cmp(&b.site)));
+        nearest.map(|(number, _)| number)
     }
 }
 
 #[inline(always)]
 fn length_sq([x, y, z]: [f32; 3]) -> f32 {
     x * x + y * y + z * z
+}
+
+#[inline(always)]
+fn difference(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    core::array::from_fn(|part| a[part] - b[part])
+}
+
+impl<'a> Around<'a> {
+    /// The number of sites.
+    #[inline(always)]
+    pub(crate) fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// The sites.
+    #[inline(always)]
+    pub(crate) fn sites(self) -> impl Iterator<Item = Record> + 'a {
+        self.numbers.iter().map(move |&number| {
+            let record = &self.records[number as usize];
+            Record {
+                position: difference(record.position, self.center),
+                ..*record
+            }
+        })
+    }
 }
 
 impl Nearby {
@@ -143,7 +223,7 @@ impl Nearby {
         level: usize,
         center: DVec3,
         reach: f64,
-    ) {
+    ) -> Around<'_> {
         let sites = hierarchy.sites();
         let mut reach = reach;
         self.records.clear();
@@ -162,6 +242,13 @@ impl Nearby {
                     }
                 });
             reach *= 2.0;
+        }
+        self.numbers.clear();
+        self.numbers.extend(0..self.records.len() as u32);
+        Around {
+            records: &self.records,
+            numbers: &self.numbers,
+            center: [0.0; 3],
         }
     }
 }

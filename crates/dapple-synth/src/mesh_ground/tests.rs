@@ -5,7 +5,7 @@ use crate::Synthesizer;
 use crate::ground::{Ground, Plain, Rows, Samples, Square};
 use dapple_hash::Seed;
 use dapple_mesh::{HierarchyOptions, INTERPOLATION_RADIUS, Mesh, Surface};
-use dapple_raster::simd::for_every_level;
+use dapple_raster::simd::{self, for_every_level};
 use glam::{DVec2, DVec3};
 
 /// A torus as a grid of triangles, or a part of it with two borders.
@@ -163,6 +163,7 @@ fn squares_have_the_same_bits_at_every_simd_level() {
     let case = Case::new(torus(40, false), 2000);
     let (ground, column) = (case.ground(), column(2000 * 3));
     let prepared = ground.prepare(0, Some(3), None);
+    let around = prepared.same.as_ref().unwrap();
     let mut all: Vec<Vec<Samples>> = Vec::new();
     for_every_level(|level| {
         let mut memory = MeshMemory::default();
@@ -178,7 +179,7 @@ fn squares_have_the_same_bits_at_every_simd_level() {
             interpolate(
                 level,
                 &memory.lattice,
-                &memory.nearby,
+                around.collect(level, site, &mut memory.nearby),
                 radius,
                 again,
                 &mut memory.interpolation,
@@ -237,8 +238,8 @@ fn turns_keep_the_order_of_sites_that_read_each_other() {
     assert!(!turn_of.contains(&usize::MAX), "a site is missing");
     for turn in 0..4000 {
         let (site, wait) = turns.turn(turn);
-        around.collect(site, &mut memory.nearby);
-        for record in &memory.nearby.records {
+        let near = around.collect(simd::level(), site, &mut memory.nearby);
+        for record in near.sites() {
             let (site, other) = (site as usize, record.site as usize);
             if rank[other] < rank[site] {
                 assert!(turn_of[other] < wait, "{site} does not wait for {other}");
