@@ -39,7 +39,7 @@ pub(crate) struct Spoke {
     pub(crate) joined: bool,
 }
 
-/// Finds stars, one after the other. Those of sites in one cell of the grid share what is looked up.
+/// Finds stars among the same sites, one after the other. Those of sites in one cell of the grid share what is looked up.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StarFinder {
     cell: Cell,
