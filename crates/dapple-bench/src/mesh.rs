@@ -1,7 +1,6 @@
-//! The mesh group: which sites are connected.
-//!
-//! The sites are 65,536 even points on the procedural animal. Confirmed: both ways connect the same pairs.
+//! The mesh group: how even sites are, and which of them are connected.
 
+mod evenness;
 #[cfg(feature = "peers")]
 mod stars;
 
@@ -9,15 +8,8 @@ use crate::harness::Bench;
 use anyhow::Result;
 
 /// Measures the rows of the group.
-#[cfg_attr(
-    not(feature = "peers"),
-    expect(
-        unused_variables,
-        clippy::unnecessary_wraps,
-        reason = "all rows are beside peers"
-    )
-)]
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
+    evenness::run(bench)?;
     #[cfg(feature = "peers")]
     stars::run(bench)?;
     Ok(())

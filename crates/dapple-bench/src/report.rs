@@ -47,7 +47,8 @@ pub(crate) fn markdown(machine: &Machine, filters: &[String], rows: &[Row]) -> S
 /// How to read the tables.
 const EXPLANATION: &str = "\
 Times are of the processor, not of the wall, medians of interleaved runs on one thread; `src/harness/two_threads.rs`
-explains the rows on two; beside what papers took, ours is the wall time on two threads. The ratio is theirs over ours where the bar is a `≥`, and ours over theirs where it is a `≤`.
+explains the rows on two; beside what papers took, ours is the wall time on two threads. The ratio of times is theirs over ours where the bar is a `≥`, and ours over theirs where it is a `≤`;
+that of distances and angles is always ours over theirs.
 Every row also confirms that both sides did the work: see the modules of the groups.";
 
 /// One group as a table, and the notes of its rows.

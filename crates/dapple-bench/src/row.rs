@@ -9,6 +9,8 @@ pub(crate) enum Must {
     Faster(f64),
     /// The time of ours over the time of the other side is at most this: ours costs that many times as much.
     CostAtMost(f64),
+    /// What ours has of something good over what the other side has of it is at least this.
+    AtLeast(f64),
 }
 
 impl Must {
@@ -16,14 +18,14 @@ impl Must {
     pub(crate) fn ratio(self, ours: f64, theirs: f64) -> f64 {
         match self {
             Self::Faster(_) => theirs / ours,
-            Self::CostAtMost(_) => ours / theirs,
+            Self::CostAtMost(_) | Self::AtLeast(_) => ours / theirs,
         }
     }
 
     /// Whether a ratio meets the bar. A ratio that is not a number meets none.
     pub(crate) fn holds(self, ratio: f64) -> bool {
         match self {
-            Self::Faster(bar) => ratio >= bar,
+            Self::Faster(bar) | Self::AtLeast(bar) => ratio >= bar,
             Self::CostAtMost(bar) => ratio <= bar,
         }
     }
@@ -63,11 +65,11 @@ impl Case {
             })
     }
 
-    /// The row of this case from the seconds that one unit of work took each side, or from bytes or distances.
+    /// The row of this case from the seconds that one unit of work took each side, or from bytes, distances or angles.
     pub(crate) fn row(&self, ours: f64, theirs: f64) -> Row {
         let ratio = self.must.ratio(ours, theirs);
         let (must, at) = match self.must {
-            Must::Faster(bar) => (bar, "least"),
+            Must::Faster(bar) | Must::AtLeast(bar) => (bar, "least"),
             Must::CostAtMost(bar) => (bar, "most"),
         };
         Row {
@@ -113,11 +115,9 @@ pub(crate) enum Unit {
     /// Megabytes of memory, 10^6 bytes each.
     Megabytes,
     /// A distance from 0 to 1, in thousandths.
-    #[cfg_attr(
-        not(feature = "peers"),
-        expect(dead_code, reason = "only rows beside peers compare distances")
-    )]
     Thousandths,
+    /// An angle.
+    Degrees,
 }
 
 impl Unit {
@@ -132,16 +132,17 @@ impl Unit {
             Self::S => "s",
             Self::Megabytes => "MB",
             Self::Thousandths => "distance/1000",
+            Self::Degrees => "degrees",
         }
     }
 
-    /// How many of this unit one second is, or one byte, or a distance of 1.
+    /// How many of this unit one second is, or one byte, a distance of 1, or a degree.
     pub(crate) const fn per_one(self) -> f64 {
         match self {
             Self::NsPerPixel | Self::NsPerPoint | Self::NsPerPosition => 1e9,
             Self::UsPerQuery => 1e6,
             Self::Ms | Self::Thousandths => 1e3,
-            Self::S => 1.0,
+            Self::S | Self::Degrees => 1.0,
             Self::Megabytes => 1e-6,
         }
     }
@@ -162,7 +163,7 @@ pub(crate) struct Row {
     pub(crate) ours: f64,
     /// The time of the other side.
     pub(crate) theirs: f64,
-    /// Theirs over ours where the bar is `least`, ours over theirs where it is `most`.
+    /// Theirs over ours where the bar is `least` and times are compared, ours over theirs everywhere else.
     pub(crate) ratio: f64,
     /// The bar.
     pub(crate) must: f64,
@@ -216,9 +217,22 @@ mod tests {
     }
 
     #[test]
+    fn at_least_divides_ours_by_theirs_and_needs_at_least_the_bar() {
+        let case = Case {
+            must: Must::AtLeast(0.5),
+            ..CASE
+        };
+        let row = case.row(1.0, 2.0);
+        assert!(row.holds, "half is half, not {}", row.ratio);
+        assert_eq!(row.at, "least", "more is better");
+        assert!(!case.row(0.9, 2.0).holds, "0.45 is less than half");
+    }
+
+    #[test]
     fn ratio_that_is_not_a_number_holds_no_bar() {
         assert!(!Must::Faster(1.0).holds(f64::NAN), "0 / 0 is not fast");
         assert!(!Must::CostAtMost(1.0).holds(f64::NAN), "0 / 0 is not cheap");
+        assert!(!Must::AtLeast(1.0).holds(f64::NAN), "0 / 0 is not much");
     }
 
     #[test]

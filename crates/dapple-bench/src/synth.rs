@@ -10,6 +10,7 @@ mod alike;
 mod beside_flat;
 mod drawings;
 mod matching;
+mod on_surface;
 mod scene;
 pub(crate) mod size;
 mod steps;
@@ -29,6 +30,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     steps::run(bench)?;
     size::run(bench)?;
     matching::run(bench)?;
+    on_surface::run(bench)?;
     #[cfg(feature = "peers")]
     alike::run(bench)?;
     Ok(())

@@ -25,7 +25,10 @@ const ROUNDING: f64 = 8.881_784_197_001_252e-16;
 /// The Voronoi cell of the origin.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cell {
+    /// Counterclockwise.
     sides: Vec<Side>,
+    /// Which of them came last.
+    newest: usize,
     /// Of the largest circle through the origin and two neighbors in a row; infinite while the cell is open.
     diameter_sq: f64,
 }
@@ -67,6 +70,7 @@ impl Cell {
     /// Makes the cell the whole plane again.
     pub(crate) fn clear(&mut self) {
         self.sides.clear();
+        self.newest = 0;
         self.diameter_sq = f64::INFINITY;
     }
 
@@ -99,16 +103,21 @@ impl Cell {
     /// The neighbors, counterclockwise, that lie on an empty circle through the origin whose squared diameter is at
     /// most `limit_sq`.
     pub(crate) fn neighbors(&self, limit_sq: f64) -> impl Iterator<Item = Neighbor> + '_ {
-        let n = self.sides.len();
         let all = self.diameter_sq <= limit_sq;
-        let is_kept = move |index: usize| all || self.is_within(index % n, limit_sq);
-        (0..n)
+        let is_kept = move |index: usize| all || self.is_within(index, limit_sq);
+        // The one before the newest is the first.
+        let first = self
+            .newest
+            .wrapping_sub(1)
+            .min(self.sides.len().saturating_sub(1));
+        (first..self.sides.len())
+            .chain(0..first)
             .filter(move |&index| is_kept(index))
             .map(move |index| {
                 let side = &self.sides[index];
                 let joined = !side.corner.is_open
                     && side.corner.diameter_sq <= limit_sq
-                    && is_kept(index + 1);
+                    && is_kept(self.after(index));
                 Neighbor {
                     tag: side.tag,
                     joined,
@@ -121,9 +130,10 @@ impl Cell {
     fn first_cut(&self, new: &Side) -> Option<usize> {
         for (index, side) in self.sides.iter().enumerate() {
             let corner = &side.corner;
-            let excess = corner.lean.perp_dot(new.at) - new.length_sq * corner.turn;
+            let excess = corner.excess(new);
             // An open corner has an infinite slack.
-            if excess >= -corner.slack * new.length_sq && self.cuts(index, new).is_gt() {
+            let slack = corner.slack * new.length_sq;
+            if excess > slack || (excess >= -slack && self.cuts(index, new).is_gt()) {
                 return Some(index);
             }
         }
@@ -144,9 +154,8 @@ impl Cell {
                 Ordering::Less
             };
         }
-        let corner = &a.corner;
-        let excess = corner.lean.perp_dot(new.at) - new.length_sq * corner.turn;
-        if excess.abs() > corner.slack * new.length_sq {
+        let excess = a.corner.excess(new);
+        if excess.abs() > a.corner.slack * new.length_sq {
             return order(excess);
         }
         order(incircle(
@@ -169,20 +178,50 @@ impl Cell {
             last = self.after(last);
             count += 1;
         }
-        // The neighbors between these corners go; the one before the first corner becomes the first of all.
-        self.sides.rotate_left(first);
-        self.sides.drain(1..count);
-        self.sides.insert(1, new);
-        self.sides[0].corner = Corner::new(&self.sides[0], &self.sides[1]);
-        self.sides[1].corner = Corner::new(&self.sides[1], &self.sides[self.after(1)]);
-        let diameters = self.sides.iter().map(|side| side.corner.diameter_sq);
-        self.diameter_sq = diameters.fold(0.0, f64::max);
+        // The neighbors between these corners go.
+        let at = self.replace(first, last, count - 1, new);
+        let (before, after) = (self.before(at), self.after(at));
+        self.sides[before].corner = Corner::new(&self.sides[before], &self.sides[at]);
+        self.sides[at].corner = Corner::new(&self.sides[at], &self.sides[after]);
+        self.newest = at;
+        self.diameter_sq = 0.0;
+        for side in &self.sides {
+            if side.corner.diameter_sq > self.diameter_sq {
+                self.diameter_sq = side.corner.diameter_sq;
+            }
+        }
+    }
+
+    /// Puts a neighbor in the place of `count` others, those after `first` up to `last`; gives where it is then.
+    #[inline]
+    fn replace(&mut self, first: usize, last: usize, count: usize, new: Side) -> usize {
+        if last < first {
+            // They go on at the beginning.
+            self.sides.truncate(first + 1);
+            self.sides.drain(..=last);
+            self.sides.push(new);
+            return self.sides.len() - 1;
+        }
+        let at = first + 1;
+        if count == 0 {
+            self.sides.insert(at, new);
+        } else {
+            self.sides[at] = new;
+            if count > 1 {
+                self.sides.drain(at + 1..=last);
+            }
+        }
+        at
     }
 
     /// Whether the bisector of a point leaves nothing of a neighbor's side of the cell, of which it is known to cut off
     /// or go through the one corner, and `corner` is the other one.
     #[inline]
     fn hides(&self, neighbor: usize, corner: usize, new: &Side) -> bool {
+        let other = &self.sides[corner].corner;
+        if other.excess(new) < -other.slack * new.length_sq {
+            return false;
+        }
         let [before, after] = [self.before(neighbor), neighbor].map(|index| &self.sides[index]);
         // Where the corner is open the side is a ray, whose far end has to be cut off.
         self.cuts(corner, new).is_ge()
@@ -237,6 +276,13 @@ impl Corner {
         slack: f64::INFINITY,
         diameter_sq: f64::INFINITY,
     };
+
+    /// Above zero if a point lies in the circle through the neighbors and the origin, up to rounding; zero for an open
+    /// corner.
+    #[inline]
+    fn excess(&self, new: &Side) -> f64 {
+        self.lean.perp_dot(new.at) - new.length_sq * self.turn
+    }
 
     #[inline]
     fn new(a: &Side, b: &Side) -> Self {

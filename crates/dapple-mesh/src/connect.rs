@@ -7,7 +7,6 @@ use crate::oriented::Oriented;
 use crate::parallel::par_map;
 use crate::star::{Spoke, StarFinder};
 use crate::{MeshError, MeshErrorKind, SiteGraph, SiteGrid, SiteIdx};
-use core::ops::Range;
 use glam::DVec3;
 
 /// The stars that one thread makes at a time.
@@ -76,65 +75,101 @@ impl Connected {
     }
 }
 
-/// The stars of all sites, in compressed rows.
+/// The stars of all sites.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stars {
-    offsets: Vec<u32>,
+    /// Where the star of each site begins and ends.
+    spans: Vec<[u32; 2]>,
+    spokes: Vec<Spoke>,
+}
+
+/// The stars of some sites, one after the other.
+#[derive(Debug, Default)]
+struct Part {
+    ends: Vec<u32>,
     spokes: Vec<Spoke>,
 }
 
 impl Stars {
     /// Finds the stars of all sites, on all cores where the feature `rayon` is on.
     pub(crate) fn new(sites: &Oriented<'_>) -> Self {
-        let n_sites = sites.positions.len();
+        // In the order of the grid, so that those which follow each other are near each other.
+        let members = sites.grid.members();
+        let n_sites = members.len();
         let mut stars = Self {
-            offsets: Vec::with_capacity(n_sites + 1),
+            spans: vec![[0; 2]; n_sites],
             spokes: Vec::with_capacity(6 * n_sites),
         };
-        stars.offsets.push(0);
-        let part =
-            |index: usize| Self::of(sites, index * CHUNK..((index + 1) * CHUNK).min(n_sites));
-        for part in par_map(n_sites.div_ceil(CHUNK), part) {
+        let part = |index: usize| {
+            Part::new(
+                sites,
+                &members[index * CHUNK..((index + 1) * CHUNK).min(n_sites)],
+            )
+        };
+        let parts = par_map(n_sites.div_ceil(CHUNK), part);
+        for (part, members) in parts.into_iter().zip(members.chunks(CHUNK)) {
             let before = stars.spokes.len() as u32;
-            stars
-                .offsets
-                .extend(part.offsets.iter().map(|end| before + end));
+            let mut from = before;
+            for (site, end) in members.iter().zip(part.ends) {
+                stars.spans[site.index()] = [from, before + end];
+                from = before + end;
+            }
             stars.spokes.extend(part.spokes);
         }
         stars
     }
 
-    /// The stars of some sites, with the end of each.
-    fn of(sites: &Oriented<'_>, range: Range<usize>) -> Self {
-        let mut finder = StarFinder::default();
-        let mut part = Self::default();
-        for site in range {
-            finder.find(sites, SiteIdx(site as u32), &mut part.spokes);
-            part.offsets.push(part.spokes.len() as u32);
-        }
-        part
-    }
-
     /// The number of sites.
     pub(crate) fn len(&self) -> usize {
-        self.offsets.len() - 1
+        self.spans.len()
     }
 
     /// The star of a site, counterclockwise.
     #[inline]
     pub(crate) fn star(&self, site: SiteIdx) -> &[Spoke] {
-        let [from, to] = [site.index(), site.index() + 1].map(|at| self.offsets[at] as usize);
+        let [from, to] = self.spans[site.index()].map(|at| at as usize);
         &self.spokes[from..to]
     }
 
     /// The graph of the edges of all stars.
     pub(crate) fn union(&self) -> Connected {
-        let edges = (0..self.len() as u32).flat_map(|site| {
-            let star = self.star(SiteIdx(site));
-            star.iter().map(move |spoke| [SiteIdx(site), spoke.to])
+        let one_sided = self.one_sided();
+        let n_neighbors = self.spokes.len() + one_sided.len();
+        let mut others = one_sided.iter().peekable();
+        let graph = SiteGraph::from_rows(self.len(), n_neighbors, |site, row| {
+            row.extend(self.star(site).iter().map(|spoke| spoke.to));
+            while let Some([_, other]) = others.next_if(|[end, _]| *end == site) {
+                row.push(*other);
+            }
         });
-        let (graph, one_sided) = SiteGraph::from_ends(self.len(), edges);
+        let one_sided = one_sided.len();
         Connected { graph, one_sided }
+    }
+
+    /// The edges that are in the star of their second site only, in ascending order.
+    fn one_sided(&self) -> Vec<[SiteIdx; 2]> {
+        let mut found = Vec::new();
+        for site in (0..self.len() as u32).map(SiteIdx) {
+            for spoke in self.star(site) {
+                if self.star(spoke.to).iter().all(|back| back.to != site) {
+                    found.push([spoke.to, site]);
+                }
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+}
+
+impl Part {
+    fn new(sites: &Oriented<'_>, centers: &[SiteIdx]) -> Self {
+        let mut finder = StarFinder::default();
+        let mut part = Self::default();
+        for &center in centers {
+            finder.find(sites, center, &mut part.spokes);
+            part.ends.push(part.spokes.len() as u32);
+        }
+        part
     }
 }
 

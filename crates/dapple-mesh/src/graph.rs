@@ -26,60 +26,52 @@ impl SiteGraph {
     pub fn from_edges(n_sites: usize, edges: impl IntoIterator<Item = [SiteIdx; 2]>) -> Self {
         let is_edge = |&[a, b]: &[SiteIdx; 2]| a != b && a.index().max(b.index()) < n_sites;
         let edges: Vec<[SiteIdx; 2]> = edges.into_iter().filter(is_edge).collect();
-        Self::from_ends(n_sites, edges.iter().copied()).0
-    }
-
-    /// The graph with these edges, and the number of those that are given once only.
-    ///
-    /// No edge is one from a site to itself, and the sites are below their number.
-    pub(crate) fn from_ends(
-        n_sites: usize,
-        edges: impl Iterator<Item = [SiteIdx; 2]> + Clone,
-    ) -> (Self, usize) {
         // Where the row of each site begins; while they are filled, where its next neighbor goes.
         let mut next = vec![0_u32; n_sites + 1];
-        for [a, b] in edges.clone() {
+        for [a, b] in &edges {
             next[a.index() + 1] += 1;
             next[b.index() + 1] += 1;
         }
         for site in 0..n_sites {
             next[site + 1] += next[site];
         }
-        let mut neighbors = vec![SiteIdx(0); next[n_sites] as usize];
-        for [a, b] in edges {
+        let mut ends = vec![SiteIdx(0); next[n_sites] as usize];
+        for &[a, b] in &edges {
             for [from, to] in [[a, b], [b, a]] {
-                neighbors[next[from.index()] as usize] = to;
+                ends[next[from.index()] as usize] = to;
                 next[from.index()] += 1;
             }
         }
-        // Every row now ends where the next one began.
-        Self::from_rows(&next[..n_sites], neighbors)
+        let mut from = 0;
+        Self::from_rows(n_sites, ends.len(), |site, row| {
+            // Every row now ends where the next one began.
+            let end = next[site.index()] as usize;
+            row.extend(&ends[from..end]);
+            from = end;
+        })
     }
 
-    /// Sorts rows, which have these ends, and keeps each neighbor once; counts the edges that were in a row once only.
-    fn from_rows(ends: &[u32], mut neighbors: Vec<SiteIdx>) -> (Self, usize) {
-        let mut offsets = Vec::with_capacity(ends.len() + 1);
+    /// The graph of the rows that `add` appends to what it is given, one after the other; each is sorted, and a site in
+    /// it is kept once. They must be symmetric, and have about `n_neighbors` sites altogether.
+    pub(crate) fn from_rows(
+        n_sites: usize,
+        n_neighbors: usize,
+        mut add: impl FnMut(SiteIdx, &mut Vec<SiteIdx>),
+    ) -> Self {
+        let mut offsets = Vec::with_capacity(n_sites + 1);
         offsets.push(0);
-        let (mut from, mut kept, mut singles) = (0, 0, 0);
-        for &end in ends {
-            let end = end as usize;
-            neighbors[from..end].sort_unstable();
-            while from < end {
-                let to = neighbors[from];
-                let first = from;
-                while from < end && neighbors[from] == to {
-                    from += 1;
-                }
-                singles += usize::from(from - first == 1);
-                neighbors[kept] = to;
-                kept += 1;
-            }
-            offsets.push(kept as u32);
+        let mut neighbors = Vec::with_capacity(n_neighbors);
+        let mut row = Vec::new();
+        for site in (0..n_sites as u32).map(SiteIdx) {
+            row.clear();
+            add(site, &mut row);
+            row.sort_unstable();
+            row.dedup();
+            neighbors.extend_from_slice(&row);
+            offsets.push(neighbors.len() as u32);
         }
-        neighbors.truncate(kept);
         neighbors.shrink_to_fit();
-        // Each edge is in two rows.
-        (Self { offsets, neighbors }, singles / 2)
+        Self { offsets, neighbors }
     }
 
     /// The number of sites.
@@ -149,12 +141,5 @@ mod tests {
             let found: Vec<[SiteIdx; 2]> = (0..n_sites).map(SiteIdx).flat_map(row).collect();
             assert!(found.iter().eq(&expected), "rows are sorted and complete");
         }
-    }
-
-    #[test]
-    fn edges_given_once_are_counted() {
-        let edges = [[0, 1], [1, 0], [1, 2], [2, 3], [3, 2]].map(|edge| edge.map(SiteIdx));
-        let (graph, once) = SiteGraph::from_ends(4, edges.into_iter());
-        assert_eq!((graph.n_edges(), once), (3, 1), "1 to 2 is given once");
     }
 }

@@ -32,6 +32,13 @@ struct Slot {
     brick: u32,
 }
 
+/// Cells from a first to a last one along each axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Block {
+    low: [u32; 3],
+    high: [u32; 3],
+}
+
 const EMPTY: u64 = u64::MAX;
 /// The bits of a cell's number along one axis: three of them fit 64 bits.
 const BITS: u32 = 21;
@@ -79,8 +86,42 @@ impl SiteGrid {
     /// The order is that of the bricks, then of the cells in a brick, x first and z last both times, then of the sites
     /// in a cell: it depends on the positions and the side only.
     #[inline]
-    pub fn visit(&self, center: DVec3, radius: f64, mut visit: impl FnMut(SiteIdx)) {
-        let (low, high) = (self.cell(center - radius), self.cell(center + radius));
+    pub fn visit(&self, center: DVec3, radius: f64, visit: impl FnMut(SiteIdx)) {
+        self.visit_between(
+            self.cell(center - radius),
+            self.cell(center + radius),
+            visit,
+        );
+    }
+
+    /// All sites, in the order of their cells.
+    pub(crate) fn members(&self) -> &[SiteIdx] {
+        &self.members
+    }
+
+    /// The cells that a ball can meet whose center is in the same cell as a position.
+    #[inline]
+    pub(crate) fn block(&self, position: DVec3, radius: f64) -> Block {
+        // One cell more than is needed where the radius is a whole number of cells: there, rounding could matter.
+        let away = (radius * self.scale) as u32;
+        let cell = self.cell(position);
+        Block {
+            low: cell.map(|part| part.saturating_sub(away.saturating_add(1))),
+            high: [0, 1, 2].map(|axis| {
+                let high = cell[axis].saturating_add(away).saturating_add(1);
+                high.min(self.last[axis])
+            }),
+        }
+    }
+
+    /// Calls `visit` with every site in the cells of a block, in the order of [`visit`](Self::visit).
+    pub(crate) fn visit_block(&self, block: Block, visit: impl FnMut(SiteIdx)) {
+        self.visit_between(block.low, block.high, visit);
+    }
+
+    /// Visits the sites of the cells from a first to a last one along each axis.
+    #[inline]
+    fn visit_between(&self, low: [u32; 3], high: [u32; 3], mut visit: impl FnMut(SiteIdx)) {
         if (0..3).any(|axis| low[axis] > high[axis]) {
             return;
         }

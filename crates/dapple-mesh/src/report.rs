@@ -54,6 +54,11 @@ impl Mesh {
     /// ```
     #[must_use]
     pub fn report(&self) -> MeshReport {
+        self.report_and_adjacency().0
+    }
+
+    /// The report, and which faces are neighbors, also across edges where windings differ.
+    pub(crate) fn report_and_adjacency(&self) -> (MeshReport, Adjacency) {
         let mut report = MeshReport {
             vertices: self.positions().len(),
             faces: self.faces().len(),
@@ -71,8 +76,8 @@ impl Mesh {
                 .count(),
             ..MeshReport::default()
         };
-        self.count_edges(&mut report);
-        report
+        let adjacency = self.count_edges(&mut report);
+        (report, adjacency)
     }
 
     /// Whether a face names a vertex twice or has no area.
@@ -113,7 +118,8 @@ impl Mesh {
         first
     }
 
-    fn count_edges(&self, report: &mut MeshReport) {
+    /// Counts what is found at edges and around vertices, and gives which faces are neighbors.
+    fn count_edges(&self, report: &mut MeshReport) -> Adjacency {
         let edges = sorted_edges(self);
         for group in edges.chunk_by(|a, b| a.ends == b.ends) {
             match group {
@@ -142,6 +148,7 @@ impl Mesh {
         }
         report.unused_vertices = used.iter().filter(|&&used| !used).count();
         report.non_manifold_vertices = n_fans.iter().filter(|&&count| count > 1).count();
+        adjacency
     }
 }
 

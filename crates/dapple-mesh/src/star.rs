@@ -16,6 +16,7 @@
 
 use crate::SiteIdx;
 use crate::cell::Cell;
+use crate::grid::Block;
 use crate::oriented::Oriented;
 use glam::{DVec2, DVec3};
 
@@ -38,20 +39,25 @@ pub(crate) struct Spoke {
     pub(crate) joined: bool,
 }
 
-/// Finds stars, one after the other.
+/// Finds stars among the same sites, one after the other. Those of sites in one cell of the grid share what is looked up.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StarFinder {
     cell: Cell,
-    near: Vec<Near>,
-    /// The squared distances of the sites in `near`, as the bits of an `f32`, above their indices.
+    /// One for each of [`REACHES`].
+    windows: [Window; REACHES.len()],
+    /// The squared distances of some sites of a window, as the bits of an `f32`, above their indices.
     order: Vec<u64>,
 }
 
-/// A site in the tangent plane of another one.
-#[derive(Clone, Copy, Debug)]
-struct Near {
-    at: DVec2,
-    site: SiteIdx,
+/// All sites in a block of cells.
+#[derive(Clone, Debug, Default)]
+struct Window {
+    block: Option<Block>,
+    sites: Vec<SiteIdx>,
+    /// Their positions along each axis.
+    columns: [Vec<f64>; 3],
+    /// Their squared distances from some position.
+    distances_sq: Vec<f64>,
 }
 
 /// The tangent plane of a site.
@@ -71,56 +77,110 @@ impl StarFinder {
         let tangent = Tangent::new(sites, center);
         self.cell.clear();
         let mut seen_sq = 0.0;
-        for reach in REACHES {
+        for (window, reach) in REACHES.into_iter().enumerate() {
             let reach_sq = reach * reach;
-            self.look(sites, &tangent, [seen_sq, reach_sq]);
-            self.clip();
+            self.look(sites, &tangent, window, [seen_sq, reach_sq]);
+            self.clip(sites, &tangent, window);
             if self.cell.diameter_sq() <= reach_sq {
                 break;
             }
             seen_sq = reach_sq;
         }
         let limit_sq = 4.0 * STAR_RADIUS * STAR_RADIUS;
-        star.extend(self.cell.neighbors(limit_sq).map(|neighbor| Spoke {
-            to: SiteIdx(neighbor.tag),
-            joined: neighbor.joined,
-        }));
+        self.cell.neighbors(limit_sq).for_each(|neighbor| {
+            star.push(Spoke {
+                to: SiteIdx(neighbor.tag),
+                joined: neighbor.joined,
+            });
+        });
     }
 
     /// Lists the sites with squared distances above the first and up to the second of two limits, nearest first.
     #[inline]
-    fn look(&mut self, sites: &Oriented<'_>, tangent: &Tangent, [above, up_to]: [f64; 2]) {
-        self.near.clear();
-        self.order.clear();
-        let radius = up_to.sqrt() * sites.spacing;
-        sites.grid.visit(tangent.position, radius, |site| {
-            let away = sites.positions[site.index()] - tangent.position;
-            let distance_sq = away.length_squared() * tangent.scale_sq;
-            if !(distance_sq > above && distance_sq <= up_to)
-                || sites.normals[site.index()].dot(tangent.normal) < 0.0
-            {
-                return;
-            }
-            if let Some(at) = tangent.map(away, distance_sq) {
-                let key = u64::from((at.length_squared() as f32).to_bits());
-                self.order.push(key << 32 | self.near.len() as u64);
-                self.near.push(Near { at, site });
-            }
-        });
+    fn look(
+        &mut self,
+        sites: &Oriented<'_>,
+        tangent: &Tangent,
+        window: usize,
+        [above, up_to]: [f64; 2],
+    ) {
+        let window = &mut self.windows[window];
+        window.move_to(sites, tangent.position, up_to.sqrt() * sites.spacing);
+        let distances_sq = window.distances_sq(tangent);
+        // Every site is written, and those that do not count are written over: branches would be guessed wrong.
+        self.order.resize(distances_sq.len(), 0);
+        let mut n_listed = 0;
+        for (index, &distance_sq) in distances_sq.iter().enumerate() {
+            self.order[n_listed] = u64::from((distance_sq as f32).to_bits()) << 32 | index as u64;
+            n_listed += usize::from(distance_sq > above && distance_sq <= up_to);
+        }
+        self.order.truncate(n_listed);
         self.order.sort_unstable();
     }
 
-    /// Clips the cell by the sites listed, until they are too far away to matter.
+    /// Clips the cell by the sites listed that are on the same sheet, until they are too far away to matter.
     #[inline]
-    fn clip(&mut self) {
+    fn clip(&mut self, sites: &Oriented<'_>, tangent: &Tangent, window: usize) {
+        let window = &self.windows[window];
         for &key in &self.order {
-            let near = self.near[key as u32 as usize];
             // The order is that of rounded distances.
-            if near.at.length_squared() > self.cell.diameter_sq() * 1.000_001 {
+            if f64::from(f32::from_bits((key >> 32) as u32)) > self.cell.diameter_sq() * 1.000_001 {
                 return;
             }
-            self.cell.clip(near.at, near.site.0);
+            let index = key as u32 as usize;
+            let site = window.sites[index];
+            if sites.normals[site.index()].dot(tangent.normal) < 0.0 {
+                continue;
+            }
+            let away = sites.positions[site.index()] - tangent.position;
+            if let Some(at) = tangent.map(away, window.distances_sq[index]) {
+                self.cell.clip(at, site.0);
+            }
         }
+    }
+}
+
+impl Window {
+    /// Looks up the sites that are in reach of a position, unless they are at hand.
+    #[inline]
+    fn move_to(&mut self, sites: &Oriented<'_>, position: DVec3, radius: f64) {
+        let block = sites.grid.block(position, radius);
+        if self.block != Some(block) {
+            self.block = Some(block);
+            self.fill(sites, block);
+        }
+    }
+
+    fn fill(&mut self, sites: &Oriented<'_>, block: Block) {
+        self.sites.clear();
+        sites.grid.visit_block(block, |site| self.sites.push(site));
+        let [x, y, z] = &mut self.columns;
+        for column in [&mut *x, y, z] {
+            column.clear();
+        }
+        let positions = || self.sites.iter().map(|site| sites.positions[site.index()]);
+        x.extend(positions().map(|position| position.x));
+        y.extend(positions().map(|position| position.y));
+        z.extend(positions().map(|position| position.z));
+    }
+
+    /// The squared distances of all sites from one, in spacings.
+    #[inline]
+    fn distances_sq(&mut self, from: &Tangent) -> &[f64] {
+        let n = self.sites.len();
+        self.distances_sq.resize(n, 0.0);
+        let [x, y, z] = self.columns.each_ref().map(|column| &column[..n]);
+        let center = from.position;
+        for (index, distance_sq) in self.distances_sq[..n].iter_mut().enumerate() {
+            let away = [
+                x[index] - center.x,
+                y[index] - center.y,
+                z[index] - center.z,
+            ];
+            let length_sq = away[0] * away[0] + away[1] * away[1] + away[2] * away[2];
+            *distance_sq = length_sq * from.scale_sq;
+        }
+        &self.distances_sq
     }
 }
 

@@ -47,7 +47,8 @@ impl Surface {
     /// [`MeshErrorKind::Defects`] if there are faces without an area, duplicate faces, or edges whose two faces go around
     /// different sides: [`Mesh::repair`] mends them. [`MeshErrorKind::NoArea`] for a mesh without faces.
     pub fn new(mesh: Mesh) -> Result<Self, MeshError> {
-        let report = mesh.report();
+        // Where no windings differ, the neighbors are those of `Adjacency::new`.
+        let (report, adjacency) = mesh.report_and_adjacency();
         let (degenerate, duplicate, winding) = (
             report.degenerate_faces,
             report.duplicate_faces,
@@ -68,7 +69,6 @@ impl Surface {
         if flats.is_empty() {
             return Err(MeshError::new(MeshErrorKind::NoArea));
         }
-        let adjacency = Adjacency::new(&mesh);
         for face in faces() {
             let corners = mesh.corners(face);
             for edge in 0..3 {

@@ -148,7 +148,7 @@ where
     .prepared(|made| made.0 = Vec::new());
     // About as much time for our runs of a turn as for the one of the peer.
     let times = match case.must {
-        Must::Faster(bar) => bar,
+        Must::Faster(bar) | Must::AtLeast(bar) => bar,
         Must::CostAtMost(bar) => 1.0 / bar,
     };
     let ours = grid.side()?.times(times.ceil() as u32);

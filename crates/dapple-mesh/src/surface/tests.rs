@@ -58,6 +58,18 @@ fn check_tables(surface: &Surface) {
 }
 
 #[test]
+fn adjacency_is_that_of_the_mesh() {
+    for surface in [tetrahedron(), cube(), plane(3, 2), ring(7, false)].map(surface) {
+        assert_eq!(
+            *surface.adjacency(),
+            Adjacency::new(surface.mesh()),
+            "neighbors of {} faces",
+            surface.mesh().faces().len()
+        );
+    }
+}
+
+#[test]
 fn surface_tables_fit_on_plain_meshes() {
     for mesh in [tetrahedron(), cube(), plane(3, 2), ring(5, false)] {
         check_tables(&surface(mesh));

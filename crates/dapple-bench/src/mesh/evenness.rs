@@ -1,0 +1,56 @@
+//! How even repelled points are, beside those of a hexagonal lattice: the distances to nearest neighbors.
+//!
+//! The points are those of the default hierarchy on the procedural animal, 262,144 of them. The worst of the levels counts.
+
+use crate::harness::Bench;
+use crate::row::{Case, Must, Unit};
+use anyhow::{Result, ensure};
+use dapple_mesh::{Evenness, Hierarchy, HierarchyOptions, Surface, evenness, models};
+
+const MEAN: Case = Case {
+    group: "mesh",
+    case: "repelled points, mean distance to the nearest",
+    peer: "a hexagonal lattice",
+    unit: Unit::Thousandths,
+    must: Must::AtLeast(0.88),
+    note: "262,144 points on a procedural animal, 3 levels of which the worst counts",
+};
+
+const LEAST: Case = Case {
+    case: "repelled points, least distance to the nearest",
+    must: Must::AtLeast(0.5),
+    ..MEAN
+};
+
+const N_SITES: usize = 512 * 512;
+
+pub(super) fn run(bench: &mut Bench) -> Result<()> {
+    if !bench.wants_any(&[MEAN, LEAST]) {
+        return Ok(());
+    }
+    let surface = Surface::new(models::bunny(6000)?)?;
+    let options = HierarchyOptions {
+        n_sites: N_SITES,
+        n_levels: 3,
+        seed: crate::sets::SEED,
+        ..HierarchyOptions::default()
+    };
+    let hierarchy = Hierarchy::new(&surface, &options)?;
+    ensure!(hierarchy.sites().len() == N_SITES, "a site is missing");
+    let of = |n_sites| evenness(&surface, hierarchy.sites(), n_sites);
+    let levels: Vec<Evenness> = hierarchy
+        .levels()
+        .iter()
+        .map(|level| of(level.n_sites()))
+        .collect();
+    let worst = |part: fn(&Evenness) -> f64| levels.iter().map(part).fold(f64::INFINITY, f64::min);
+    for (case, found) in [
+        (MEAN, worst(|level| level.mean)),
+        (LEAST, worst(|level| level.min)),
+    ] {
+        if bench.wants(&case) {
+            bench.measured(&case, found, 1.0);
+        }
+    }
+    Ok(())
+}

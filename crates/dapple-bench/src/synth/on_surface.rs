@@ -1,0 +1,177 @@
+//! How a texture lies on a surface: stripes run along the field, and nothing jumps at the edges of the input mesh.
+//!
+//! The direction of a texture is that of least change, from the structure tensor of the sites around each one: Josef Bigün
+//! and Gösta Granlund, "Optimal Orientation Detection of Linear Symmetry", ICCV 1987.
+//!
+//! Colors are compared a little to the left and to the right of every edge. How much they may differ follows from
+//! equation 1: a weight changes by at most 1.5 over the radius, and a mean of colors by at most as much as its weights do,
+//! each times how far its color is from the mean.
+
+use super::scene::{N_SITES, model, synthesizer};
+use crate::harness::{Bench, median};
+use crate::row::{Case, Must, Unit};
+use anyhow::{Context as _, Result, ensure};
+use dapple_color::LinearRgb;
+use dapple_mesh::{FaceEdge, FaceIdx, INTERPOLATION_RADIUS, SiteIdx};
+use dapple_raster::Raster;
+use dapple_synth::{Edges, Exemplar, Options, Synthesizer};
+use glam::{DVec2, DVec3};
+
+const ORIENTATION: Case = Case {
+    group: "synth",
+    case: "orientation of features, median turn from the field",
+    peer: "the limit of 5 degrees",
+    unit: Unit::Degrees,
+    must: Must::CostAtMost(1.0),
+    note: "",
+};
+
+const JUMPS: Case = Case {
+    case: "jumps across input edges, the largest over its bound",
+    peer: "the bound of the interpolation",
+    unit: Unit::Thousandths,
+    ..ORIENTATION
+};
+
+/// How far from an edge colors are compared, in spacings.
+const ASIDE: f64 = 0.01;
+
+/// Colors are sums of about five `f32` from 0 to 1, each rounded by up to 2^-24 a few times.
+const ROUNDING: f64 = 1e-6;
+
+pub(super) fn run(bench: &mut Bench) -> Result<()> {
+    if !bench.wants_any(&[ORIENTATION, JUMPS]) {
+        return Ok(());
+    }
+    let model = model()?;
+    let synthesizer = synthesizer(&model, N_SITES, 3)?;
+    let texture = synthesizer.synthesize(&stripes()?, &Options::default())?;
+    let note = format!("upright stripes, 262,144 sites; {}", model.note);
+    let striped = Striped {
+        values: texture.values(0).chunks(3).map(|color| color[0]).collect(),
+        synthesizer: &synthesizer,
+    };
+    if bench.wants(&ORIENTATION) {
+        let mut turns: Vec<f64> = synthesizer
+            .hierarchy()
+            .sites()
+            .iter()
+            .map(|site| striped.turn(site))
+            .collect();
+        bench.measured_with(&ORIENTATION, median(&mut turns), 5.0, note.clone());
+    }
+    if bench.wants(&JUMPS) {
+        let [found, bound] = striped.largest_jump()?;
+        bench.measured_with(&JUMPS, found, bound, note);
+    }
+    Ok(())
+}
+
+/// Upright stripes, seven in 56 pixels: the texture changes along P only.
+fn stripes() -> Result<Exemplar> {
+    let image = Raster::from_fn([56, 56], |x, _| {
+        let turns = f64::from(x % 8) / 8.0;
+        let wave = 1.0 - (2.0 * turns - 1.0).abs();
+        LinearRgb::gray((0.1 + 0.8 * wave) as f32)
+    })?;
+    Ok(Exemplar::new(&image, Edges::Wrap)?)
+}
+
+/// A surface with stripes.
+struct Striped<'a> {
+    synthesizer: &'a Synthesizer,
+    /// The code of each site.
+    values: Vec<f32>,
+}
+
+impl Striped<'_> {
+    /// The angle between the field and the direction of least change, in degrees.
+    fn turn(&self, site: SiteIdx) -> f64 {
+        let hierarchy = self.synthesizer.hierarchy();
+        let (sites, level) = (hierarchy.sites(), &hierarchy.levels()[0]);
+        let value = |site: SiteIdx| f64::from(self.values[site.index()]);
+        let down = self.synthesizer.orientation().vectors()[site.index()];
+        let right = sites.normals()[site.index()].cross(down);
+        let center = sites.positions()[site.index()];
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        // The edges of a ball as wide as a stripe and its gap.
+        level.grid().visit(center, 4.0 * level.spacing(), |near| {
+            for &other in level.graph().neighbors(near) {
+                let step = sites.positions()[other.index()] - sites.positions()[near.index()];
+                let (x, y) = (step.dot(right), step.dot(down));
+                let part = (value(other) - value(near)) / (x * x + y * y);
+                let (x, y) = (x * part, y * part);
+                xx += x * x;
+                xy += x * y;
+                yy += y * y;
+            }
+        });
+        // The direction of most change is P where the texture follows the field.
+        (0.5 * DVec2::new(xx - yy, 2.0 * xy).to_angle())
+            .abs()
+            .to_degrees()
+    }
+
+    /// The difference of codes at an edge that is largest beside its bound, and the bound.
+    fn largest_jump(&self) -> Result<[f64; 2]> {
+        let surface = self.synthesizer.surface();
+        let (mut largest, mut n_edges) = ([0.0, f64::INFINITY], 0);
+        for face in (0..surface.mesh().faces().len() as u32).map(FaceIdx) {
+            for edge in 0..3 {
+                let Some(other) = surface.adjacency().across(FaceEdge { face, edge }) else {
+                    continue;
+                };
+                let [found, bound] = self.jump(FaceEdge { face, edge }, other.face)?;
+                if found / bound > largest[0] / largest[1] {
+                    largest = [found, bound];
+                }
+                n_edges += 1;
+            }
+        }
+        ensure!(n_edges > 1000, "there are only {n_edges} edges");
+        Ok(largest)
+    }
+
+    /// How much codes differ to both sides of an edge, and by how much they may.
+    fn jump(&self, here: FaceEdge, there: FaceIdx) -> Result<[f64; 2]> {
+        let (surface, hierarchy) = (self.synthesizer.surface(), self.synthesizer.hierarchy());
+        let corners = surface.mesh().corners(here.face);
+        let edge = usize::from(here.edge);
+        let at = corners[edge].lerp(corners[(edge + 1) % 3], 0.4);
+        let aside = ASIDE * hierarchy.levels()[0].spacing();
+        let mut shown = [(DVec3::ZERO, 0.0); 2];
+        for (shown, face) in shown.iter_mut().zip([here.face, there]) {
+            let corners = surface.mesh().corners(face);
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let at = at + (middle - at).clamp_length_max(aside);
+            let normal = surface.normal(surface.project(face, at));
+            let value = hierarchy.interpolate(0, &self.values, at, normal)?;
+            *shown = (at, f64::from(value.context("a color")?));
+        }
+        let [(here, color), (there, other)] = shown;
+        Ok([(color - other).abs(), self.bound([here, there], color)])
+    }
+
+    /// How much a mean that is `color` at one of two positions may differ at the other one.
+    fn bound(&self, [here, there]: [DVec3; 2], color: f64) -> f64 {
+        let hierarchy = self.synthesizer.hierarchy();
+        let (sites, level) = (hierarchy.sites(), &hierarchy.levels()[0]);
+        let radius = INTERPOLATION_RADIUS * level.spacing();
+        let (mut spread, mut weights) = (0.0, 0.0);
+        level
+            .grid()
+            .visit(here, radius + here.distance(there), |site| {
+                let [x, y] =
+                    [here, there].map(|at| sites.positions()[site.index()].distance(at) / radius);
+                if x < 1.0 || y < 1.0 {
+                    spread += (f64::from(self.values[site.index()]) - color).abs();
+                    weights += if y < 1.0 {
+                        (2.0 * y - 3.0) * y * y + 1.0
+                    } else {
+                        0.0
+                    };
+                }
+            });
+        1.5 * here.distance(there) / radius * spread / weights + ROUNDING
+    }
+}
