@@ -3,7 +3,8 @@
 use crate::engine::{self, Progress};
 use crate::mesh_ground::MeshGround;
 use crate::{
-    Direction, Exemplar, Options, Orientation, SurfaceTexture, Sweep, SynthError, SynthErrorKind,
+    Axes, Direction, Exemplar, Options, Orientation, SurfaceTexture, Sweep, SynthError,
+    SynthErrorKind,
 };
 use core::ops::ControlFlow;
 use dapple_mesh::{Hierarchy, HierarchyOptions, Mesh, SiteIdx, Surface};
@@ -111,7 +112,11 @@ impl Synthesizer {
             }));
         }
         let pyramid = exemplar.pyramid(options.n_levels)?;
-        let levels = engine::run(&self.ground(), &pyramid, options, &mut callback)?;
+        let ground = MeshGround {
+            axes: options.axes,
+            ..self.ground()
+        };
+        let levels = engine::run(&ground, &pyramid, options, &mut callback)?;
         Ok(SurfaceTexture {
             levels,
             sizes: pyramid.levels().iter().map(Exemplar::size).collect(),
@@ -119,13 +124,14 @@ impl Synthesizer {
         })
     }
 
-    /// What the texture grows on.
+    /// What the texture grows on, with the axes of the paper.
     pub(crate) fn ground(&self) -> MeshGround<'_> {
         MeshGround {
             surface: &self.surface,
             hierarchy: &self.hierarchy,
             orientation: &self.orientation,
             sweep: &self.sweep,
+            axes: Axes::Carried,
         }
     }
 

@@ -1,5 +1,6 @@
 //! Where the samples of a square are on a surface.
 
+use super::turning::Turning;
 use crate::ground::Square;
 use dapple_mesh::{Surface, SurfacePoint, Walk};
 use glam::{DVec2, DVec3};
@@ -15,6 +16,8 @@ pub(crate) struct Lattice {
     /// The direction at the middle in which rows follow each other.
     pub(crate) down: DVec3,
     pub(crate) rows: Vec<Row>,
+    /// How the directions of the square turn.
+    turning: Turning,
 }
 
 /// Samples side by side.
@@ -33,16 +36,17 @@ pub(crate) struct Row {
 const NOWHERE: f32 = 1e18;
 
 impl Lattice {
-    /// Walks to all samples of a square around a point.
+    /// Walks to all samples of a square around a point. Directions are carried along, and turn on the way.
     pub(crate) fn lay(
         &mut self,
         surface: &Surface,
         middle: SurfacePoint,
-        orientation: DVec3,
+        (orientation, turning): (DVec3, Turning),
         square: &Square,
         spacing: f64,
     ) {
         self.make_room(square);
+        self.turning = turning;
         let down = surface
             .flatten(middle.face, orientation)
             .normalize_or(DVec2::X);
@@ -56,12 +60,15 @@ impl Lattice {
         };
         self.lay_column(surface, &start, half as usize, square, (center, spacing));
         for way in [1.0, -1.0] {
+            let turn = turning.right.toward(way);
             let mut walk = Walk {
                 direction: down.perp() * way,
                 ..start
             };
             for step in 1..=half {
-                walk = surface.walk(walk.point, walk.direction, spacing);
+                // Half of the turn before the step and half of it after: the second-order midpoint rule.
+                walk = surface.walk(walk.point, turn.of(walk.direction), spacing);
+                walk.direction = turn.of(walk.direction);
                 let column = Walk {
                     direction: -walk.direction.perp() * way,
                     ..walk
@@ -134,10 +141,11 @@ impl Lattice {
             );
         }
         for (way, n_steps) in [(-1, half), (1, last)] {
+            let turn = self.turning.down.toward(f64::from(way));
             let (mut point, mut direction) = (start.point, start.direction * f64::from(way));
             for step in 1..=n_steps {
-                let walk = surface.walk(point, direction, spacing);
-                (point, direction) = (walk.point, walk.direction);
+                let walk = surface.walk(point, turn.of(direction), spacing);
+                (point, direction) = (walk.point, turn.of(walk.direction));
                 let normal = surface.face_normal(point.face);
                 let row = (half + way * step) as usize;
                 self.put(surface, (point, normal), [row, column], center);
