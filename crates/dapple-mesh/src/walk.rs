@@ -63,14 +63,13 @@ impl Surface {
             return walk;
         }
         if distance >= 0.0 {
-            return self.forward(walk, |_, _| ());
+            return self.forward(walk);
         }
-        let back = Walk {
+        let walk = self.forward(Walk {
             direction: -direction,
             left: -distance,
             ..walk
-        };
-        let walk = self.forward(back, |_, _| ());
+        });
         Walk {
             direction: -walk.direction,
             left: -walk.left,
@@ -78,85 +77,12 @@ impl Surface {
         }
     }
 
-    /// Goes straight as [`walk`](Self::walk) does, and tells of every stop on the way: the first one, `step` away, has the
-    /// number 1, the last one `n_steps`.
-    ///
-    /// Stops past a border are where the path met it. A step below 0, and one that leads nowhere finite, is one of 0.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such face.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use dapple_mesh::{FaceIdx, Mesh, Surface, glam::DVec3};
-    ///
-    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)];
-    /// let square = Surface::new(Mesh::new(corners, &[[0, 1, 2], [3, 2, 1]])?)?;
-    /// let start = square.project(FaceIdx(0), DVec3::new(0.25, 0.25, 0.0));
-    /// let right = square.flatten(FaceIdx(0), DVec3::X);
-    /// let mut stops = Vec::new();
-    /// square.walk_in_steps(start, right, 0.5, 2, |_, stop| stops.push(square.position(stop.point).x));
-    /// assert_eq!(stops, [0.75, 1.0]);
-    /// # Ok::<(), dapple_mesh::MeshError>(())
-    /// ```
+    /// Goes the distance that is left.
     #[inline]
-    pub fn walk_in_steps(
-        &self,
-        from: SurfacePoint,
-        direction: DVec2,
-        step: f64,
-        n_steps: u32,
-        mut stop: impl FnMut(u32, Walk),
-    ) {
-        let is_path = from.flat.is_finite() && direction.is_finite();
-        let is_path = is_path && (step * f64::from(n_steps)).is_finite();
-        let step = if is_path { step.max(0.0) } else { 0.0 };
-        let total = step * f64::from(n_steps);
-        let walk = Walk {
-            point: from,
-            direction,
-            left: total,
-        };
-        let (mut next, mut gone) = (1, 0.0);
-        let end = self.forward(walk, |start, walk| {
-            let until = total - walk.left;
-            while next <= n_steps && step * f64::from(next) <= until {
-                let distance = step * f64::from(next) - gone;
-                let point = SurfacePoint {
-                    flat: start.flat + walk.direction * distance,
-                    ..start
-                };
-                let (direction, left) = (walk.direction, 0.0);
-                stop(
-                    next,
-                    Walk {
-                        point,
-                        direction,
-                        left,
-                    },
-                );
-                next += 1;
-            }
-            gone = until;
-        });
-        for next in next..=n_steps {
-            let left = step * f64::from(next) - gone;
-            stop(next, Walk { left, ..end });
-        }
-    }
-
-    /// Goes the distance that is left; `piece` hears of each face where the path enters it, and how it stands at the end of
-    /// its piece there.
-    #[inline]
-    fn forward(&self, mut walk: Walk, mut piece: impl FnMut(SurfacePoint, &Walk)) -> Walk {
+    fn forward(&self, mut walk: Walk) -> Walk {
         let mut entered = None;
         for _ in 0..CROSSINGS_MAX {
-            let start = walk.point;
-            let fold = self.leave_face(&mut walk, entered);
-            piece(start, &walk);
-            let Some(fold) = fold else {
+            let Some(fold) = self.leave_face(&mut walk, entered) else {
                 break;
             };
             walk.point.face = fold.to.face;
@@ -175,18 +101,29 @@ impl Surface {
         let flat = self.flat(walk.point.face);
         let corners = flat.corners();
         let from = walk.point.flat;
-        let mut nearest = walk.left;
-        let mut exit = None;
-        for edge in 0..3_u8 {
-            let [a, b] = [edge, (edge + 1) % 3].map(|corner| corners[usize::from(corner)]);
+        let near = |edge: usize| {
+            let [a, b] = [edge, (edge + 1) % 3].map(|corner| corners[corner]);
             let along = b - a;
             // A point that rounding has put outside of the edge is on it.
             let side = along.perp_dot(from - a).max(0.0);
             let rate = -along.perp_dot(walk.direction);
-            // The product keeps the division for edges that are near enough.
-            if rate * nearest > side && Some(edge) != entered {
-                nearest = side / rate;
-                exit = Some(edge);
+            (side, rate)
+        };
+        let edges = [near(0), near(1), near(2)];
+        // The product keeps the division for edges that are near enough.
+        let is_crossed = |(side, rate): (f64, f64), left: f64| rate * left > side;
+        let mut nearest = walk.left;
+        let mut exit = None;
+        // Most paths end in the face where they begin, which is found without branching at every edge.
+        if edges
+            .iter()
+            .fold(false, |any, &edge| any | is_crossed(edge, nearest))
+        {
+            for (edge, (side, rate)) in (0_u8..).zip(edges) {
+                if is_crossed((side, rate), nearest) && Some(edge) != entered {
+                    nearest = side / rate;
+                    exit = Some(edge);
+                }
             }
         }
         walk.point.flat = from + walk.direction * nearest;

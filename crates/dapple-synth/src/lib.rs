@@ -69,10 +69,13 @@
 //! * A match may be a little worse if it goes on with what a neighbor took ([`Options::coherence`]). The least difference
 //!   alone tends to repeat smooth parts of the exemplar and to blur away structure like bricks.
 //!
+//! * The rows and columns of a neighborhood turn as the field around its site does ([`Axes`]). Straight on, features that
+//!   bend seem to come from one side: stripes around a torus are then off by 3.7 degrees instead of 1.5.
+//!
 //! For both:
 //!
 //! * P = n × O points to the right, so that nothing is mirrored. Neighborhoods are laid out by walking over the faces of
-//!   the input, with both directions carried along, and not over the graph of sites.
+//!   the input, with both directions carried along over its edges, and not over the graph of sites.
 //! * Sites farther than 1.1 spacings have no part in a color between sites, and neither have those on another sheet, whose
 //!   normals are more than a right angle apart. At 2 spacings colors blur away.
 //! * H(n, 0) has the rows above the center only ([`Shape::Half`]); the row of the center is half random at that time.
@@ -138,7 +141,7 @@ pub use likeness::Likeness;
 pub use maps::{bake_colors, bake_values};
 pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
-pub use options::Options;
+pub use options::{Axes, Options};
 pub use orientation::{Direction, Orientation};
 pub use plane::{PlaneTexture, synthesize_plane, synthesize_plane_with};
 pub use surface_texture::SurfaceTexture;

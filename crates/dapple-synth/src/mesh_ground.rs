@@ -1,19 +1,22 @@
 //! Sites on a surface: squares of samples are laid out by walking along O and P.
 //!
 //! A sample at the offset (i, j) is found by going i spacings along P, to the right, and from there j spacings along O, down,
-//! on the polygons of the surface; both directions are carried along. Its value is that of equation 1, with distances in
-//! space. The sites that count are those within reach of the square as it would be on a plane.
+//! on the polygons of the surface; both directions are carried along, and turn as the field does ([`turning`]). Its value is
+//! that of equation 1, with distances in space. The sites that count are those within reach of the square as it would be on a
+//! plane.
 
 mod interpolate;
 mod lattice;
 mod nearby;
+mod turning;
 
 use crate::ground::{Colors, Ground, Samples, Square};
 use crate::turns::Turns;
-use crate::{Orientation, Sweep};
+use crate::{Axes, Orientation, Sweep};
 use dapple_mesh::{Hierarchy, INTERPOLATION_RADIUS, SiteIdx, Surface};
 use dapple_raster::simd;
 use nearby::Neighborhoods;
+use turning::Turning;
 
 pub(crate) use interpolate::{Interpolation, interpolate};
 pub(crate) use lattice::Lattice;
@@ -29,6 +32,7 @@ pub(crate) struct MeshGround<'a> {
     pub(crate) hierarchy: &'a Hierarchy,
     pub(crate) orientation: &'a Orientation,
     pub(crate) sweep: &'a Sweep,
+    pub(crate) axes: Axes,
 }
 
 /// The sites around those of a level, on the level itself and on the next coarser one.
@@ -107,11 +111,21 @@ impl Ground for MeshGround<'_> {
         let at = square.site as usize;
         let spacing = self.hierarchy.levels()[square.reads].spacing();
         let point = self.hierarchy.sites().points()[at];
-        let orientation = self.orientation.vectors()[at];
+        let vectors = self.orientation.vectors();
+        let turning = match self.axes {
+            Axes::Carried => Turning::default(),
+            Axes::Followed => Turning::around(
+                self.hierarchy,
+                vectors,
+                (SiteIdx(square.site), square.level),
+                (spacing, square.half),
+            ),
+        };
         let level = simd::level();
         let sites = around.collect(level, square.site, &mut memory.nearby);
         let lattice = &mut memory.lattice;
-        lattice.lay(self.surface, point, orientation, &square, spacing);
+        let directions = (vectors[at], turning);
+        lattice.lay(self.surface, point, directions, &square, spacing);
         interpolate(
             level,
             lattice,

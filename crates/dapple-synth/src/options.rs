@@ -19,9 +19,22 @@ pub struct Options {
     pub schedule: Option<Schedule>,
     /// Where neighborhoods on the coarser level are centered; by default exactly.
     pub center: CoarserCenter,
+    /// Which way neighborhoods on surfaces go on away from their site; by default as the field does.
+    pub axes: Axes,
     /// How much worse a match may be that continues the source of a neighboring site: it wins if its squared distance is
     /// at most `1 + coherence` times the least. At 0 the least always wins, as in the paper.
     pub coherence: f32,
+}
+
+/// Which way the rows and columns of a neighborhood on a surface go.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Axes {
+    /// They turn as the field around the site does, so that features along the field are straight in a neighborhood.
+    #[default]
+    Followed,
+    /// Straight on in the directions P and O of the site, carried along, as the paper has it.
+    Carried,
 }
 
 impl Default for Options {
@@ -31,6 +44,7 @@ impl Default for Options {
             n_levels: 3,
             schedule: None,
             center: CoarserCenter::Exact,
+            axes: Axes::Followed,
             coherence: 1.0,
         }
     }
@@ -42,6 +56,7 @@ impl Options {
     pub fn paper() -> Self {
         Self {
             center: CoarserCenter::Floor,
+            axes: Axes::Carried,
             coherence: 0.0,
             ..Self::default()
         }

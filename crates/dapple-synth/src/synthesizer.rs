@@ -3,7 +3,8 @@
 use crate::engine::{self, Progress};
 use crate::mesh_ground::MeshGround;
 use crate::{
-    Direction, Exemplar, Options, Orientation, SurfaceTexture, Sweep, SynthError, SynthErrorKind,
+    Axes, Direction, Exemplar, Options, Orientation, SurfaceTexture, Sweep, SynthError,
+    SynthErrorKind,
 };
 use core::ops::ControlFlow;
 use dapple_mesh::{Hierarchy, HierarchyOptions, Mesh, SiteIdx, Surface};
@@ -111,17 +112,19 @@ impl Synthesizer {
             }));
         }
         let pyramid = exemplar.pyramid(options.n_levels)?;
-        let sources = engine::run(&self.ground(), &pyramid, options, &mut callback)?;
+        let ground = self.ground(options.axes);
+        let sources = engine::run(&ground, &pyramid, options, &mut callback)?;
         Ok(SurfaceTexture::new(&pyramid, sources))
     }
 
     /// What the texture grows on.
-    pub(crate) fn ground(&self) -> MeshGround<'_> {
+    pub(crate) fn ground(&self, axes: Axes) -> MeshGround<'_> {
         MeshGround {
             surface: &self.surface,
             hierarchy: &self.hierarchy,
             orientation: &self.orientation,
             sweep: &self.sweep,
+            axes,
         }
     }
 

@@ -210,60 +210,6 @@ fn walk_over_vertices_of_closed_meshes_ends_on_them() {
 }
 
 #[test]
-fn stops_are_the_ends_of_walks_of_their_distance() {
-    let (tetrahedron, plane) = (surface(tetrahedron()), surface(plane(6, 6)));
-    let middle = 2 * (3 * 6 + 3) + 1;
-    for (surface, face, at) in [
-        (tetrahedron, 0, [0.1, 0.1, 0.1]),
-        (plane, middle, [3.1, 3.2, 0.0]),
-    ] {
-        for (turn, n_steps) in (0..40).map(|turn| (f64::from(turn) * 0.37, 1 + turn % 9)) {
-            let from = surface.project(FaceIdx(face), DVec3::from_array(at));
-            let direction = DVec2::new(libm::cos(turn), libm::sin(turn));
-            let mut numbers = Vec::new();
-            surface.walk_in_steps(from, direction, 0.61, n_steps, |step, stop| {
-                let walk = surface.walk(from, direction, 0.61 * f64::from(step));
-                let off = surface.position(stop.point) - surface.position(walk.point);
-                // At most 16 faces on the way, whose sides are at most 2 long; the distance is at most 6.
-                assert!(
-                    off.length() < 8.0 * ROUNDING,
-                    "step {step} along {turn}: {off}"
-                );
-                assert!(
-                    (stop.left - walk.left).abs() < 8.0 * ROUNDING,
-                    "left {stop:?}"
-                );
-                let turned = surface.lift(stop.point.face, stop.direction)
-                    - surface.lift(walk.point.face, walk.direction);
-                // A stop on an edge may be in either face.
-                let same_face = stop.point.face == walk.point.face;
-                assert!(
-                    !same_face || turned.length() < ROUNDING,
-                    "turned by {turned}"
-                );
-                numbers.push(step);
-            });
-            assert!(numbers.into_iter().eq(1..=n_steps), "each stop once");
-        }
-    }
-}
-
-#[test]
-fn steps_that_lead_nowhere_stay() {
-    let tetrahedron = surface(tetrahedron());
-    let from = SurfacePoint::default();
-    for step in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::MAX] {
-        let mut stops = 0;
-        tetrahedron.walk_in_steps(from, DVec2::X, step, 3, |_, stop| {
-            assert_eq!((stop.point, stop.left), (from, 0.0), "a step of {step}");
-            stops += 1;
-        });
-        assert_eq!(stops, 3, "a step of {step}");
-    }
-    tetrahedron.walk_in_steps(from, DVec2::X, 1.0, 0, |step, _| panic!("stop {step}"));
-}
-
-#[test]
 fn value_stability_walk() {
     let cube = surface(cube());
     let from = cube.point(FaceIdx(4), [0.5, 0.25, 0.25]);

@@ -5,8 +5,8 @@ use crate::ground::{Ground, Plain, Rows, Samples, Square};
 use crate::mesh_ground::MeshGround;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::{
-    Candidates, Edges, Exemplar, Options, Pyramid, Schedule, Shape, SynthErrorKind, Synthesizer,
-    distance_sq,
+    Axes, Candidates, Edges, Exemplar, Options, Pyramid, Schedule, Shape, SynthErrorKind,
+    Synthesizer, distance_sq,
 };
 use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
@@ -117,7 +117,7 @@ fn go_on(_: Progress) -> ControlFlow<()> {
 #[test]
 fn passes_are_those_of_the_pseudo_code() {
     let case = sphere(300);
-    let ground = case.ground();
+    let ground = case.ground(Axes::Carried);
     let paper = Schedule::paper(2);
     let part = |shape, side, reads| Part::new(shape, side, reads);
     let other = Schedule {
@@ -165,7 +165,7 @@ fn passes_are_those_of_the_pseudo_code() {
 #[test]
 fn texture_has_the_same_bits_on_any_number_of_threads() {
     let case = sphere(3000);
-    let ground = case.ground();
+    let ground = case.ground(Axes::Carried);
     let pyramid = pyramid(Edges::Wrap, 2);
     for coherence in [0.0, 1.0] {
         let options = Options {
@@ -192,7 +192,7 @@ fn texture_has_the_same_bits_on_any_number_of_threads() {
 #[test]
 fn coherent_texture_has_more_neighbors_that_continue_each_other() {
     let case = sphere(2000);
-    let ground = case.ground();
+    let ground = case.ground(Axes::Carried);
     let pyramid = pyramid(Edges::Wrap, 2);
     let continued = |coherence: f32| {
         let options = Options {
@@ -229,7 +229,7 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
 #[test]
 fn callback_hears_of_every_pass_and_can_stop_any() {
     let case = sphere(500);
-    let ground = case.ground();
+    let ground = case.ground(Axes::Carried);
     let pyramid = pyramid(Edges::Wrap, 2);
     let options = Options {
         n_levels: 2,
@@ -271,7 +271,7 @@ fn callback_hears_of_every_pass_and_can_stop_any() {
 #[test]
 fn value_stability_of_a_texture() {
     let case = sphere(400);
-    let ground = case.ground();
+    let ground = case.ground(Axes::Carried);
     let pyramid = pyramid(Edges::Wrap, 2);
     let options = Options {
         n_levels: 2,

@@ -1,5 +1,6 @@
 //! Where the samples of a square are on a surface.
 
+use super::turning::Turning;
 use crate::ground::Square;
 use dapple_mesh::{Surface, SurfacePoint, Walk};
 use glam::{DVec2, DVec3};
@@ -16,6 +17,8 @@ pub(crate) struct Lattice {
     pub(crate) down: DVec3,
     pub(crate) right: DVec3,
     pub(crate) rows: Vec<Row>,
+    /// How the directions of the square turn.
+    turning: Turning,
 }
 
 /// Samples side by side.
@@ -34,16 +37,17 @@ pub(crate) struct Row {
 const NOWHERE: f32 = 1e18;
 
 impl Lattice {
-    /// Walks to all samples of a square around a point.
+    /// Walks to all samples of a square around a point. Directions are carried along, and turn on the way.
     pub(crate) fn lay(
         &mut self,
         surface: &Surface,
         middle: SurfacePoint,
-        orientation: DVec3,
+        (orientation, turning): (DVec3, Turning),
         square: &Square,
         spacing: f64,
     ) {
         self.make_room(square);
+        self.turning = turning;
         let down = surface
             .flatten(middle.face, orientation)
             .normalize_or(DVec2::X);
@@ -59,15 +63,22 @@ impl Lattice {
         let around = (center, spacing);
         self.lay_column(surface, &start, half as usize, square, around);
         for way in [1.0, -1.0] {
-            let side = down.perp() * way;
-            surface.walk_in_steps(middle, side, spacing, half as u32, |step, walk| {
+            let turn = turning.right.toward(way);
+            let mut walk = Walk {
+                direction: down.perp() * way,
+                ..start
+            };
+            for step in 1..=half {
+                // Half of the turn before the step and half of it after: the second-order midpoint rule.
+                walk = surface.walk(walk.point, turn.of(walk.direction), spacing);
+                walk.direction = turn.of(walk.direction);
                 let column = Walk {
                     direction: -walk.direction.perp() * way,
                     ..walk
                 };
-                let at = half + step as i32 * way as i32;
+                let at = half + step * way as i32;
                 self.lay_column(surface, &column, at as usize, square, around);
-            });
+            }
         }
     }
 
@@ -129,17 +140,18 @@ impl Lattice {
             let at = [half as usize, column];
             self.put(surface, (start.point, normal.1), at, center);
         }
-        for (way, n_steps) in [(-1, half), (1, last.max(0))] {
-            let direction = start.direction * f64::from(way);
-            let n_steps = n_steps as u32;
-            surface.walk_in_steps(start.point, direction, spacing, n_steps, |step, walk| {
-                let point = walk.point;
+        for (way, n_steps) in [(-1, half), (1, last)] {
+            let turn = self.turning.down.toward(f64::from(way));
+            let (mut point, mut direction) = (start.point, start.direction * f64::from(way));
+            for step in 1..=n_steps {
+                let walk = surface.walk(point, turn.of(direction), spacing);
+                (point, direction) = (walk.point, turn.of(walk.direction));
                 if point.face != normal.0 {
                     normal = (point.face, surface.face_normal(point.face));
                 }
-                let at = [(half + way * step as i32) as usize, column];
-                self.put(surface, (point, normal.1), at, center);
-            });
+                let row = (half + way * step) as usize;
+                self.put(surface, (point, normal.1), [row, column], center);
+            }
         }
     }
 

@@ -1,8 +1,8 @@
 //! Squares on surfaces, beside samples that are walked to one by one and mixed from all sites.
 
 use super::{MeshGround, MeshMemory, interpolate};
-use crate::Synthesizer;
 use crate::ground::{Ground, Plain, Rows, Samples, Square};
+use crate::{Axes, Synthesizer};
 use dapple_hash::Seed;
 use dapple_mesh::{HierarchyOptions, INTERPOLATION_RADIUS, Mesh, Surface};
 use dapple_raster::simd::{self, for_every_level};
@@ -51,7 +51,7 @@ impl Case {
     }
 
     fn ground(&self) -> MeshGround<'_> {
-        self.0.ground()
+        self.0.ground(Axes::Carried)
     }
 
     /// Walks to one sample, i along P and j along O.
