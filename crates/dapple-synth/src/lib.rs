@@ -121,6 +121,7 @@ mod solve;
 mod surface_texture;
 mod sweep;
 mod synthesizer;
+mod usage;
 mod visit;
 
 pub use atlas::{Atlas, PADDING};

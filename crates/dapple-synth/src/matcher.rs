@@ -64,6 +64,18 @@ pub struct MatcherMemory {
     order: Vec<u64>,
 }
 
+/// What is looked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Query<'a> {
+    pub(crate) values: &'a [f32],
+    /// Only what is nearer is found.
+    pub(crate) below: f32,
+    /// A row that may be near.
+    pub(crate) hint: Option<u32>,
+    /// What the squared distance of each row is multiplied by, at least 1; it counts as the row's distance everywhere.
+    pub(crate) factors: Option<&'a [f32]>,
+}
+
 /// All that skips rows.
 #[derive(Clone, Debug)]
 struct Index {
@@ -115,26 +127,30 @@ impl Matcher {
         hint: Option<u32>,
         memory: &mut MatcherMemory,
     ) -> Option<Match> {
-        self.nearest_at(simd::level(), query, below, hint, memory)
+        let query = Query {
+            values: query,
+            below,
+            hint,
+            factors: None,
+        };
+        self.find(query, memory)
     }
 
-    fn nearest_at(
-        &self,
-        level: Level,
-        query: &[f32],
-        below: f32,
-        hint: Option<u32>,
-        memory: &mut MatcherMemory,
-    ) -> Option<Match> {
-        if query.len() != self.dims {
+    /// The row nearest to a query with factors; also nothing if there are less of them than rows.
+    pub(crate) fn find(&self, query: Query<'_>, memory: &mut MatcherMemory) -> Option<Match> {
+        self.find_at(simd::level(), query, memory)
+    }
+
+    fn find_at(&self, level: Level, query: Query<'_>, memory: &mut MatcherMemory) -> Option<Match> {
+        let too_few = |factors: &[f32]| factors.len() < self.rows.len();
+        if query.values.len() != self.dims || query.factors.is_some_and(too_few) {
             return None;
         }
-        let hint = hint.filter(|&hint| (hint as usize) < self.rows.len());
         dispatch!(level, simd => {
             memory.query.clear();
-            distance::pad(query, &mut memory.query);
-            self.search(simd, query, below, hint, memory)
-                .unwrap_or_else(|| self.compare_all(simd, below, memory))
+            distance::pad(query.values, &mut memory.query);
+            self.search(simd, query, memory)
+                .unwrap_or_else(|| self.compare_all(simd, query, memory))
         })
     }
 
@@ -143,26 +159,26 @@ impl Matcher {
     fn search<S: Simd>(
         &self,
         simd: S,
-        query: &[f32],
-        below: f32,
-        hint: Option<u32>,
+        query: Query<'_>,
         memory: &mut MatcherMemory,
     ) -> Option<Option<Match>> {
         let index = self.index.as_ref()?;
-        let error = index.place(simd, query, memory)?;
+        let error = index.place(simd, query.values, memory)?;
         let mut search = Search {
             simd,
             tree: &index.tree,
             margin: &index.margin,
             rows: &self.rows,
+            factors: query.factors,
             query: &memory.query,
             placed: &memory.placed,
             error,
             best: None,
-            below,
-            threshold: index.margin.threshold(below, error),
+            below: query.below,
+            threshold: index.margin.threshold(query.below, error),
         };
-        if let Some(hint) = hint {
+        let in_range = |hint: &u32| (*hint as usize) < self.rows.len();
+        if let Some(hint) = query.hint.filter(in_range) {
             search.compare(hint);
         }
         search.run(&mut memory.order);
@@ -170,11 +186,19 @@ impl Matcher {
     }
 
     #[inline(always)]
-    fn compare_all<S: Simd>(&self, simd: S, below: f32, memory: &MatcherMemory) -> Option<Match> {
+    fn compare_all<S: Simd>(
+        &self,
+        simd: S,
+        query: Query<'_>,
+        memory: &MatcherMemory,
+    ) -> Option<Match> {
         let mut best = None;
-        let mut least = below;
+        let mut least = query.below;
         for row in 0..self.rows.len() as u32 {
-            let distance_sq = self.rows.distance_sq(simd, &memory.query, row);
+            let mut distance_sq = self.rows.distance_sq(simd, &memory.query, row);
+            if let Some(factors) = query.factors {
+                distance_sq *= factors[row as usize];
+            }
             if distance_sq < least {
                 least = distance_sq;
                 best = Some(Match { row, distance_sq });

@@ -3,6 +3,9 @@
 use crate::{CoarserCenter, Schedule, SynthError, SynthErrorKind};
 use dapple_hash::Seed;
 
+/// The most that may be asked of [`Options::evenness`]: no factor can make a distance infinite.
+const MAX_EVENNESS: f32 = 1000.0;
+
 /// How a texture is made from an exemplar.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
@@ -22,6 +25,11 @@ pub struct Options {
     /// How much worse a match may be that continues the source of a neighboring site: it wins if its squared distance is
     /// at most `1 + coherence` times the least. At 0 the least always wins, as in the paper.
     pub coherence: f32,
+    /// How evenly the pixels of the exemplar are used, from 0 to 1000. On the coarsest level the squared distance of a pixel
+    /// that was already used as often as all are on the average is multiplied by `1 + evenness`, and pixels near an edge of
+    /// the exemplar are used, too. At 0 only the least distance counts, as in the paper: half of the pixels may then never
+    /// be used, and colors that are rare vanish.
+    pub evenness: f32,
 }
 
 impl Default for Options {
@@ -32,6 +40,7 @@ impl Default for Options {
             schedule: None,
             center: CoarserCenter::Exact,
             coherence: 1.0,
+            evenness: 1.0,
         }
     }
 }
@@ -43,6 +52,7 @@ impl Options {
         Self {
             center: CoarserCenter::Floor,
             coherence: 0.0,
+            evenness: 0.0,
             ..Self::default()
         }
     }
@@ -51,7 +61,8 @@ impl Options {
     ///
     /// # Errors
     ///
-    /// Typed errors for no level, more than 16, a coherence that is below zero or not finite, and as [`Schedule::check`].
+    /// Typed errors for no level, more than 16, a coherence that is below zero or not finite, an evenness that is not
+    /// from 0 to 1000, and as [`Schedule::check`].
     pub(crate) fn passes(&self) -> Result<Schedule, SynthError> {
         if !(1..=16).contains(&self.n_levels) {
             return Err(SynthError::new(SynthErrorKind::Count {
@@ -65,6 +76,12 @@ impl Options {
             "coherence",
             self.coherence.into(),
             "finite and at least 0",
+        )?;
+        SynthError::check(
+            (0.0..=MAX_EVENNESS).contains(&self.evenness),
+            "evenness",
+            self.evenness.into(),
+            "from 0 to 1000",
         )?;
         let schedule = self.schedule.clone();
         let schedule = schedule.unwrap_or_else(|| Schedule::paper(self.n_levels));

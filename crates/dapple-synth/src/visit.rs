@@ -3,7 +3,9 @@
 use crate::engine::LevelTexture;
 use crate::ground::{Ground, Rows, Samples, Square};
 use crate::groups::Groups;
+use crate::matcher::Query;
 use crate::neighborhood::{Pass, Reads, Shape};
+use crate::usage::Usage;
 use crate::{Candidates, Matcher, MatcherMemory, Options, Pyramid, SynthError, distance_sq};
 use std::sync::{Mutex, PoisonError};
 
@@ -26,6 +28,8 @@ pub(crate) struct Visit<'a, G: Ground> {
     candidates: Candidates,
     matcher: Matcher,
     coherence: f32,
+    /// As in the options, but 0 where uses do not count.
+    evenness: f32,
     /// Where the values of a query come from.
     terms: Vec<Term>,
     /// The squares that are read on the level itself and on the coarser one.
@@ -74,6 +78,8 @@ struct State<'a> {
     here: &'a LevelTexture,
     coarser: Option<&'a LevelTexture>,
     kept: &'a Kept,
+    /// What the rows' squared distances are multiplied by.
+    factors: Option<&'a [f32]>,
 }
 
 /// What a thread writes for some sites: the row that matches, and what is kept.
@@ -97,7 +103,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         pass: &Pass,
         options: &Options,
     ) -> Result<Self, SynthError> {
-        let candidates = Candidates::new(pyramid, pass, options.center)?;
+        let candidates = Candidates::for_options(pyramid, pass, options)?;
         let exemplar = &pyramid.levels()[pass.level];
         let same = half_of(pass, Reads::Same);
         // All of it, since its middle says which pixels continue the coarser level.
@@ -127,6 +133,11 @@ impl<'a, G: Ground> Visit<'a, G> {
             matcher: Matcher::new(candidates.dims, &candidates.rows),
             candidates,
             coherence: options.coherence,
+            evenness: if coarser.is_none() {
+                options.evenness
+            } else {
+                0.0
+            },
             terms,
             same,
             coarser,
@@ -150,10 +161,13 @@ impl<'a, G: Ground> Visit<'a, G> {
         let n_threads = n_threads();
         let mut workers = Vec::new();
         workers.resize_with(n_threads, || Mutex::new(Worker::<G::Memory>::default()));
+        let mut usage = Usage::new(self.evenness, self.candidates.len(), n_sites);
         // Sites that read only the coarser level do not wait for each other, and may be visited in any order.
         let groups = match self.same {
             None => Groups::stretches(n_sites, STRETCH),
-            Some(_) if n_threads == 1 => Groups::one_by_one(self.ground.order(self.level)),
+            Some(_) if n_threads == 1 || usage.factors().is_some() => {
+                Groups::one_by_one(self.ground.order(self.level))
+            }
             Some(_) => self.ground.groups(self.level, &self.prepared),
         };
         let side = if self.same.is_none() {
@@ -176,6 +190,7 @@ impl<'a, G: Ground> Visit<'a, G> {
                 here,
                 coarser: coarser.first(),
                 kept,
+                factors: usage.factors(),
             };
             let pieces = pieces(
                 group,
@@ -187,6 +202,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             );
             self.visit_pieces(pieces, &workers, &state);
             self.write(group, &rows, here);
+            usage.add(&rows);
             let before = done / STRETCH;
             done += group.len();
             if done / STRETCH > before || done == n_sites {
@@ -242,7 +258,7 @@ impl<'a, G: Ground> Visit<'a, G> {
                 let half = self.coarser.map_or(0, |half| half.half);
                 keep.copy(at, &worker.coarser, 2 * half as usize + 1, self.n_channels);
             }
-            *row = self.best_row(worker);
+            *row = self.best_row(worker, state.factors);
         }
     }
 
@@ -346,7 +362,7 @@ impl<'a, G: Ground> Visit<'a, G> {
     }
 
     /// The row that the site takes: the nearest one, or a coherent one that is not much farther.
-    fn best_row(&self, worker: &mut Worker<G::Memory>) -> u32 {
+    fn best_row(&self, worker: &mut Worker<G::Memory>, factors: Option<&[f32]>) -> u32 {
         let Worker {
             query,
             coherent,
@@ -355,21 +371,26 @@ impl<'a, G: Ground> Visit<'a, G> {
         } = worker;
         let mut near: Option<(f32, u32)> = None;
         for &row in &*coherent {
-            let found = (distance_sq(query, self.candidates.row(row as usize)), row);
+            let factor = factors.map_or(1.0, |factors| factors[row as usize]);
+            let distance_sq = factor * distance_sq(query, self.candidates.row(row as usize));
+            let found = (distance_sq, row);
             if near.is_none_or(|near| found < near) {
                 near = Some(found);
             }
         }
-        let Some((distance, row)) = near else {
-            let found = self.matcher.nearest(query, f32::INFINITY, None, matcher);
-            return found.map_or(NOWHERE, |found| found.row);
+        let (below, fallback) = match near {
+            Some((distance, row)) if self.coherence > 0.0 => {
+                (distance / (1.0 + self.coherence), row)
+            }
+            _ => (f32::INFINITY, NOWHERE),
         };
-        let (below, fallback) = if self.coherence > 0.0 {
-            (distance / (1.0 + self.coherence), row)
-        } else {
-            (f32::INFINITY, NOWHERE)
+        let query = Query {
+            values: query,
+            below,
+            hint: near.map(|(_, row)| row),
+            factors,
         };
-        let found = self.matcher.nearest(query, below, Some(row), matcher);
+        let found = self.matcher.find(query, matcher);
         found.map_or(fallback, |found| found.row)
     }
 }

@@ -150,6 +150,7 @@ fn passes_are_those_of_the_pseudo_code() {
             n_levels: 2,
             schedule: Some(schedule.clone()),
             coherence: 0.0,
+            evenness: 0.0,
             ..Options::default()
         };
         let mut started = vec![LevelTexture::default(); 2];
@@ -169,10 +170,11 @@ fn texture_has_the_same_bits_on_any_number_of_threads() {
     let case = sphere(3000);
     let ground = case.ground();
     let pyramid = pyramid(Edges::Wrap, 2);
-    for coherence in [0.0, 1.0] {
+    for (coherence, evenness) in [(0.0, 0.0), (1.0, 0.0), (0.0, 2.0), (1.5, 0.5)] {
         let options = Options {
             n_levels: 2,
             coherence,
+            evenness,
             ..Options::default()
         };
         let textures = [1, 2, 7].map(|n_threads| {
@@ -182,11 +184,11 @@ fn texture_has_the_same_bits_on_any_number_of_threads() {
         });
         assert!(
             textures[0] == textures[1],
-            "2 threads, coherence {coherence}"
+            "2 threads, coherence {coherence}, evenness {evenness}"
         );
         assert!(
             textures[0] == textures[2],
-            "7 threads, coherence {coherence}"
+            "7 threads, coherence {coherence}, evenness {evenness}"
         );
     }
 }
@@ -200,6 +202,7 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
         let options = Options {
             n_levels: 2,
             coherence,
+            evenness: 0.0,
             ..Options::default()
         };
         let levels = run(&ground, &pyramid, &options, &mut go_on).unwrap();
@@ -226,6 +229,38 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
     };
     let [plain, coherent] = [0.0, 2.0].map(continued);
     assert!(coherent > plain, "{coherent} beside {plain} edges");
+}
+
+/// The sites of each pixel on the coarser level of a texture with this evenness.
+fn uses(evenness: f32) -> Vec<usize> {
+    let case = sphere(4000);
+    let options = Options {
+        n_levels: 2,
+        evenness,
+        ..Options::default()
+    };
+    let pyramid = pyramid(Edges::Wrap, 2);
+    let levels = run(&case.ground(), &pyramid, &options, &mut go_on).unwrap();
+    let mut uses = vec![0; 64];
+    for &source in &levels[1].sources {
+        uses[source as usize] += 1;
+    }
+    uses
+}
+
+#[test]
+fn evenness_makes_more_of_the_exemplar_used() {
+    let [plain, some, much] = [0.0, 1.0, 1000.0].map(uses);
+    let used = |uses: &[usize]| uses.iter().filter(|&&count| count > 0).count();
+    assert!(
+        used(&plain) < used(&some) && used(&some) <= used(&much),
+        "{plain:?} {some:?} {much:?}"
+    );
+    let most = |uses: &[usize]| uses.iter().copied().max();
+    assert!(
+        most(&plain) > most(&some) && most(&some) > most(&much),
+        "{plain:?} {some:?} {much:?}"
+    );
 }
 
 #[test]
@@ -278,8 +313,21 @@ fn value_stability_of_a_texture() {
     let options = Options {
         n_levels: 2,
         coherence: 0.5,
+        evenness: 0.0,
         ..Options::default()
     };
-    let levels = run(&ground, &pyramid, &options, &mut go_on).unwrap();
-    assert_eq!(levels[0].sources[..8], [40, 39, 3, 251, 1, 23, 248, 42]);
+    let sources = |options| {
+        let levels = run(&ground, &pyramid, options, &mut go_on).unwrap();
+        levels[0].sources[..8].to_vec()
+    };
+    assert_eq!(
+        sources(&options),
+        [40, 39, 3, 251, 1, 23, 248, 42],
+        "no penalty"
+    );
+    let even = Options {
+        evenness: 1.0,
+        ..options
+    };
+    assert_eq!(sources(&even), [0; 8], "a penalty");
 }

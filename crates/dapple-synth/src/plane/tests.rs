@@ -209,9 +209,10 @@ fn schedules_of_the_user_equal_the_pseudo_code() {
 fn textures_do_not_depend_on_threads() {
     let exemplar = exemplar([24, 20], Edges::Cut);
     for edges in [[Edges::Wrap; 2], [Edges::Cut; 2]] {
-        for coherence in [0.0, 1.0] {
+        for (coherence, evenness) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)] {
             let options = Options {
                 coherence,
+                evenness,
                 ..Options::default()
             };
             let with = |n_threads| {
@@ -225,7 +226,7 @@ fn textures_do_not_depend_on_threads() {
             assert_eq!(
                 [with(2), with(7)],
                 [one.clone(), one],
-                "{edges:?} {coherence}"
+                "{edges:?} {coherence} {evenness}"
             );
         }
     }
@@ -445,6 +446,19 @@ fn bad_options_are_refused() {
                 SynthErrorKind::Range { .. }
             ),
             "{coherence}"
+        );
+    }
+    for evenness in [-1.0, 1001.0, f32::NAN, f32::INFINITY] {
+        let options = Options {
+            evenness,
+            ..three.clone()
+        };
+        assert!(
+            matches!(
+                kind([8, 8], Edges::Cut, &options),
+                SynthErrorKind::Range { .. }
+            ),
+            "{evenness}"
         );
     }
     let unfilled = Options {
