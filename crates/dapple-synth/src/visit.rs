@@ -28,7 +28,7 @@ pub(crate) struct Visit<'a, G: Ground> {
     candidates: Candidates,
     matcher: Matcher,
     coherence: f32,
-    /// As in the options, but 0 where uses do not count.
+    /// 0 where uses do not count.
     evenness: f32,
     /// Where the values of a query come from.
     terms: Vec<Term>,
@@ -115,6 +115,10 @@ impl<'a, G: Ground> Visit<'a, G> {
             pass,
             [same, coarser].map(|half| half.map_or(0, |half| half.half)),
         );
+        let (coherence, evenness) = match coarser {
+            None => (0.5 * options.coherence, options.evenness),
+            Some(_) => (options.coherence, 0.0),
+        };
         Ok(Self {
             ground,
             prepared: ground.prepare(
@@ -132,12 +136,8 @@ impl<'a, G: Ground> Visit<'a, G> {
             pixels: &exemplar.pixels,
             matcher: Matcher::new(candidates.dims, &candidates.rows),
             candidates,
-            coherence: options.coherence,
-            evenness: if coarser.is_none() {
-                options.evenness
-            } else {
-                0.0
-            },
+            coherence,
+            evenness,
             terms,
             same,
             coarser,
@@ -202,7 +202,7 @@ impl<'a, G: Ground> Visit<'a, G> {
             );
             self.visit_pieces(pieces, &workers, &state);
             self.write(group, &rows, here);
-            usage.add(&rows);
+            usage.add(&rows, &self.candidates);
             let before = done / STRETCH;
             done += group.len();
             if done / STRETCH > before || done == n_sites {

@@ -316,7 +316,7 @@ fn value_stability_of_a_texture() {
         evenness: 0.0,
         ..Options::default()
     };
-    let sources = |options| {
+    let sources = |options: &Options| {
         let levels = run(&ground, &pyramid, options, &mut go_on).unwrap();
         levels[0].sources[..8].to_vec()
     };
@@ -327,7 +327,7 @@ fn value_stability_of_a_texture() {
     );
     let even = Options {
         evenness: 1.0,
-        ..options
+        ..options.clone()
     };
     assert_eq!(sources(&even), [0; 8], "a penalty");
 }
