@@ -22,15 +22,17 @@ pub struct Options {
     pub schedule: Option<Schedule>,
     /// Where neighborhoods on the coarser level are centered; by default exactly.
     pub center: CoarserCenter,
-    /// How much worse a match may be that continues the source of a neighboring site: it wins if its squared distance is
-    /// at most `1 + coherence` times the least, or `1 + coherence / 2` times on the coarsest level, where pieces that do not
-    /// fit together cannot be mended any more. At 0 the least always wins, as in the paper.
+    /// How much worse a match may be that continues the source of a neighboring site: it wins if its squared distance is at
+    /// most `1 + coherence` times the least; in passes that read no coarser level, where no later one can mend what does
+    /// not fit together, `1 + coherence / 2` times. By default 2; at 0 the least always wins, as in the paper.
     pub coherence: f32,
-    /// How evenly the pixels of the exemplar are used, from 0 to 1000. In passes that read no coarser level, of which the
-    /// paper's schedule has one, the squared distance of a pixel is multiplied by `1 + evenness` if it and those around it
-    /// were already used as often as all are in the end on the average; such a pass runs on one thread. And pixels near an
-    /// edge of the exemplar are used, too, as if it were mirrored there. At 0 only the least distance counts, as in the
-    /// paper: many pixels are then never used, and colors that are rare vanish.
+    /// How evenly the pixels of the exemplar are used, from 0 to 1000, by default 1.
+    ///
+    /// In passes that read no coarser level, of which the paper's schedule has one, the squared distance of a pixel is
+    /// multiplied by `1 + evenness` if it and those around it were already used as often as all are in the end on the
+    /// average; such a pass runs on one thread. And pixels near an edge of the exemplar are used, too, as if it were
+    /// mirrored there. At 0 only the least distance counts, as in the paper: many pixels are then never used, and colors
+    /// that are rare vanish.
     pub evenness: f32,
 }
 

@@ -64,7 +64,7 @@ impl Usage {
             for x in x - REACH..=x + REACH {
                 if let Some(row) = candidates.row_of_pixel([x, y]) {
                     let row = row as usize;
-                    self.counts[row] += 1;
+                    self.counts[row] = self.counts[row].saturating_add(1);
                     self.factors[row] = (1.0 + self.cost * f64::from(self.counts[row])) as f32;
                 }
             }
