@@ -64,6 +64,18 @@ pub struct MatcherMemory {
     order: Vec<u64>,
 }
 
+/// What is looked for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Query<'a> {
+    pub(crate) values: &'a [f32],
+    /// Only what is nearer is found.
+    pub(crate) below: f32,
+    /// A row that may be near.
+    pub(crate) hint: Option<u32>,
+    /// What the squared distance of each row is multiplied by, at least 1; it counts as the row's distance everywhere.
+    pub(crate) factors: Option<&'a [f32]>,
+}
+
 /// All that skips rows.
 #[derive(Clone, Debug)]
 struct Index {
@@ -115,26 +127,52 @@ impl Matcher {
         hint: Option<u32>,
         memory: &mut MatcherMemory,
     ) -> Option<Match> {
-        self.nearest_at(simd::level(), query, below, hint, memory)
+        let query = Query {
+            values: query,
+            below,
+            hint,
+            factors: None,
+        };
+        self.find(query, memory)
     }
 
-    fn nearest_at(
+    /// The row nearest to a query with factors; also nothing if there are less of them than rows.
+    pub(crate) fn find(&self, query: Query<'_>, memory: &mut MatcherMemory) -> Option<Match> {
+        self.find_at(simd::level(), query, memory)
+    }
+
+    /// The nearest of some rows; `hint` is left out of account.
+    pub(crate) fn find_among(
         &self,
-        level: Level,
-        query: &[f32],
-        below: f32,
-        hint: Option<u32>,
+        query: Query<'_>,
+        rows: &[u32],
         memory: &mut MatcherMemory,
     ) -> Option<Match> {
-        if query.len() != self.dims {
+        if !self.can_find(query) {
             return None;
         }
-        let hint = hint.filter(|&hint| (hint as usize) < self.rows.len());
+        dispatch!(simd::level(), simd => {
+            memory.query.clear();
+            distance::pad(query.values, &mut memory.query);
+            self.compare(simd, query, rows.iter().copied(), memory)
+        })
+    }
+
+    /// Whether a query has as many numbers as the rows, and no less factors than there are rows.
+    fn can_find(&self, query: Query<'_>) -> bool {
+        let enough = |factors: &[f32]| factors.len() >= self.rows.len();
+        query.values.len() == self.dims && query.factors.is_none_or(enough)
+    }
+
+    fn find_at(&self, level: Level, query: Query<'_>, memory: &mut MatcherMemory) -> Option<Match> {
+        if !self.can_find(query) {
+            return None;
+        }
         dispatch!(level, simd => {
             memory.query.clear();
-            distance::pad(query, &mut memory.query);
-            self.search(simd, query, below, hint, memory)
-                .unwrap_or_else(|| self.compare_all(simd, below, memory))
+            distance::pad(query.values, &mut memory.query);
+            self.search(simd, query, memory)
+                .unwrap_or_else(|| self.compare(simd, query, 0..self.rows.len() as u32, memory))
         })
     }
 
@@ -143,40 +181,50 @@ impl Matcher {
     fn search<S: Simd>(
         &self,
         simd: S,
-        query: &[f32],
-        below: f32,
-        hint: Option<u32>,
+        query: Query<'_>,
         memory: &mut MatcherMemory,
     ) -> Option<Option<Match>> {
         let index = self.index.as_ref()?;
-        let error = index.place(simd, query, memory)?;
+        let error = index.place(simd, query.values, memory)?;
         let mut search = Search {
             simd,
             tree: &index.tree,
             margin: &index.margin,
             rows: &self.rows,
+            factors: query.factors,
             query: &memory.query,
             placed: &memory.placed,
             error,
             best: None,
-            below,
-            threshold: index.margin.threshold(below, error),
+            below: query.below,
+            threshold: index.margin.threshold(query.below, error),
         };
-        if let Some(hint) = hint {
+        let in_range = |hint: &u32| (*hint as usize) < self.rows.len();
+        if let Some(hint) = query.hint.filter(in_range) {
             search.compare(hint);
         }
         search.run(&mut memory.order);
         Some(search.best)
     }
 
+    /// The nearest of some rows: of several at one distance the one with the least number.
     #[inline(always)]
-    fn compare_all<S: Simd>(&self, simd: S, below: f32, memory: &MatcherMemory) -> Option<Match> {
-        let mut best = None;
-        let mut least = below;
-        for row in 0..self.rows.len() as u32 {
-            let distance_sq = self.rows.distance_sq(simd, &memory.query, row);
-            if distance_sq < least {
-                least = distance_sq;
+    fn compare<S: Simd>(
+        &self,
+        simd: S,
+        query: Query<'_>,
+        rows: impl Iterator<Item = u32>,
+        memory: &MatcherMemory,
+    ) -> Option<Match> {
+        let mut best: Option<Match> = None;
+        for row in rows {
+            let mut distance_sq = self.rows.distance_sq(simd, &memory.query, row);
+            if let Some(factors) = query.factors {
+                distance_sq *= factors[row as usize];
+            }
+            let least = best.map_or(query.below, |best| best.distance_sq);
+            let is_first = |best: Match| distance_sq == best.distance_sq && row < best.row;
+            if distance_sq < least || best.is_some_and(is_first) {
                 best = Some(Match { row, distance_sq });
             }
         }

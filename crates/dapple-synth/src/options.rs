@@ -3,6 +3,9 @@
 use crate::{CoarserCenter, Schedule, SynthError, SynthErrorKind};
 use dapple_hash::Seed;
 
+/// The most that may be asked of [`Options::evenness`]: no factor can make a distance infinite.
+const MAX_EVENNESS: f32 = 1000.0;
+
 /// How a texture is made from an exemplar.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
@@ -21,9 +24,18 @@ pub struct Options {
     pub center: CoarserCenter,
     /// Which way neighborhoods on surfaces go on away from their site; by default as the field does.
     pub axes: Axes,
-    /// How much worse a match may be that continues the source of a neighboring site: it wins if its squared distance is
-    /// at most `1 + coherence` times the least. At 0 the least always wins, as in the paper.
+    /// How much worse a match may be that continues the source of a neighboring site: it wins if its squared distance is at
+    /// most `1 + coherence` times the least; in passes that read no coarser level, where no later one can mend what does
+    /// not fit together, `1 + coherence / 2` times. By default 2; at 0 the least always wins, as in the paper.
     pub coherence: f32,
+    /// How evenly the pixels of the exemplar are used, from 0 to 1000, by default 1.
+    ///
+    /// In passes that read no coarser level, of which the paper's schedule has one, the squared distance of a pixel is
+    /// multiplied by `1 + evenness` if it and those around it were already used as often as all are in the end on the
+    /// average; such a pass runs on one thread. And pixels near an edge of the exemplar are used, too, as if it were
+    /// mirrored there. At 0 only the least distance counts, as in the paper: many pixels are then never used, and colors
+    /// that are rare vanish.
+    pub evenness: f32,
 }
 
 /// Which way the rows and columns of a neighborhood on a surface go.
@@ -45,7 +57,8 @@ impl Default for Options {
             schedule: None,
             center: CoarserCenter::Exact,
             axes: Axes::Followed,
-            coherence: 1.0,
+            coherence: 2.0,
+            evenness: 1.0,
         }
     }
 }
@@ -58,6 +71,7 @@ impl Options {
             center: CoarserCenter::Floor,
             axes: Axes::Carried,
             coherence: 0.0,
+            evenness: 0.0,
             ..Self::default()
         }
     }
@@ -66,7 +80,8 @@ impl Options {
     ///
     /// # Errors
     ///
-    /// Typed errors for no level, more than 16, a coherence that is below zero or not finite, and as [`Schedule::check`].
+    /// Typed errors for no level, more than 16, a coherence that is below zero or not finite, an evenness that is not
+    /// from 0 to 1000, and as [`Schedule::check`].
     pub(crate) fn passes(&self) -> Result<Schedule, SynthError> {
         if !(1..=16).contains(&self.n_levels) {
             return Err(SynthError::new(SynthErrorKind::Count {
@@ -80,6 +95,12 @@ impl Options {
             "coherence",
             self.coherence.into(),
             "finite and at least 0",
+        )?;
+        SynthError::check(
+            (0.0..=MAX_EVENNESS).contains(&self.evenness),
+            "evenness",
+            self.evenness.into(),
+            "from 0 to 1000",
         )?;
         let schedule = self.schedule.clone();
         let schedule = schedule.unwrap_or_else(|| Schedule::paper(self.n_levels));

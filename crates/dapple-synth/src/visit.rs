@@ -2,12 +2,11 @@
 
 use crate::ground::{Ground, Painted, Rows, Samples, Square};
 use crate::kept::Kept;
+use crate::matcher::Query;
 use crate::neighborhood::{Pass, Reads, Shape};
 use crate::turns::{Board, Turns};
-use crate::{
-    Candidates, Exemplar, Matcher, MatcherMemory, Options, Pyramid, SynthError, columns,
-    distance_sq,
-};
+use crate::usage::Usage;
+use crate::{Candidates, Exemplar, Matcher, MatcherMemory, Options, Pyramid, SynthError, columns};
 use core::iter::repeat_with;
 use core::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -31,6 +30,8 @@ pub(crate) struct Visit<'a, G: Ground> {
     candidates: Candidates,
     matcher: Matcher,
     coherence: f32,
+    /// 0 where uses do not count.
+    evenness: f32,
     /// Where the values of a query come from.
     terms: Vec<Term>,
     /// The squares that are read on the level itself and on the coarser one.
@@ -71,6 +72,8 @@ struct State<'a> {
     here: Painted<'a>,
     coarser: Option<Painted<'a>>,
     kept: &'a Kept,
+    /// What the rows' squared distances are multiplied by.
+    factors: Option<&'a [f32]>,
 }
 
 impl<'a, G: Ground> Visit<'a, G> {
@@ -81,7 +84,7 @@ impl<'a, G: Ground> Visit<'a, G> {
         pass: &Pass,
         options: &Options,
     ) -> Result<Self, SynthError> {
-        let candidates = Candidates::new(pyramid, pass, options.center)?;
+        let candidates = Candidates::for_options(pyramid, pass, options)?;
         let exemplar = &pyramid.levels()[pass.level];
         let same = half_of(pass, Reads::Same);
         // All of it, since its middle says which pixels continue the coarser level.
@@ -93,6 +96,10 @@ impl<'a, G: Ground> Visit<'a, G> {
             pass,
             [same, coarser].map(|half| half.map_or(0, |half| half.half)),
         );
+        let (coherence, evenness) = match coarser {
+            None => (0.5 * options.coherence, options.evenness),
+            Some(_) => (options.coherence, 0.0),
+        };
         Ok(Self {
             ground,
             prepared: ground.prepare(
@@ -110,7 +117,8 @@ impl<'a, G: Ground> Visit<'a, G> {
             pyramid: pyramid.levels(),
             matcher: Matcher::new(candidates.dims, &candidates.rows),
             candidates,
-            coherence: options.coherence,
+            coherence,
+            evenness,
             terms,
             same,
             coarser,
@@ -134,15 +142,41 @@ impl<'a, G: Ground> Visit<'a, G> {
             here: painted(self.level),
             coarser: self.coarser.map(|_| painted(self.level + 1)),
             kept,
+            factors: None,
         };
         let mut workers = Vec::new();
         workers.resize_with(columns::n_threads(), Worker::default);
-        if self.same.is_some() {
-            self.visit_in_turns(&state, &mut workers, tell)?;
-            Ok(Kept::default())
-        } else {
-            self.visit_freely(&state, &mut workers, keep as usize, tell)
+        if self.same.is_none() {
+            return self.visit_freely(&state, &mut workers, keep as usize, tell);
         }
+        if self.evenness > 0.0 {
+            self.visit_and_count(state, tell)?;
+        } else {
+            self.visit_in_turns(&state, &mut workers, tell)?;
+        }
+        Ok(Kept::default())
+    }
+
+    /// Visits sites one after the other, and counts what they use.
+    fn visit_and_count(
+        &self,
+        state: State<'_>,
+        tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
+    ) -> Result<(), SynthError> {
+        let order = self.ground.order(self.level);
+        let mut usage = Usage::new(self.evenness, self.candidates.len(), order.len());
+        let mut worker = Worker::default();
+        let mut done = 0;
+        for stretch in order.chunks(STRETCH) {
+            for &site in stretch {
+                let factors = usage.factors();
+                let row = self.visit(site, &mut worker, &State { factors, ..state });
+                usage.add(row, &self.candidates);
+            }
+            done += stretch.len();
+            tell(done)?;
+        }
+        Ok(())
     }
 
     /// Visits sites that may read each other.
@@ -210,15 +244,16 @@ impl<'a, G: Ground> Visit<'a, G> {
         Ok(kept)
     }
 
-    /// Gives a site the pixel of the row that matches.
-    fn visit(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) {
+    /// Gives a site the pixel of the row that matches, and tells which one that is.
+    fn visit(&self, site: u32, worker: &mut Worker<G::Memory>, state: &State<'_>) -> u32 {
         self.gather(site, worker, state);
-        let row = self.best_row(worker);
+        let row = self.best_row(worker, state.factors);
         // Without any row, which finite values do not lead to, the site keeps what it has.
         if let Some(&pixel) = self.candidates.pixels.get(row as usize) {
             // Turns of other threads that read it are ordered by the board.
             state.here.sources[site as usize].store(pixel, Ordering::Relaxed);
         }
+        row
     }
 
     /// Reads the neighborhood of a site, and gathers the rows that continue its neighbors.
@@ -316,30 +351,32 @@ impl<'a, G: Ground> Visit<'a, G> {
     }
 
     /// The row that the site takes: the nearest one, or a coherent one that is not much farther.
-    fn best_row(&self, worker: &mut Worker<G::Memory>) -> u32 {
+    fn best_row(&self, worker: &mut Worker<G::Memory>, factors: Option<&[f32]>) -> u32 {
         let Worker {
             query,
             coherent,
             matcher,
             ..
         } = worker;
-        let mut near: Option<(f32, u32)> = None;
-        for &row in &*coherent {
-            let found = (distance_sq(query, self.candidates.row(row as usize)), row);
-            if near.is_none_or(|near| found < near) {
-                near = Some(found);
+        let all = Query {
+            values: query,
+            below: f32::INFINITY,
+            hint: None,
+            factors,
+        };
+        let near = self.matcher.find_among(all, coherent, matcher);
+        let (below, fallback) = match near {
+            Some(near) if self.coherence > 0.0 => {
+                (near.distance_sq / (1.0 + self.coherence), near.row)
             }
-        }
-        let Some((distance, row)) = near else {
-            let found = self.matcher.nearest(query, f32::INFINITY, None, matcher);
-            return found.map_or(NOWHERE, |found| found.row);
+            _ => (f32::INFINITY, NOWHERE),
         };
-        let (below, fallback) = if self.coherence > 0.0 {
-            (distance / (1.0 + self.coherence), row)
-        } else {
-            (f32::INFINITY, NOWHERE)
+        let query = Query {
+            below,
+            hint: near.map(|near| near.row),
+            ..all
         };
-        let found = self.matcher.nearest(query, below, Some(row), matcher);
+        let found = self.matcher.find(query, matcher);
         found.map_or(fallback, |found| found.row)
     }
 }

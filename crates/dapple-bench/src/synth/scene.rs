@@ -117,6 +117,7 @@ pub(super) fn exact(n_levels: usize) -> Options {
     Options {
         n_levels,
         coherence: 0.0,
+        evenness: 0.0,
         ..Options::default()
     }
 }

@@ -1,7 +1,9 @@
 //! Rows of neighborhoods beside naive ones.
 
 use super::{Candidates, CoarserCenter, FEW};
-use crate::{Edges, Exemplar, Part, Pass, Pyramid, Reads, Schedule, Shape, SynthErrorKind};
+use crate::{
+    Edges, Exemplar, Options, Part, Pass, Pyramid, Reads, Schedule, Shape, SynthErrorKind,
+};
 use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::{Raster, Wrap};
 use proptest::prelude::*;
@@ -215,6 +217,30 @@ fn pixels_at_the_edges_are_left_out_where_enough_remain() {
     );
     assert_eq!(count([8, 8], Edges::Cut), (64, [0, 0]), "8 x 8");
     assert_eq!(count([4, 5], Edges::Cut), (20, [0, 0]), "the smallest");
+}
+
+#[test]
+fn evenness_brings_pixels_at_the_edges_but_not_for_refining() {
+    let pyramid = noise([64, 64], Edges::Cut, 2);
+    let even = Options {
+        evenness: 0.5,
+        ..Options::default()
+    };
+    let uneven = Options {
+        evenness: 0.0,
+        ..Options::default()
+    };
+    for (pass, all) in Schedule::paper(2).passes.iter().zip([true, true, false]) {
+        let [even, uneven] =
+            [&even, &uneven].map(|options| Candidates::for_options(&pyramid, pass, options));
+        let [even, uneven] = [even.unwrap(), uneven.unwrap()];
+        let n_pixels = if pass.level == 0 { 64 * 64 } else { 32 * 32 };
+        assert!(uneven.len() < n_pixels, "{pass:?}");
+        let expected = if all { n_pixels } else { uneven.len() };
+        assert_eq!(even.len(), expected, "{pass:?}");
+        let new = Candidates::new(&pyramid, pass, CoarserCenter::Exact).unwrap();
+        assert_eq!(uneven, new, "{pass:?}");
+    }
 }
 
 #[test]

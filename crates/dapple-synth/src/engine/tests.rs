@@ -148,6 +148,7 @@ fn passes_are_those_of_the_pseudo_code() {
             n_levels: 2,
             schedule: Some(schedule.clone()),
             coherence: 0.0,
+            evenness: 0.0,
             ..Options::default()
         };
         let started = random_pixels(ground.n_sites(1), &pyramid, 1, options.seed);
@@ -167,10 +168,11 @@ fn texture_has_the_same_bits_on_any_number_of_threads() {
     let case = sphere(3000);
     let ground = case.ground(Axes::Carried);
     let pyramid = pyramid(Edges::Wrap, 2);
-    for coherence in [0.0, 1.0] {
+    for (coherence, evenness) in [(0.0, 0.0), (1.0, 0.0), (0.0, 2.0), (1.5, 0.5)] {
         let options = Options {
             n_levels: 2,
             coherence,
+            evenness,
             ..Options::default()
         };
         let textures = [1, 2, 7].map(|n_threads| {
@@ -180,11 +182,11 @@ fn texture_has_the_same_bits_on_any_number_of_threads() {
         });
         assert!(
             textures[0] == textures[1],
-            "2 threads, coherence {coherence}"
+            "2 threads, coherence {coherence}, evenness {evenness}"
         );
         assert!(
             textures[0] == textures[2],
-            "7 threads, coherence {coherence}"
+            "7 threads, coherence {coherence}, evenness {evenness}"
         );
     }
 }
@@ -198,6 +200,7 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
         let options = Options {
             n_levels: 2,
             coherence,
+            evenness: 0.0,
             ..Options::default()
         };
         let levels = run(&ground, &pyramid, &options, &mut go_on).unwrap();
@@ -224,6 +227,32 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
     };
     let [plain, coherent] = [0.0, 2.0].map(continued);
     assert!(coherent > plain, "{coherent} beside {plain} edges");
+}
+
+/// The sites of each pixel on the coarser level of a texture with this evenness.
+fn uses(evenness: f32) -> Vec<usize> {
+    let case = sphere(4000);
+    let options = Options {
+        n_levels: 2,
+        evenness,
+        ..Options::default()
+    };
+    let pyramid = pyramid(Edges::Wrap, 2);
+    let levels = run(&case.ground(Axes::Carried), &pyramid, &options, &mut go_on).unwrap();
+    let mut uses = vec![0; 64];
+    for &source in &levels[1] {
+        uses[source as usize] += 1;
+    }
+    uses
+}
+
+#[test]
+fn evenness_spreads_the_uses() {
+    let [plain, even] = [0.0, 1.0].map(uses);
+    let most = |uses: &[usize]| uses.iter().copied().max();
+    assert!(most(&plain) > most(&even), "{plain:?} {even:?}");
+    let squares = |uses: &[usize]| uses.iter().map(|count| count * count).sum::<usize>();
+    assert!(squares(&plain) > squares(&even), "{plain:?} {even:?}");
 }
 
 #[test]
@@ -276,8 +305,13 @@ fn value_stability_of_a_texture() {
     let options = Options {
         n_levels: 2,
         coherence: 0.5,
+        evenness: 0.0,
         ..Options::default()
     };
     let levels = run(&ground, &pyramid, &options, &mut go_on).unwrap();
-    assert_eq!(levels[0][..8], [40, 39, 3, 251, 1, 23, 248, 42]);
+    assert_eq!(
+        levels[0][..8],
+        [6, 4, 165, 133, 230, 228, 160, 198],
+        "sources of the first sites"
+    );
 }

@@ -12,6 +12,9 @@ pub(crate) struct Search<'a, S> {
     pub(crate) tree: &'a Tree,
     pub(crate) margin: &'a Margin,
     pub(crate) rows: &'a PaddedRows,
+    /// What the squared distance of each row is multiplied by. Since none is below 1, what is too far without its factor
+    /// is too far with it, and the bounds of the tree stay right.
+    pub(crate) factors: Option<&'a [f32]>,
     /// The query, filled up with zeros.
     pub(crate) query: &'a [[f32; LANES]],
     /// The query along the directions, each pair of coordinates sixteen times.
@@ -52,7 +55,10 @@ impl<S: Simd> Search<'_, S> {
     /// Compares with a row.
     #[inline(always)]
     pub(crate) fn compare(&mut self, row: u32) {
-        let distance_sq = self.rows.distance_sq(self.simd, self.query, row);
+        let mut distance_sq = self.rows.distance_sq(self.simd, self.query, row);
+        if let Some(factors) = self.factors {
+            distance_sq *= factors[row as usize];
+        }
         let is_first = |best: Match| distance_sq == best.distance_sq && row < best.row;
         if distance_sq < self.below || self.best.is_some_and(is_first) {
             self.best = Some(Match { row, distance_sq });

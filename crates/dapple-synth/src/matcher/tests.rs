@@ -9,10 +9,21 @@ use proptest::prelude::*;
 
 /// The definition: compares with all rows.
 fn brute_force(dims: usize, rows: &[f32], query: &[f32], below: f32) -> Option<Match> {
+    brute_force_times(dims, rows, query, below, |_| 1.0)
+}
+
+/// The same with a factor for each row.
+fn brute_force_times(
+    dims: usize,
+    rows: &[f32],
+    query: &[f32],
+    below: f32,
+    factor: impl Fn(u32) -> f32,
+) -> Option<Match> {
     let mut best = None;
     let mut least = below;
     for (row, values) in (0..).zip(rows.chunks_exact(dims)) {
-        let distance_sq = distance_sq(query, values);
+        let distance_sq = distance_sq(query, values) * factor(row);
         if distance_sq < least {
             least = distance_sq;
             best = Some(Match { row, distance_sq });
@@ -129,10 +140,86 @@ fn nearest_is_the_same_at_every_level() {
         let expected = brute_force(dims, &rows, query, f32::INFINITY);
         for_every_level(|level| {
             let memory = &mut MatcherMemory::default();
-            let found = matcher.nearest_at(level, query, f32::INFINITY, None, memory);
+            let query = Query {
+                values: query,
+                below: f32::INFINITY,
+                hint: None,
+                factors: None,
+            };
+            let found = matcher.find_at(level, query, memory);
             assert_eq!(found, expected, "{level:?}");
         });
     }
+}
+
+#[test]
+fn nearest_with_factors_is_that_of_brute_force() {
+    let (dims, rows, queries) = exemplar(40, 100);
+    let n_rows = rows.len() / dims;
+    let memory = &mut MatcherMemory::default();
+    // With few rows all of them are compared, with many the index is used.
+    for n_rows in [40, n_rows] {
+        let rows = &rows[..n_rows * dims];
+        let matcher = Matcher::new(dims, rows);
+        assert_eq!(matcher.index.is_some(), n_rows > 40, "the index is used");
+        for (number, query) in queries.iter().enumerate() {
+            // Many rows are free, as at the beginning of a pass, and a few cost sixty times as much.
+            let factor = |row: u32| {
+                let over = (random(number, row as usize) - 0.5).max(0.0);
+                1.0 + 1000.0 * over * over * over * over
+            };
+            let factors: Vec<f32> = (0..n_rows as u32).map(factor).collect();
+            let expected = brute_force_times(dims, rows, query, f32::INFINITY, factor);
+            let distance_sq = expected.map_or(1.0, |best| best.distance_sq);
+            for below in [f32::INFINITY, distance_sq.next_up(), distance_sq] {
+                let expected = expected.filter(|best| best.distance_sq < below);
+                for hint in [None, Some(7), Some(u32::MAX)] {
+                    let query = Query {
+                        values: query,
+                        below,
+                        hint,
+                        factors: Some(&factors),
+                    };
+                    let found = matcher.find(query, memory);
+                    assert_eq!(found, expected, "{number}: below {below}, hint {hint:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn nearest_is_the_first_of_rows_with_equal_products() {
+    // All rows are at distance 1 or 2 from the query; the factors make all products 2, but for one row.
+    let value = |row: usize| {
+        if row.is_multiple_of(2) {
+            1.0
+        } else {
+            2.0_f32.sqrt()
+        }
+    };
+    let rows: Vec<f32> = (0..300).map(value).collect();
+    let mut factors: Vec<f32> = rows.iter().map(|value| 2.0 / (value * value)).collect();
+    let matcher = Matcher::new(1, &rows);
+    let memory = &mut MatcherMemory::default();
+    let mut nearest = |factors: &[f32]| {
+        let query = Query {
+            values: &[0.0],
+            below: f32::INFINITY,
+            hint: Some(9),
+            factors: Some(factors),
+        };
+        matcher.find(query, memory)
+    };
+    let first = brute_force_times(1, &rows, &[0.0], f32::INFINITY, |row| factors[row as usize]);
+    assert_eq!(nearest(&factors), first, "the first of all");
+    factors[200] = 1.0;
+    assert_eq!(
+        nearest(&factors).map(|best| best.row),
+        Some(200),
+        "one is nearer"
+    );
+    assert_eq!(nearest(&factors[..299]), None, "one factor is missing");
 }
 
 #[test]
