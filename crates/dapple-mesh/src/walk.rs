@@ -52,8 +52,23 @@ impl Surface {
     /// assert_eq!(walk.left, 0.25);
     /// # Ok::<(), dapple_mesh::MeshError>(())
     /// ```
+    #[inline]
     #[must_use]
     pub fn walk(&self, from: SurfacePoint, direction: DVec2, distance: f64) -> Walk {
+        let flat = from.flat + direction * distance;
+        // A face is convex: what ends in it has not left it. This is so for most short paths.
+        if self.flat(from.face).contains(flat) {
+            return Walk {
+                point: SurfacePoint { flat, ..from },
+                direction,
+                left: 0.0,
+            };
+        }
+        self.walk_far(from, direction, distance)
+    }
+
+    /// Walks where the path may leave its face.
+    fn walk_far(&self, from: SurfacePoint, direction: DVec2, distance: f64) -> Walk {
         let walk = Walk {
             point: from,
             direction,
@@ -101,29 +116,18 @@ impl Surface {
         let flat = self.flat(walk.point.face);
         let corners = flat.corners();
         let from = walk.point.flat;
-        let near = |edge: usize| {
-            let [a, b] = [edge, (edge + 1) % 3].map(|corner| corners[corner]);
+        let mut nearest = walk.left;
+        let mut exit = None;
+        for edge in 0..3_u8 {
+            let [a, b] = [edge, (edge + 1) % 3].map(|corner| corners[usize::from(corner)]);
             let along = b - a;
             // A point that rounding has put outside of the edge is on it.
             let side = along.perp_dot(from - a).max(0.0);
             let rate = -along.perp_dot(walk.direction);
-            (side, rate)
-        };
-        let edges = [near(0), near(1), near(2)];
-        // The product keeps the division for edges that are near enough.
-        let is_crossed = |(side, rate): (f64, f64), left: f64| rate * left > side;
-        let mut nearest = walk.left;
-        let mut exit = None;
-        // Most paths end in the face where they begin, which is found without branching at every edge.
-        if edges
-            .iter()
-            .fold(false, |any, &edge| any | is_crossed(edge, nearest))
-        {
-            for (edge, (side, rate)) in (0_u8..).zip(edges) {
-                if is_crossed((side, rate), nearest) && Some(edge) != entered {
-                    nearest = side / rate;
-                    exit = Some(edge);
-                }
+            // The product keeps the division for edges that are near enough.
+            if rate * nearest > side && Some(edge) != entered {
+                nearest = side / rate;
+                exit = Some(edge);
             }
         }
         walk.point.flat = from + walk.direction * nearest;

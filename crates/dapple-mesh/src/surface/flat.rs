@@ -55,6 +55,15 @@ impl Flat {
         [DVec2::ZERO, DVec2::new(self.width, 0.0), self.apex]
     }
 
+    /// Whether a place is in the face or on its edges, but for rounding; not so for one that is not finite.
+    #[inline]
+    pub(crate) fn contains(&self, at: DVec2) -> bool {
+        let right = DVec2::new(self.width, 0.0);
+        (at.y >= 0.0)
+            & (self.apex.y * at.x >= self.apex.x * at.y)
+            & ((self.apex - right).perp_dot(at - right) >= 0.0)
+    }
+
     pub(super) fn area(&self) -> f64 {
         0.5 * self.width * self.apex.y
     }
