@@ -47,6 +47,11 @@ const LARGE: Case = Case {
     ..EXACT
 };
 
+const LARGE_DEFAULT: Case = Case {
+    case: "synthesis, 262,144 sites, 4 levels, 256² exemplar, default options",
+    ..LARGE
+};
+
 /// Columns and rows of the flat image.
 const SIDE: u32 = 512;
 
@@ -57,7 +62,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     if bench.wants_any(&[EXACT, DEFAULT, WHOLE, PLANE, PLANE_EXACT]) {
         small(bench)?;
     }
-    if bench.wants(&LARGE) {
+    if bench.wants_any(&[LARGE, LARGE_DEFAULT]) {
         large(bench)?;
     }
     Ok(())
@@ -103,9 +108,17 @@ fn large(bench: &mut Bench) -> Result<()> {
     let (model, picture) = (model()?, leaves(256)?);
     let exemplar = picture.exemplar()?;
     let sites = synthesizer(&model, N_SITES, 4)?;
-    let job: Job<'_> = Box::new(|| scene::count(&sites.synthesize(&exemplar, &exact(4))?));
+    let job = |options: Options| -> Job<'_> {
+        let (sites, exemplar) = (&sites, &exemplar);
+        Box::new(move || scene::count(&sites.synthesize(exemplar, &options)?))
+    };
+    let default = Options {
+        n_levels: 4,
+        ..Options::default()
+    };
+    let rows = [(LARGE, job(exact(4))), (LARGE_DEFAULT, job(default))];
     let note = format!("{}; {}", model.note, picture.note());
-    beside(bench, 2, &picture, vec![(LARGE, job)], &note)
+    beside(bench, 3, &picture, rows.into(), &note)
 }
 
 /// Measures all wanted rows beside the flat image.

@@ -19,8 +19,8 @@ pub(super) const FIGURE: Figure = Figure {
         ("points", "256,000 (ray: 64,000) at 1024 pixels"),
         ("levels", "3: ray, octopus, bunny; 4: tori, zebra, elephant"),
         (
-            "coherence",
-            "1, the default; 0, as in the paper, for the ray",
+            "coherence, evenness",
+            "2 and 1, the defaults; 0 in the paper",
         ),
         ("texture map", "two pixels of the map for one of the figure"),
     ],
