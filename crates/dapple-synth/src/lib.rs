@@ -70,7 +70,6 @@
 //!   tends to repeat smooth parts of the exemplar and to blur away structure like bricks.
 //! * Pixels that were used cost more on the coarsest level, and those near an edge of the exemplar are used, too
 //!   ([`Options::evenness`]). The least difference alone leaves out a third of the exemplar and most colors that are rare.
-//!
 //! * The rows and columns of a neighborhood turn as the field around its site does ([`Axes`]). Straight on, features that
 //!   bend seem to come from one side: stripes around a torus are then off by 3.7 degrees instead of 1.5.
 //!

@@ -160,7 +160,7 @@ fn nearest_with_factors_is_that_of_brute_force() {
     // With few rows all of them are compared, with many the index is used.
     for n_rows in [40, n_rows] {
         let rows = &rows[..n_rows * dims];
-        let matcher = Matcher::new(dims, rows);
+        let matcher = Matcher::with_factors(dims, rows);
         assert_eq!(matcher.index.is_some(), n_rows > 40, "the index is used");
         for (number, query) in queries.iter().enumerate() {
             // Many rows are free, as at the beginning of a pass, and a few cost sixty times as much.
@@ -200,7 +200,7 @@ fn nearest_is_the_first_of_rows_with_equal_products() {
     };
     let rows: Vec<f32> = (0..300).map(value).collect();
     let mut factors: Vec<f32> = rows.iter().map(|value| 2.0 / (value * value)).collect();
-    let matcher = Matcher::new(1, &rows);
+    let matcher = Matcher::with_factors(1, &rows);
     let memory = &mut MatcherMemory::default();
     let mut nearest = |factors: &[f32]| {
         let query = Query {
@@ -223,6 +223,34 @@ fn nearest_is_the_first_of_rows_with_equal_products() {
 }
 
 #[test]
+fn equal_rows_are_kept_once() {
+    // 37 different rows of 5 numbers, again and again, and one more at the end.
+    let row = |at: usize| (0..5).map(move |j| random(at % 37, j));
+    let rows: Vec<f32> = (0..2000)
+        .flat_map(row)
+        .chain(row(40).map(|value| -value))
+        .collect();
+    let [once, all] = [Matcher::new(5, &rows), Matcher::with_factors(5, &rows)];
+    let kept = |matcher: &Matcher| {
+        let mut rows = matcher.index.as_ref().unwrap().tree.rows.concat();
+        rows.sort_unstable();
+        rows.dedup();
+        rows
+    };
+    assert!(
+        kept(&once).into_iter().eq((0..37).chain([2000])),
+        "the first of each"
+    );
+    assert!(kept(&all).into_iter().eq(0..2001), "all");
+    let mut memory = MatcherMemory::default();
+    for at in 0..100 {
+        let query: Vec<f32> = (0..5).map(|j| random(at + 1000, j)).collect();
+        check(&once, &rows, &query, &mut memory);
+        check(&all, &rows, &query, &mut memory);
+    }
+}
+
+#[test]
 fn index_is_the_same_with_any_number_of_threads() {
     let (dims, rows, _) = exemplar(48, 0);
     let with = |n_threads: usize| {
@@ -230,7 +258,7 @@ fn index_is_the_same_with_any_number_of_threads() {
             .num_threads(n_threads)
             .build();
         let pool = pool.expect("a pool of a few threads can be made");
-        pool.install(|| Index::new(dims, &rows))
+        pool.install(|| Index::new(dims, &rows, every_row(dims)))
             .expect("the rows are finite")
     };
     let (one, three) = (with(1), with(3));

@@ -99,9 +99,7 @@ impl Placed {
 
 impl Tree {
     /// Sorts rows into leaves.
-    pub(crate) fn new(placed: &Placed) -> Self {
-        let n_rows = placed.coordinates.len() / placed.n_directions;
-        let mut order: Vec<u32> = (0..n_rows as u32).collect();
+    pub(crate) fn new(placed: &Placed, mut order: Vec<u32>) -> Self {
         sort(&mut order, placed);
         let leaf = |leaf: &[u32]| std::array::from_fn(|lane| leaf[lane.min(leaf.len() - 1)]);
         let rows: Vec<[u32; LANES]> = order.chunks(LANES).map(leaf).collect();
@@ -122,6 +120,25 @@ impl Tree {
             groups: boxes_16.chunks(LANES).map(side_by_side).collect(),
         }
     }
+}
+
+/// The numbers of all rows but those that are equal to an earlier one to the last bit, in any order.
+pub(crate) fn distinct_rows(dims: usize, rows: &[f32], placed: &Placed) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..(rows.len() / dims) as u32).collect();
+    let bits = |row: u32| {
+        let row = &rows[row as usize * dims..][..dims];
+        row.iter().map(|value| value.to_bits())
+    };
+    order.sort_unstable_by(|&a, &b| {
+        // Few rows that are not equal have equal coordinates.
+        let first = |row: u32| &placed.row(row)[..BOX_DIRECTIONS];
+        let equal_first = first(a).cmp(first(b));
+        equal_first
+            .then_with(|| bits(a).cmp(bits(b)))
+            .then(a.cmp(&b))
+    });
+    order.dedup_by(|later, first| bits(*later).eq(bits(*first)));
+    order
 }
 
 /// A part of the rows along directions.

@@ -1,0 +1,137 @@
+//! In which order the sites of a pass are visited: by turns, freely, or one after the other.
+
+use super::{State, Visit, Worker};
+use crate::ground::{Ground, Painted};
+use crate::kept::Kept;
+use crate::turns::{Board, Turns};
+use crate::usage::Usage;
+use crate::{SynthError, columns};
+use core::iter::repeat_with;
+use core::sync::atomic::AtomicU32;
+use std::sync::{Mutex, PoisonError};
+
+/// The most sites between two calls of the callback.
+const STRETCH: usize = 1 << 14;
+/// How many sites that do not wait a thread takes at once.
+const PIECE: usize = 64;
+
+impl<G: Ground> Visit<'_, G> {
+    /// Visits all sites, whose pixels are in `levels`. `kept` is what the pass before kept; the result is what this one keeps
+    /// of squares of the coarser level, `keep` samples wide.
+    pub(crate) fn run(
+        &self,
+        levels: &[Vec<AtomicU32>],
+        kept: &Kept,
+        keep: u32,
+        tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
+    ) -> Result<Kept, SynthError> {
+        let painted = |level: usize| Painted {
+            pixels: self.pyramid[level].plain(),
+            sources: &levels[level],
+        };
+        let state = State {
+            here: painted(self.level),
+            coarser: self.coarser.map(|_| painted(self.level + 1)),
+            kept,
+            factors: None,
+        };
+        let mut workers = Vec::new();
+        workers.resize_with(columns::n_threads(), Worker::default);
+        if self.same.is_none() {
+            return self.visit_freely(&state, &mut workers, keep as usize, tell);
+        }
+        if self.evenness > 0.0 {
+            self.visit_and_count(state, tell)?;
+        } else {
+            self.visit_in_turns(&state, &mut workers, tell)?;
+        }
+        Ok(Kept::default())
+    }
+
+    /// Visits sites one after the other, and counts what they use.
+    fn visit_and_count(
+        &self,
+        state: State<'_>,
+        tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
+    ) -> Result<(), SynthError> {
+        let order = self.ground.order(self.level);
+        let mut usage = Usage::new(self.evenness, self.candidates.len(), order.len());
+        let mut worker = Worker::default();
+        let mut done = 0;
+        for stretch in order.chunks(STRETCH) {
+            for &site in stretch {
+                let factors = usage.factors();
+                let row = self.visit(site, &mut worker, &State { factors, ..state });
+                usage.add(row, &self.candidates);
+            }
+            done += stretch.len();
+            tell(done)?;
+        }
+        Ok(())
+    }
+
+    /// Visits sites that may read each other.
+    fn visit_in_turns(
+        &self,
+        state: &State<'_>,
+        workers: &mut [Worker<G::Memory>],
+        tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
+    ) -> Result<(), SynthError> {
+        let turns = if workers.len() == 1 {
+            Turns::in_order(self.ground.order(self.level))
+        } else {
+            self.ground.turns(self.level, &self.prepared)
+        };
+        for first in (0..turns.len()).step_by(STRETCH) {
+            let end = turns.len().min(first + STRETCH);
+            let board = Board::new(first..end, workers.len());
+            columns::together(workers, |thread, worker| {
+                while let Some(turn) = board.take(thread) {
+                    let (site, wait) = turns.turn(turn);
+                    board.wait(wait);
+                    self.visit(site, worker, state);
+                }
+            });
+            tell(end)?;
+        }
+        Ok(())
+    }
+
+    /// Visits sites that read only the coarser level: they do not wait for each other, and may be visited in any order.
+    fn visit_freely(
+        &self,
+        state: &State<'_>,
+        workers: &mut [Worker<G::Memory>],
+        keep: usize,
+        tell: &mut dyn FnMut(usize) -> Result<(), SynthError>,
+    ) -> Result<Kept, SynthError> {
+        let n_sites = self.ground.n_sites(self.level);
+        let mut kept = Kept::new(n_sites, keep, self.n_channels);
+        let side = self.coarser.map_or(0, |half| 2 * half.half as usize + 1);
+        let rooms = kept.sites().map(Some).chain(repeat_with(|| None));
+        let mut sites = (0..n_sites as u32).zip(rooms);
+        for first in (0..n_sites).step_by(STRETCH) {
+            let end = n_sites.min(first + STRETCH);
+            let left = Mutex::new(sites.by_ref().take(end - first));
+            columns::together(workers, |_, worker| {
+                loop {
+                    let mut left = left.lock().unwrap_or_else(PoisonError::into_inner);
+                    let piece: Vec<_> = left.by_ref().take(PIECE).collect();
+                    drop(left);
+                    if piece.is_empty() {
+                        return;
+                    }
+                    for (site, room) in piece {
+                        self.visit(site, worker, state);
+                        if let Some(mut room) = room {
+                            room.copy(&worker.coarser, side);
+                        }
+                    }
+                }
+            });
+            tell(end)?;
+        }
+        drop(sites);
+        Ok(kept)
+    }
+}
