@@ -15,7 +15,7 @@ use dapple_color::LinearRgb;
 use dapple_mesh::{FaceEdge, FaceIdx, INTERPOLATION_RADIUS, SiteIdx};
 use dapple_raster::Raster;
 use dapple_synth::{Edges, Exemplar, Options, Synthesizer};
-use glam::{DVec2, DVec3};
+use glam::{DMat2, DVec2, DVec3};
 
 const ORIENTATION: Case = Case {
     group: "synth",
@@ -52,12 +52,9 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
         synthesizer: &synthesizer,
     };
     if bench.wants(&ORIENTATION) {
-        let mut turns: Vec<f64> = synthesizer
-            .hierarchy()
-            .sites()
-            .iter()
-            .map(|site| striped.turn(site))
-            .collect();
+        let sites = || synthesizer.hierarchy().sites().iter();
+        let gradients: Vec<DVec3> = sites().map(|site| striped.gradient(site)).collect();
+        let mut turns: Vec<f64> = sites().map(|site| striped.turn(site, &gradients)).collect();
         bench.measured_with(&ORIENTATION, median(&mut turns), 5.0, note.clone());
     }
     if bench.wants(&JUMPS) {
@@ -85,26 +82,45 @@ struct Striped<'a> {
 }
 
 impl Striped<'_> {
+    /// The gradient that fits the differences to a site's neighbors best. A sum over edges would lean to one side where
+    /// neighbors are not evenly around.
+    fn gradient(&self, site: SiteIdx) -> DVec3 {
+        let hierarchy = self.synthesizer.hierarchy();
+        let sites = hierarchy.sites();
+        let value = |site: SiteIdx| f64::from(self.values[site.index()]);
+        let (right, down) = sites.normals()[site.index()].any_orthonormal_pair();
+        let mut normal = DMat2::ZERO;
+        let mut sums = DVec2::ZERO;
+        for &other in hierarchy.levels()[0].graph().neighbors(site) {
+            let step = sites.positions()[other.index()] - sites.positions()[site.index()];
+            let step = DVec2::new(step.dot(right), step.dot(down));
+            normal += DMat2::from_cols(step * step.x, step * step.y);
+            sums += step * (value(other) - value(site));
+        }
+        // Neighbors on one line say nothing of what is beside it.
+        let trace = normal.x_axis.x + normal.y_axis.y;
+        if normal.determinant() < 1e-6 * trace * trace {
+            return DVec3::ZERO;
+        }
+        let gradient = normal.inverse() * sums;
+        right * gradient.x + down * gradient.y
+    }
+
     /// The angle between the field and the direction of least change, in degrees.
-    fn turn(&self, site: SiteIdx) -> f64 {
+    fn turn(&self, site: SiteIdx, gradients: &[DVec3]) -> f64 {
         let hierarchy = self.synthesizer.hierarchy();
         let (sites, level) = (hierarchy.sites(), &hierarchy.levels()[0]);
-        let value = |site: SiteIdx| f64::from(self.values[site.index()]);
         let down = self.synthesizer.orientation().vectors()[site.index()];
         let right = sites.normals()[site.index()].cross(down);
         let center = sites.positions()[site.index()];
         let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-        // The edges of a ball as wide as a stripe and its gap.
+        // A ball as wide as a stripe and its gap has an edge in it.
         level.grid().visit(center, 4.0 * level.spacing(), |near| {
-            for &other in level.graph().neighbors(near) {
-                let step = sites.positions()[other.index()] - sites.positions()[near.index()];
-                let (x, y) = (step.dot(right), step.dot(down));
-                let part = (value(other) - value(near)) / (x * x + y * y);
-                let (x, y) = (x * part, y * part);
-                xx += x * x;
-                xy += x * y;
-                yy += y * y;
-            }
+            let gradient = gradients[near.index()];
+            let (x, y) = (gradient.dot(right), gradient.dot(down));
+            xx += x * x;
+            xy += x * y;
+            yy += y * y;
         });
         // The direction of most change is P where the texture follows the field.
         (0.5 * DVec2::new(xx - yy, 2.0 * xy).to_angle())
