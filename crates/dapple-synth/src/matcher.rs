@@ -105,26 +105,22 @@ impl Matcher {
     /// ```
     #[must_use]
     pub fn new(dims: usize, rows: &[f32]) -> Self {
-        // Of equal rows only the first is ever the nearest. An image that is the same along one axis has many.
-        Self::of(dims, rows, |rows, placed| {
-            tree::distinct_rows(dims, rows, placed)
-        })
+        let rows = whole_rows(dims, rows);
+        Self::of(dims, rows, tree::distinct_rows(dims, rows))
     }
 
     /// Prepares rows for queries with [`Query::factors`], in which equal rows may be at different distances.
     pub(crate) fn with_factors(dims: usize, rows: &[f32]) -> Self {
-        Self::of(dims, rows, every_row(dims))
+        let rows = whole_rows(dims, rows);
+        Self::of(dims, rows, tree::every_row(dims, rows))
     }
 
-    /// Prepares rows, of which `choose` says which ones are looked for.
-    fn of(dims: usize, rows: &[f32], choose: impl Fn(&[f32], &Placed) -> Vec<u32>) -> Self {
-        let n_rows = rows.len().checked_div(dims).unwrap_or(0);
-        let n_rows = n_rows.min(u32::MAX as usize);
-        let rows = &rows[..n_rows * dims];
+    /// Prepares rows, of which those in `order` are looked for.
+    fn of(dims: usize, rows: &[f32], order: Vec<u32>) -> Self {
         Self {
             dims,
             rows: PaddedRows::new(dims, rows),
-            index: Index::new(dims, rows, choose),
+            index: Index::new(dims, rows, order),
         }
     }
 
@@ -245,17 +241,14 @@ impl Matcher {
     }
 }
 
-/// Chooses all rows.
-fn every_row(dims: usize) -> impl Fn(&[f32], &Placed) -> Vec<u32> {
-    move |rows, _| (0..(rows.len() / dims) as u32).collect()
+/// The rows without what is left over, and no more of them than can be numbered.
+fn whole_rows(dims: usize, rows: &[f32]) -> &[f32] {
+    let n_rows = rows.len().checked_div(dims).unwrap_or(0);
+    &rows[..n_rows.min(u32::MAX as usize) * dims]
 }
 
 impl Index {
-    fn new(
-        dims: usize,
-        rows: &[f32],
-        choose: impl Fn(&[f32], &Placed) -> Vec<u32>,
-    ) -> Option<Self> {
+    fn new(dims: usize, rows: &[f32], order: Vec<u32>) -> Option<Self> {
         if rows.len() < FEW * dims.max(1) || dims > MOST_DIMS {
             return None;
         }
@@ -264,7 +257,7 @@ impl Index {
         Some(Self {
             lattice: placed.lattice,
             margin: Margin::new(dims, &basis, &placed.lattice, placed.longest),
-            tree: Tree::new(&placed, choose(rows, &placed)),
+            tree: Tree::new(&placed, order),
             basis,
         })
     }

@@ -258,7 +258,7 @@ fn index_is_the_same_with_any_number_of_threads() {
             .num_threads(n_threads)
             .build();
         let pool = pool.expect("a pool of a few threads can be made");
-        pool.install(|| Index::new(dims, &rows, every_row(dims)))
+        pool.install(|| Index::new(dims, &rows, tree::every_row(dims, &rows)))
             .expect("the rows are finite")
     };
     let (one, three) = (with(1), with(3));

@@ -122,21 +122,21 @@ impl Tree {
     }
 }
 
+/// The numbers of all rows.
+pub(crate) fn every_row(dims: usize, rows: &[f32]) -> Vec<u32> {
+    (0..rows.len().checked_div(dims).unwrap_or(0) as u32).collect()
+}
+
 /// The numbers of all rows but those that are equal to an earlier one to the last bit, in any order.
-pub(crate) fn distinct_rows(dims: usize, rows: &[f32], placed: &Placed) -> Vec<u32> {
-    let mut order: Vec<u32> = (0..(rows.len() / dims) as u32).collect();
+///
+/// Of equal rows only the first is ever the nearest, and an image that is the same along one axis has many.
+pub(crate) fn distinct_rows(dims: usize, rows: &[f32]) -> Vec<u32> {
+    let mut order = every_row(dims, rows);
     let bits = |row: u32| {
         let row = &rows[row as usize * dims..][..dims];
         row.iter().map(|value| value.to_bits())
     };
-    order.sort_unstable_by(|&a, &b| {
-        // Few rows that are not equal have equal coordinates.
-        let first = |row: u32| &placed.row(row)[..BOX_DIRECTIONS];
-        let equal_first = first(a).cmp(first(b));
-        equal_first
-            .then_with(|| bits(a).cmp(bits(b)))
-            .then(a.cmp(&b))
-    });
+    order.sort_unstable_by(|&a, &b| bits(a).cmp(bits(b)).then(a.cmp(&b)));
     order.dedup_by(|later, first| bits(*later).eq(bits(*first)));
     order
 }

@@ -13,7 +13,8 @@ fn sums_of_squares_never_exceed_the_threshold() {
         // One row and one query far out are drawn into the ball.
         rows[..dims].fill(30.0 * scale);
         queries[0].fill(-50.0 * scale);
-        let index = Index::new(dims, &rows, every_row(dims)).expect("the rows are finite");
+        let index =
+            Index::new(dims, &rows, tree::every_row(dims, &rows)).expect("the rows are finite");
         let memory = &mut MatcherMemory::default();
         let level = Level::baseline();
         for query in &queries {
