@@ -34,6 +34,8 @@ use tiles::Tiles;
 /// points are left out. The graph is symmetric, bit for bit. Without wrapping, points on one line are connected to a
 /// path; on a wrapped axis a single point is connected to its own images.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/delaunay.md"))]
+///
 /// # Errors
 ///
 /// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points lie at the same place.

@@ -16,6 +16,8 @@ use glam::DVec2;
 ///
 /// It is symmetric, and contains the way from each point to its nearest one if that is unique.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/gabriel.md"))]
+///
 /// # Errors
 ///
 /// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points lie at the same place.

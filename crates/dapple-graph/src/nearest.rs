@@ -12,6 +12,8 @@ use glam::DVec2;
 /// Images count as neighbors of their own, those of the point itself too. Of equally near ones, those with the smaller
 /// index come first, then those with the smaller angle from the x axis.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/k-nearest.md"))]
+///
 /// # Errors
 ///
 /// [`GraphErrorKind::Neighbors`] for `k = 0` and past 4096, on a rectangle for more neighbors than there are other

@@ -25,6 +25,8 @@ use glam::DVec2;
 /// Images count as neighbors of their own, those of the point itself too. Of equally near ones, the one with the
 /// smaller index is taken, then the one with the smaller angle. Where a cone is empty (at the border of a domain that does not wrap) there is no axis.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/yao.md"))]
+///
 /// # Errors
 ///
 /// [`GraphErrorKind::Cones`] for no cones and for more than 32; [`GraphErrorKind::Coincident`] if two points lie at the

@@ -40,6 +40,8 @@ const GIVEN_SLACK: f64 = 1e-9;
 /// `radius` is in units of the domain. Distances are taken around wrapped axes. The points come cell by cell, in rows,
 /// so neighbors in the plane are often neighbors in memory.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/poisson-disk.md"))]
+///
 /// # Errors
 ///
 /// [`PointsErrorKind::Domain`] for a domain without area; [`PointsErrorKind::NotPositive`] for a radius that is not
@@ -122,6 +124,8 @@ pub fn poisson_disk_radius(domain: Domain, n_points: u32) -> Result<f64, PointsE
 const BORDER_DENSITY: f64 = 0.232;
 
 /// A maximal Poisson-disk set that contains the given points, which come first and in their order.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/extend-poisson-disk.md"))]
 ///
 /// # Errors
 ///

@@ -31,6 +31,6 @@ pub use set::{PointIdx, PointSet};
 pub use statistics::{EmptyCircle, Spectrum, SpectrumOptions, SpectrumRing, spectrum};
 pub use uniform::{jittered_grid, white_noise};
 pub use variable::{
-    DiskRule, RSA_DENSITY, VariablePoissonOptions, radius_for_count, radius_from_density,
-    variable_poisson_disk,
+    DiskRule, RSA_DENSITY, VariablePoissonOptions, gentle_radius_for_count, radius_for_count,
+    radius_from_density, variable_poisson_disk,
 };

@@ -48,6 +48,8 @@ impl NestedPointSet {
 /// The radii are in units of the domain. With half the radius a level has about four times the points; for twice the
 /// points, divide by the square root of two.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/nested-poisson-disk.md"))]
+///
 /// # Errors
 ///
 /// As [`poisson_disk`](crate::poisson_disk) for each radius; [`PointsErrorKind::NotDescending`] if a radius is larger

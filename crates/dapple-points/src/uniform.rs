@@ -16,6 +16,8 @@ const MAX_POINTS: u64 = 1 << 31;
 ///
 /// Point `i` depends on the seed and on `i` alone.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/white-noise.md"))]
+///
 /// # Errors
 ///
 /// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::TooMany`] past 2^31 points.
@@ -46,6 +48,8 @@ pub fn white_noise(domain: Domain, n_points: u32, seed: Seed) -> Result<PointSet
 ///
 /// A `jitter` of 0 puts it at the center of its cell, 1 anywhere in the cell; in between, in a cell that is smaller by
 /// that factor.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/jittered-grid.md"))]
 ///
 /// # Errors
 ///

@@ -14,6 +14,7 @@
 mod block;
 mod density;
 mod fill;
+mod gentle;
 mod leaf;
 mod rule;
 
@@ -23,6 +24,7 @@ use dapple_hash::{Seed, hash1};
 use dapple_raster::Varying;
 pub use density::{RSA_DENSITY, radius_for_count, radius_from_density};
 use fill::Filler;
+pub use gentle::gentle_radius_for_count;
 use glam::DVec2;
 use leaf::{RadiusField, Tree};
 #[cfg(feature = "rayon")]
@@ -43,7 +45,7 @@ const RISE: f64 = 0.1;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct VariablePoissonOptions {
     /// How far apart points of different radius must be; the mean of their radii by default.
@@ -75,6 +77,8 @@ impl Default for VariablePoissonOptions {
 /// Around a wrapped axis the radius has to repeat itself too, or else there is a step at the seam, which is honored
 /// but looks like one: beside a step from r to R the larger discs reach over by (r + R) / 2. A ramp from left to right
 /// belongs on a cylinder. The order of the points has no meaning.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/variable-poisson-disk.md"))]
 ///
 /// # Errors
 ///

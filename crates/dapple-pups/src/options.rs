@@ -19,7 +19,7 @@ use glam::DVec3;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct PupsOptions {
     /// The length of every axis as a multiple of its edge: above ½, at most 16; 1 by default, 2 in figure 4b.
@@ -28,6 +28,8 @@ pub struct PupsOptions {
     /// a control point is its Voronoi cell scaled by twice this number, so on average `4 · axis_scale²` control points
     /// have a weight at a position. At ½ the supports would be the Voronoi cells themselves, and on their borders
     /// nothing would have a weight.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/axis-scale.md"))]
     pub axis_scale: f64,
     /// How the weight falls off along an axis; equation 1 by default.
     pub weight: AxialWeight,
@@ -45,6 +47,8 @@ pub struct Orientation {
     /// orientation points straight away from the control point: there the weight falls like `(1 − p)^(2 − 2ε)`. Near 1
     /// weights that look the other way all but vanish, and so does the denominator of equation 3: where it falls below
     /// 1e-30, the value of the nearest control point is taken.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/strength.md"))]
     pub strength: f64,
     /// One vector for each control point, or a single one for all. They are scaled to length 1; x and y lie in the
     /// plane of the texture, and z takes strength away without a direction.

@@ -16,6 +16,8 @@ use std::sync::Arc;
 ///
 /// Cheap to clone: clones share the net. [`texture`](Self::texture) gives the control points values.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/pups.md"))]
+///
 /// # Examples
 ///
 /// ```

@@ -17,6 +17,8 @@ use core::ops::{Add, Mul, Sub};
 
 /// How the weight of a control point falls off along one of its axes.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/axial-weight.md"))]
+///
 /// # Examples
 ///
 /// ```

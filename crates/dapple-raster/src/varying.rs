@@ -1,5 +1,8 @@
 //! What varies in space, as plain data.
 
+#[cfg(feature = "serde")]
+mod data;
+
 use crate::{Raster, Wrap};
 use core::fmt;
 use glam::DVec2;
@@ -15,12 +18,8 @@ use std::sync::Arc;
 /// let density = Varying::from(Ramp { from: DVec2::ZERO, to: DVec2::X, start: 0.25, end: 0.75 });
 /// assert_eq!(density.at(DVec2::new(0.5, 9.0)), 0.5);
 /// ```
+/// As data it is a number, where it is constant, or `{ ramp = … }` and `{ geometric_ramp = … }` with the fields of [`Ramp`].
 #[derive(Clone)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
 pub enum Varying {
     /// The same everywhere.
     Constant(f64),
@@ -28,8 +27,7 @@ pub enum Varying {
     Ramp(Ramp),
     /// A ramp that multiplies: as [`Ramp`], but with equal ratios over equal distances. Both ends are above zero.
     GeometricRamp(Ramp),
-    /// The values of a raster that covers a rectangle of the plane, bilinear in between.
-    #[cfg_attr(feature = "serde", serde(skip))]
+    /// The values of a raster that covers a rectangle of the plane, bilinear in between. It is not written as data.
     Raster {
         /// The values.
         raster: Arc<Raster<f32>>,
@@ -40,14 +38,17 @@ pub enum Varying {
         /// What lies past its edges.
         wrap: [Wrap; 2],
     },
-    /// Any function of the position.
-    #[cfg_attr(feature = "serde", serde(skip))]
+    /// Any function of the position. It is not written as data.
     Function(Arc<dyn Fn(DVec2) -> f64 + Send + Sync>),
 }
 
 /// Two values at two places; along the line between them the value changes, across it does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Ramp {
     /// Where the ramp starts.
     pub from: DVec2,

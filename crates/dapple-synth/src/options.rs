@@ -11,7 +11,7 @@ const MAX_EVENNESS: f32 = 1000.0;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct Options {
     /// What the first colors are drawn from; by default `Seed(0)`.
@@ -27,6 +27,8 @@ pub struct Options {
     /// How much worse a match may be that continues the source of a neighboring site: it wins if its squared distance is at
     /// most `1 + coherence` times the least; in passes that read no coarser level, where no later one can mend what does
     /// not fit together, `1 + coherence / 2` times. By default 2; at 0 the least always wins, as in the paper.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/coherence.md"))]
     pub coherence: f32,
     /// How evenly the pixels of the exemplar are used, from 0 to 1000, by default 1.
     ///

@@ -38,6 +38,8 @@ pub struct PlaneTexture {
 ///
 /// `edges` says for columns and rows whether the texture is to wrap: [`Edges::Wrap`] makes a tile.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/synthesize-plane.md"))]
+///
 /// # Errors
 ///
 /// Typed errors for an exemplar that is too small, for options out of their ranges, for no pixels and too many, and for a

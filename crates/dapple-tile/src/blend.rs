@@ -68,6 +68,8 @@ pub struct Blend {
 }
 
 /// How layers are mixed by their shares.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/mixing.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",

@@ -39,6 +39,8 @@ use dapple_raster::{Raster, Wrap};
 
 /// How a texture becomes a blend map.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/blend-map.md"))]
+///
 /// # Examples
 ///
 /// ```

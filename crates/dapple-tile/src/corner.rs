@@ -24,6 +24,8 @@ const MOST_SOURCES: usize = 4;
 
 /// A set of corner tiles, made from 2 to 4 sources that repeat by themselves.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/corner-tiles.md"))]
+///
 /// # Examples
 ///
 /// ```

@@ -14,6 +14,8 @@ use crate::TileError;
 use dapple_raster::Raster;
 
 /// How two sides are mixed where they lie over each other.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/crossfade.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",

@@ -23,6 +23,8 @@ use dapple_raster::{Raster, Wrap};
 
 /// A map of copies of a tile that differ inside.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/disturbance.md"))]
+///
 /// # Examples
 ///
 /// ```

@@ -42,6 +42,8 @@ pub enum BorderSource {
 
 /// Gives unlike tiles the same borders.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/match-borders.md"))]
+///
 /// # Examples
 ///
 /// ```

@@ -22,6 +22,8 @@ use dapple_raster::Raster;
 ///
 /// Any raster can be made a blend mask by this: a [`BlendMap`](crate::BlendMap), a height, or noise of any kind.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/rank-equalize.md"))]
+///
 /// # Errors
 ///
 /// [`NotFinite`](crate::TileErrorKind::NotFinite) for a pixel that is NaN or infinite.

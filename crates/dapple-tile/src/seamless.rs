@@ -16,19 +16,33 @@ use dapple_raster::Raster;
 #[non_exhaustive]
 pub enum Method {
     /// The periodic part of the image (Moisan 2011).
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/method-periodic.md"))]
     #[default]
     Periodic,
     /// The image whose gradients are nearest to the given ones, once around the torus.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/method-poisson.md"))]
     Poisson(WrapGradient),
     /// A margin is laid over the opposite side and cut along the line of least difference.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/method-soft-cut.md"))]
     SoftCut(SoftCut),
     /// The paper's blend tile: halved and doubled with periodic filters.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/method-spline-project.md"))]
     SplineProject(SplineProject),
     /// First [`Periodic`](Self::Periodic), then [`SplineProject`](Self::SplineProject).
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/method-periodic-then-project.md"))]
     PeriodicThenProject(SplineProject),
     /// The usual baseline: a crossfade.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/method-feather.md"))]
     Feather(Feather),
     /// The other usual baseline: the image beside its mirror image, twice as large along each axis.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/method-mirror.md"))]
     Mirror,
 }
 

@@ -20,6 +20,8 @@ use crate::{Layer, TileError, TileErrorKind};
 use dapple_raster::Raster;
 
 /// How the weights of layers become their shares. The shares of a pixel sum to 1.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/weighting.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",

@@ -16,6 +16,8 @@ pub struct Bands {
 impl SplineFilter {
     /// Takes a raster apart into `levels` details and a coarse rest; with zero levels that is the raster itself.
     ///
+    #[cfg_attr(doc, doc = include_str!("../docs/analyze.md"))]
+    ///
     /// # Errors
     ///
     /// As [`project`](Self::project).

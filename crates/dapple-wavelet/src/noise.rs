@@ -46,6 +46,8 @@ pub(crate) use white::white_raster;
 ///
 /// At first there is one band, of weight 1; [`with_weights`](Self::with_weights) gives more.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/wavelet-noise.md"))]
+///
 /// # Examples
 ///
 /// ```
@@ -83,6 +85,8 @@ impl<const N: usize> WaveletNoise<N> {
     /// Band `b` is the tile at `2^b` times the position, shifted by whole numbers of cells: it has its power between
     /// `2^b / 4` and `2^b / 2` cycles per cell and repeats `2^b` times in a period. Bands hardly correlate, so the
     /// variance of the noise is about the sum of the squares of the weights. Nothing is divided by them.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/with-weights.md"))]
     ///
     /// # Errors
     ///

@@ -28,6 +28,8 @@ const PERIODIC: [Border; 2] = [Border::Periodic; 2];
 /// [`SplineFilter::analyze`] takes the raster apart into these bands again. Runs on all cores where the feature `rayon`
 /// is on.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/wavelet-tile.md"))]
+///
 /// # Errors
 ///
 /// [`WaveletErrorKind::Range`] unless there are 1 to 16 weights from -1e30 to 1e30, [`WaveletErrorKind::NotFinite`] if one

@@ -7,6 +7,8 @@
 //! Reference: Carl de Boor, "A Practical Guide to Splines", Springer 1978.
 
 /// The degree of a B-spline.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/degree.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -159,9 +161,11 @@ pub enum Fit {
 /// A filter pair: `h` that doubles a line and `a` that halves it.
 ///
 /// The default is the paper's: quadratic, pixel-centered, nearest as functions.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/spline-filter.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SplineFilter {
     /// The degree of the spline. By default quadratic.
     pub degree: Degree,

@@ -31,7 +31,7 @@ const RING_LIMIT: f64 = 65_536.0;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct SpectrumOptions {
     /// The highest frequency, in units of sqrt(N / area), above 0; 2 by default.

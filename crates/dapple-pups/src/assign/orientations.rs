@@ -74,6 +74,8 @@ pub fn field_orientations(points: &PointSet, field: impl Fn(DVec2) -> DVec3) -> 
 
 /// How the recipes orient their control points.
 ///
+#[cfg_attr(doc, doc = include_str!("../../docs/orientations.md"))]
+///
 /// # Examples
 ///
 /// ```

@@ -12,7 +12,7 @@ use dapple_points::Domain;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct CellsOptions {
     /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
@@ -48,6 +48,8 @@ impl CellsOptions {
 }
 
 /// Cells with a label each, from 0, and a random value in `[0, 1)`.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/cells.md"))]
 ///
 /// # Errors
 ///

@@ -13,7 +13,7 @@ use dapple_points::Domain;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct CellularNoiseOptions {
     /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
@@ -47,6 +47,8 @@ impl Default for CellularNoiseOptions {
 }
 
 /// Layers of [`cells`] and, as a field, their sum: between 0 and 1.875 by default.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/cellular-noise.md"))]
 ///
 /// # Errors
 ///

@@ -12,7 +12,7 @@ use dapple_points::Domain;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct ColorNoiseOptions {
     /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
@@ -43,6 +43,8 @@ impl Default for ColorNoiseOptions {
 }
 
 /// A texture of random colors of a palette, each between the smallest and the largest of them in every channel.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/color-noise.md"))]
 ///
 /// # Errors
 ///

@@ -12,7 +12,7 @@ use dapple_raster::Varying;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct CowOptions {
     /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
@@ -40,6 +40,8 @@ impl Default for CowOptions {
 }
 
 /// Patches of two values, like those of a cow.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/cow.md"))]
 ///
 /// # Errors
 ///

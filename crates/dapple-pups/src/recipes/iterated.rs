@@ -21,7 +21,7 @@ use dapple_points::{Domain, PointSet, nested_poisson_disk};
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct IteratedOptions {
     /// Where the control points lie, which the image covers; the paper's torus `[-1, 1]²` by default.
@@ -37,6 +37,8 @@ pub struct IteratedOptions {
 }
 
 /// Whether the points of an iteration contain those of the last.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/iteration-points.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -64,6 +66,8 @@ impl Default for IteratedOptions {
 }
 
 /// The textures of all iterations, each with values in `[0, 1]` but for rounding, and mostly 0 or 1.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/iterated-reference.md"))]
 ///
 /// # Errors
 ///

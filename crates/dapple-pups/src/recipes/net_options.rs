@@ -10,16 +10,20 @@ use dapple_points::PointSet;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct NetOptions {
     /// The length of every axis as a multiple of its edge: above ½, at most 16; 1 by default.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../../docs/axis-scale.md"))]
     pub axis_scale: f64,
     /// How the weight falls off along an axis; equation 1 by default.
     pub weight: AxialWeight,
     /// The orientations of the control points; none by default.
     pub orientations: Orientations,
     /// ε of equation 4, how strongly orientations shift weights, in `[0, 1)`; 0.5 by default.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../../docs/strength.md"))]
     pub strength: f64,
 }
 

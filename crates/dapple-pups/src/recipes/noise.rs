@@ -9,7 +9,7 @@ use dapple_points::Domain;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct NoiseOptions {
     /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
@@ -31,6 +31,8 @@ impl Default for NoiseOptions {
 }
 
 /// One octave of noise: a smooth field of values in `[0, 1]`, but for the rounding of single precision.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/noise.md"))]
 ///
 /// # Errors
 ///

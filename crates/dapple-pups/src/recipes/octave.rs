@@ -13,6 +13,8 @@ pub struct Octave {
 }
 
 /// Whether an octave is folded.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/folding.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Folding {
     /// It is as it was interpolated.

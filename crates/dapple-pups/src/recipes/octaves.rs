@@ -19,7 +19,7 @@ use dapple_points::Domain;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct OctavesOptions {
     /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
@@ -40,6 +40,8 @@ pub struct OctavesOptions {
 }
 
 /// Where octaves come from.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/octave-source.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -70,6 +72,8 @@ impl Default for OctavesOptions {
 }
 
 /// Octaves of noise and, as a field, their sum after equation 5.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/octaves.md"))]
 ///
 /// # Errors
 ///
@@ -111,6 +115,8 @@ pub fn octaves(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, P
 }
 
 /// Perlin's turbulence: the sum of the [`octaves`], each of which is folded. Between 0 and 1.875 by default.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/turbulence.md"))]
 ///
 /// # Errors
 ///

@@ -19,7 +19,7 @@ use glam::DVec2;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct ProgressionOptions {
     /// Where the control points lie; the square `[-1, 1]²`, which wraps along y only, by default.
@@ -36,7 +36,7 @@ pub struct ProgressionOptions {
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct LabelRampOptions {
     /// Where the control points lie; the square `[-1, 1]²`, which wraps along y only, by default.
@@ -72,6 +72,8 @@ impl Default for LabelRampOptions {
 
 /// A cow whose patches become smaller to the right (figure 15).
 ///
+#[cfg_attr(doc, doc = include_str!("../../docs/cow-progression.md"))]
+///
 /// # Errors
 ///
 /// As [`cow`].
@@ -100,6 +102,8 @@ pub fn cow_progression(
 
 /// A space giraffe whose spots become smaller to the right (figure 16).
 ///
+#[cfg_attr(doc, doc = include_str!("../../docs/giraffe-progression.md"))]
+///
 /// # Errors
 ///
 /// As [`space_giraffe`].
@@ -117,6 +121,8 @@ pub fn giraffe_progression(
 }
 
 /// Black and white cells, with ever more white to the right (figure 17).
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/label-ramp.md"))]
 ///
 /// # Errors
 ///

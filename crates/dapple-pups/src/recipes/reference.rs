@@ -9,7 +9,7 @@ use dapple_points::Domain;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct ReferenceOptions {
     /// Where the control points lie, which the image covers; the paper's torus `[-1, 1]²` by default.
@@ -34,6 +34,8 @@ impl Default for ReferenceOptions {
 }
 
 /// Black and white cells after an image: a control point is white with the probability of the intensity under it.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/reference-texture.md"))]
 ///
 /// # Errors
 ///

@@ -34,7 +34,7 @@ use spot::Spot;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct SpaceGiraffeOptions {
     /// Where the spot centers lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
@@ -52,6 +52,8 @@ pub struct SpaceGiraffeOptions {
 }
 
 /// Whether the spots of a giraffe may merge.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/spots.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -82,6 +84,8 @@ impl Default for SpaceGiraffeOptions {
 /// Irregular spots, one around each point of a Poisson-disk set.
 ///
 /// The first control points are the centers; then come, spot by spot, the pairs: inner point, outer point.
+///
+#[cfg_attr(doc, doc = include_str!("../../docs/space-giraffe.md"))]
 ///
 /// # Errors
 ///

@@ -1,5 +1,8 @@
 //! How far apart the control points of a recipe are, everywhere or depending on the position.
 
+#[cfg(feature = "serde")]
+mod data;
+
 use crate::PupsError;
 use dapple_hash::Seed;
 use dapple_points::{
@@ -10,6 +13,8 @@ use dapple_raster::{Ramp, Varying};
 
 /// How far apart control points are; they are always a maximal Poisson-disk set.
 ///
+#[cfg_attr(doc, doc = include_str!("../../docs/spacing.md"))]
+///
 /// # Examples
 ///
 /// ```
@@ -19,12 +24,10 @@ use dapple_raster::{Ramp, Varying};
 /// assert!((260..300).contains(&points.len()));
 /// # Ok::<(), dapple_pups::PupsError>(())
 /// ```
+///
+/// As data it is a number, where the smallest distance is the same everywhere, or `{ distance = … }`, `{ density = … }` or
+/// `{ count = … }`.
 #[derive(Clone, Debug)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
 #[non_exhaustive]
 pub enum Spacing {
     /// The smallest distance between two points, in units of the domain.

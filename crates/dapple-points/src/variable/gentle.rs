@@ -1,0 +1,303 @@
+//! Radii for a density of any kind: one with edges, gaps and grain, such as a photograph.
+//!
+//! A set of points cannot follow a density that changes by more over a distance than its points are apart, and
+//! [`variable_poisson_disk`](crate::variable_poisson_disk) refuses a radius whose slope is 1 or more. Here the radius is
+//! read on a lattice, and each place gets the least of `radius(q) + slope · |p - q|` over all places `q`: the largest
+//! radius below the given one that rises by no more than the slope. Around what is dense and small the points so thin
+//! out slowly, and nothing small is lost.
+//!
+//! Distances are those of steps to the eight neighbors, which are up to 8 % longer than straight ones. They come from two
+//! sweeps over the lattice, there and back: Gunilla Borgefors, "Distance transformations in digital images", Computer
+//! Vision, Graphics, and Image Processing 34(3), 1986, <https://doi.org/10.1016/S0734-189X(86)80047-0>. Around wrapped axes
+//! they are repeated until nothing changes. Units are those of the domain.
+
+use super::density::{RSA_DENSITY, radius_for_count};
+use crate::{Domain, PointsError, PointsErrorKind};
+use dapple_raster::{Raster, Varying, Wrap};
+use glam::DVec2;
+use std::sync::Arc;
+
+/// How fast the radius rises, along an axis or a diagonal; in between, a bilinear radius can rise 1.42 times as fast,
+/// which leaves room below 1.
+const SLOPE: f64 = 0.5;
+/// How often the radius is scaled towards the wanted number of points. Each time some 0.9 of what is missing is made up.
+const ROUNDS: usize = 6;
+
+/// The radius at which about `n_points` points follow a density of any kind, given up to a factor.
+///
+/// The density is read at `places` places, columns and rows; it is at least 0, and where it is 0 points are as far apart
+/// as the slope of ½ allows. A lattice finer than half of the distance of the points is of no use.
+///
+/// # Errors
+///
+/// [`PointsErrorKind::Domain`] for a domain without area, [`PointsErrorKind::NotPositive`] if `n_points` or the mean of
+/// the density is not above zero and finite, [`PointsErrorKind::TooMany`] for no places or more than 2^26.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_points::raster::Varying;
+/// use dapple_points::{Domain, gentle_radius_for_count, hash::Seed, variable_poisson_disk};
+///
+/// // All points are in the right half.
+/// let half = Varying::function(|position| f64::from(position.x > 0.0));
+/// let domain = Domain::paper_torus();
+/// let radius = gentle_radius_for_count(domain, &half, 1000.0, [128, 128])?;
+/// let points = variable_poisson_disk(domain, &radius, &Default::default(), Seed(7))?;
+/// assert!((900..1100).contains(&points.len()));
+/// # Ok::<(), dapple_points::PointsError>(())
+/// ```
+pub fn gentle_radius_for_count(
+    domain: Domain,
+    density: &Varying,
+    n_points: f64,
+    places: [u32; 2],
+) -> Result<Varying, PointsError> {
+    let n_places = u64::from(places[0]) * u64::from(places[1]);
+    if !(1..=PLACES_MAX).contains(&n_places) {
+        return Err(PointsError::new(PointsErrorKind::TooMany {
+            needed: n_places as f64,
+            limit: PLACES_MAX,
+        }));
+    }
+    // It refuses what is no domain and no density.
+    let radius = radius_for_count(domain, density, n_points)?;
+    let lattice = Lattice::new(&domain, places);
+    let steep = lattice.read(&radius);
+    // Nothing is further apart than this, also where the density is 0.
+    let most = domain.size.max_element();
+    let mut scale = 1.0;
+    let mut gentle = Vec::new();
+    for _ in 0..ROUNDS {
+        gentle = steep
+            .iter()
+            .map(|&radius| (scale * radius).min(most))
+            .collect();
+        lattice.limit(&mut gentle);
+        let inverse: f64 = gentle.iter().map(|radius| 1.0 / (radius * radius)).sum();
+        let found = RSA_DENSITY * domain.area() * inverse / gentle.len() as f64;
+        scale *= (found / n_points).sqrt();
+    }
+    let radii = gentle.into_iter().map(|radius| radius as f32).collect();
+    let raster = Raster::from_vec(places, radii).map_err(|_| {
+        PointsError::new(PointsErrorKind::TooMany {
+            needed: n_places as f64,
+            limit: PLACES_MAX,
+        })
+    })?;
+    let wrap = |wraps| if wraps { Wrap::Repeat } else { Wrap::Clamp };
+    Ok(Varying::Raster {
+        raster: Arc::new(raster),
+        origin: domain.origin,
+        extent: domain.size,
+        wrap: domain.wrap.map(wrap),
+    })
+}
+
+/// The most places.
+const PLACES_MAX: u64 = 1 << 26;
+
+/// Places of a domain, in columns and rows.
+struct Lattice<'a> {
+    domain: &'a Domain,
+    columns: usize,
+    rows: usize,
+    /// By how much a radius may rise to the next column, the next row, and the next of both.
+    rises: [f64; 3],
+}
+
+impl<'a> Lattice<'a> {
+    fn new(domain: &'a Domain, places: [u32; 2]) -> Self {
+        let step = domain.size / DVec2::new(places[0].into(), places[1].into());
+        let diagonal = (step.x * step.x + step.y * step.y).sqrt();
+        Self {
+            domain,
+            columns: places[0] as usize,
+            rows: places[1] as usize,
+            rises: [step.x, step.y, diagonal].map(|length| SLOPE * length),
+        }
+    }
+
+    /// The radius at all places, row by row. One that is no number is the largest there is.
+    fn read(&self, radius: &Varying) -> Vec<f64> {
+        let count = DVec2::new(self.columns as f64, self.rows as f64);
+        let mut radii = Vec::with_capacity(self.columns * self.rows);
+        for row in 0..self.rows {
+            for column in 0..self.columns {
+                let place = DVec2::new(column as f64 + 0.5, row as f64 + 0.5) / count;
+                let radius = radius.at(self.domain.origin + self.domain.size * place);
+                radii.push(if radius.is_nan() {
+                    f64::INFINITY
+                } else {
+                    radius
+                });
+            }
+        }
+        radii
+    }
+
+    /// Lowers radii until none rises too fast.
+    fn limit(&self, radii: &mut [f64]) {
+        loop {
+            let mut is_changed = false;
+            for index in 0..radii.len() {
+                is_changed |= self.lower(radii, index, -1);
+            }
+            for index in (0..radii.len()).rev() {
+                is_changed |= self.lower(radii, index, 1);
+            }
+            // Without an axis that wraps, two sweeps are all.
+            if !is_changed || self.domain.wrap == [false; 2] {
+                return;
+            }
+        }
+    }
+
+    /// Lowers one radius to what its neighbors on one side allow: those before it, or those after it.
+    fn lower(&self, radii: &mut [f64], index: usize, side: i64) -> bool {
+        let (column, row) = (index % self.columns, index / self.columns);
+        let [x, y, diagonal] = self.rises;
+        let mut least = radii[index];
+        for (right, down, rise) in [
+            (side, 0, x),
+            (-1, side, diagonal),
+            (0, side, y),
+            (1, side, diagonal),
+        ] {
+            let [wraps_x, wraps_y] = self.domain.wrap;
+            let column = neighbor(column, right, self.columns, wraps_x);
+            let row = neighbor(row, down, self.rows, wraps_y);
+            if let (Some(column), Some(row)) = (column, row) {
+                least = least.min(radii[row * self.columns + column] + rise);
+            }
+        }
+        let is_lower = least < radii[index];
+        radii[index] = least;
+        is_lower
+    }
+}
+
+/// The place beside one on an axis, if there is one.
+fn neighbor(place: usize, step: i64, length: usize, wraps: bool) -> Option<usize> {
+    let beside = place as i64 + step;
+    if wraps {
+        return Some(beside.rem_euclid(length as i64) as usize);
+    }
+    usize::try_from(beside)
+        .ok()
+        .filter(|&beside| beside < length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Lattice, SLOPE, gentle_radius_for_count};
+    use crate::{Domain, PointsErrorKind, variable_poisson_disk};
+    use dapple_hash::Seed;
+    use dapple_raster::Varying;
+    use glam::DVec2;
+
+    /// Black, white and gray squares with hard edges.
+    fn squares() -> Varying {
+        Varying::function(|at| {
+            let [x, y] = (at * 3.0).floor().to_array();
+            let square = (x + 2.0 * y) as i64;
+            [0.0, 0.05, 1.0][square.rem_euclid(3) as usize]
+        })
+    }
+
+    fn unit(wrap: [bool; 2]) -> Domain {
+        Domain {
+            wrap,
+            ..Domain::rectangle(DVec2::ZERO, DVec2::new(1.0, 0.75))
+        }
+    }
+
+    /// The length of the shortest way in steps to the eight neighbors: as many diagonal ones as possible.
+    fn steps(from: [f64; 2], to: [f64; 2], domain: &Domain, places: [f64; 2]) -> f64 {
+        let along = |axis: usize| {
+            let straight = (from[axis] - to[axis]).abs();
+            if domain.wrap[axis] {
+                straight.min(places[axis] - straight)
+            } else {
+                straight
+            }
+        };
+        let [x, y] = [along(0), along(1)];
+        let step = domain.size / DVec2::from(places);
+        let diagonal = x.min(y);
+        diagonal * step.length() + (x - diagonal) * step.x + (y - diagonal) * step.y
+    }
+
+    #[test]
+    fn limit_is_the_least_over_all_places() {
+        for wrap in [[false; 2], [true, false], [true; 2]] {
+            let domain = unit(wrap);
+            let lattice = Lattice::new(&domain, [13, 9]);
+            let steep: Vec<f64> = (0..117).map(|i| 0.02 + f64::from(i * 37 % 23)).collect();
+            let mut gentle = steep.clone();
+            lattice.limit(&mut gentle);
+            let place = |index: usize| [(index % 13) as f64, (index / 13) as f64];
+            for (index, &radius) in gentle.iter().enumerate() {
+                let allowed = steep.iter().enumerate().map(|(other, radius)| {
+                    radius + SLOPE * steps(place(index), place(other), &domain, [13.0, 9.0])
+                });
+                let least = allowed.fold(f64::INFINITY, f64::min);
+                // Sums of a dozen steps in another order.
+                assert!((radius - least).abs() < 1e-12, "{wrap:?}, place {index}");
+            }
+        }
+    }
+
+    #[test]
+    fn counts_are_met_for_a_density_with_edges() {
+        for (wrap, n_points) in [([true; 2], 500.0), ([false; 2], 3000.0)] {
+            let domain = unit(wrap);
+            let radius = gentle_radius_for_count(domain, &squares(), n_points, [96, 72]).unwrap();
+            let points = variable_poisson_disk(domain, &radius, &Default::default(), Seed(3));
+            let found = points.unwrap().len() as f64;
+            // Slopes of a half cost some points; see `variable_poisson_disk`.
+            assert!(
+                (found / n_points - 1.0).abs() < 0.12,
+                "{found} of {n_points}"
+            );
+        }
+    }
+
+    #[test]
+    fn bad_input_is_a_typed_error() {
+        let domain = unit([true; 2]);
+        let kind = |density: f64, n_points, places| {
+            let radius = gentle_radius_for_count(domain, &density.into(), n_points, places);
+            radius.map(|_| ()).map_err(|error| error.kind().clone())
+        };
+        for places in [[0, 5], [1 << 14, 1 << 13]] {
+            let error = kind(1.0, 10.0, places).unwrap_err();
+            assert!(
+                matches!(error, PointsErrorKind::TooMany { .. }),
+                "{error:?}"
+            );
+        }
+        for (density, n_points) in [(0.0, 10.0), (f64::NAN, 10.0), (1.0, 0.0), (1.0, f64::NAN)] {
+            let error = kind(density, n_points, [4, 4]).unwrap_err();
+            assert!(
+                matches!(error, PointsErrorKind::NotPositive { .. }),
+                "{error:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn value_stability_gentle_radius() {
+        let radius = gentle_radius_for_count(unit([true; 2]), &squares(), 400.0, [32, 24]).unwrap();
+        let at = |x, y| radius.at(DVec2::new(x, y));
+        let found = [at(0.1, 0.1), at(0.5, 0.3), at(0.9, 0.7)];
+        assert_eq!(
+            found,
+            [
+                0.08200636506080627,
+                0.10525857657194138,
+                0.05700637400150299
+            ]
+        );
+    }
+}
