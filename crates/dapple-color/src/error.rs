@@ -1,10 +1,10 @@
-//! Why a color, a ramp or a normal map was refused.
+//! Why a color, a ramp or a map was refused.
 
 use core::fmt;
 use dapple_raster::RasterError;
 use dapple_raster::glam::DVec2;
 
-/// Why a color, a ramp or a normal map was refused.
+/// Why a color, a ramp or a map was refused.
 ///
 /// Match on [`kind`](Self::kind); the text is for people.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +34,20 @@ pub enum ColorErrorKind {
     Extent {
         /// The size.
         extent: DVec2,
+    },
+    /// A radius is negative, or reaches over too many pixels.
+    Radius {
+        /// The radius.
+        radius: f64,
+        /// How many pixels it is along the axis on which they are smaller.
+        pixels: f64,
+        /// How many pixels it may be.
+        limit: u32,
+    },
+    /// The part of a radius over which something fades is not from 0 to 1.
+    Fade {
+        /// The part.
+        fade: f64,
     },
     /// The raster that was to result was refused.
     Raster(RasterError),
@@ -74,6 +88,17 @@ impl fmt::Display for ColorError {
                 "the extent is {} × {}, but both must be above zero and finite",
                 extent.x, extent.y
             ),
+            ColorErrorKind::Radius {
+                radius,
+                pixels,
+                limit,
+            } => write!(
+                f,
+                "the radius {radius} is {pixels} pixels, but it must be from 0 to {limit} pixels"
+            ),
+            ColorErrorKind::Fade { fade } => {
+                write!(f, "the fade is {fade}, but it must be from 0 to 1")
+            }
             ColorErrorKind::Raster(error) => error.fmt(f),
             ColorErrorKind::Unsorted { position, before } => write!(
                 f,

@@ -10,7 +10,7 @@
 //! Slopes are heights per unit of the *plane*, in which the raster has a stated extent, and not per pixel: twice the
 //! resolution gives the same normals, on finer pixels. Where a part of the slope is not finite the normal is flat.
 
-use crate::{Code, ColorError, ColorErrorKind};
+use crate::{Code, ColorError, plane};
 use dapple_raster::glam::DVec2;
 use dapple_raster::{Raster, Window, Wrap};
 
@@ -30,7 +30,7 @@ pub struct Normal {
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
+    serde(rename_all = "lowercase")
 )]
 pub enum NormalY {
     /// Up, as in OpenGL, glTF, Blender, Unity and Godot.
@@ -74,9 +74,8 @@ impl NormalOptions {
     /// The options with the extent of a window, for heights that were rendered there.
     #[must_use]
     pub fn for_window(window: &Window) -> Self {
-        let size = DVec2::new(window.size[0].into(), window.size[1].into());
         Self {
-            extent: (window.pixel * size).abs(),
+            extent: plane::extent(window),
             ..Self::default()
         }
     }
@@ -98,23 +97,17 @@ impl NormalOptions {
     }
 
     fn check(&self) -> Result<(), ColorError> {
-        let (extent, value) = (self.extent, self.strength);
-        if !value.is_finite() {
-            let what = "strength of the normal map";
-            return Err(ColorError::new(ColorErrorKind::NotFinite { what, value }));
-        }
-        if !(extent.is_finite() && extent.x > 0.0 && extent.y > 0.0) {
-            return Err(ColorError::new(ColorErrorKind::Extent { extent }));
-        }
-        Ok(())
+        plane::check("strength of the normal map", self.strength, self.extent)
     }
 }
 
 /// The normals of a raster of heights, on all cores where the feature `rayon` is on.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/normal-map.md"))]
+///
 /// # Errors
 ///
-/// [`ColorErrorKind::NotFinite`] if the strength is NaN or infinite, [`ColorErrorKind::Extent`] if the extent is not
+/// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength is NaN or infinite, [`Extent`](crate::ColorErrorKind::Extent) if the extent is not
 /// above zero and finite.
 ///
 /// # Examples
@@ -132,10 +125,25 @@ pub fn normal_map(
     height: &Raster<f32>,
     options: &NormalOptions,
 ) -> Result<Raster<Normal>, ColorError> {
+    normal_map_of_part(height, height.size(), options)
+}
+
+/// As [`normal_map`] for a part of a raster of `whole` pixels, whose extent is that of the options.
+///
+/// Every pixel that is further from the edges of the part than a pixel has the bits that it has in the whole.
+///
+/// # Errors
+///
+/// As [`normal_map`].
+pub fn normal_map_of_part(
+    height: &Raster<f32>,
+    whole: [u32; 2],
+    options: &NormalOptions,
+) -> Result<Raster<Normal>, ColorError> {
     options.check()?;
     let size = height.size();
     // Slope per difference of two neighbors.
-    let scale = DVec2::new(size[0].into(), size[1].into()) / (2.0 * options.extent);
+    let scale = DVec2::new(whole[0].into(), whole[1].into()) / (2.0 * options.extent);
     let [wrap_x, wrap_y] = options.wrap;
     let last = size[0] - 1;
     let [before_first, after_last] = [-1, i64::from(size[0])].map(|at| wrap_x.index(at, size[0]));
@@ -165,7 +173,7 @@ pub fn normal_map(
 ///
 /// # Errors
 ///
-/// [`ColorErrorKind::NotFinite`] if the strength is NaN or infinite, [`ColorErrorKind::Extent`] if the extent is not
+/// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength is NaN or infinite, [`Extent`](crate::ColorErrorKind::Extent) if the extent is not
 /// above zero and finite.
 pub fn normal_map_from_gradient(
     gradient: &Raster<[f32; 2]>,

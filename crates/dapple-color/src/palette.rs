@@ -7,6 +7,8 @@ use crate::{ColorRamp, LinearRgb};
 
 /// A named list of colors.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/palette.md"))]
+///
 /// # Examples
 ///
 /// ```
@@ -24,18 +26,32 @@ use crate::{ColorRamp, LinearRgb};
 #[non_exhaustive]
 pub enum Palette {
     /// Black to white in linear light.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/palette-gray.md"))]
     Gray,
     /// Deep blue through teal and green to pale yellow; lighter all the way, so that it reads as a height.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/palette-lagoon.md"))]
     Lagoon,
     /// Black through dark red and orange to pale yellow; lighter all the way.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/palette-ember.md"))]
     Ember,
     /// Sea floor, shallows, beach, meadow, forest, rock and snow.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/palette-terrain.md"))]
     Terrain,
     /// The white and the black of a cow.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/palette-cow.md"))]
     Cow,
     /// The cream between the spots of a giraffe, and their browns.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/palette-giraffe.md"))]
     Giraffe,
     /// Eight colors that are easy to tell apart, for labels.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/palette-labels.md"))]
     Labels,
 }
 

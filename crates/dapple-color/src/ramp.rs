@@ -18,6 +18,8 @@ pub struct ColorStop {
 }
 
 /// What lies between two stops of a color ramp.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/interpolation.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -35,6 +37,8 @@ pub enum Interpolation {
 }
 
 /// What lies before the first stop and after the last.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/outside.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",

@@ -14,7 +14,7 @@
 use std::sync::LazyLock;
 
 /// How many mantissa bits select a part of the guessing table.
-const GUESS_BITS: u32 = 6;
+const GUESS_BITS: u32 = 8;
 
 /// The bits of a number that do not select a part.
 const FRACTION_BITS: u32 = 23 - GUESS_BITS;

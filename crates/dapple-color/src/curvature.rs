@@ -1,0 +1,206 @@
+//! Mean curvature of heights: where a surface bulges, and where it is hollow.
+//!
+//! The surface `z = s h(x, y)` has, with subscripts for derivatives, the mean curvature
+//!
+//! ```text
+//! -((1 + z_y²) z_xx - 2 z_x z_y z_xy + (1 + z_x²) z_yy) / (2 (1 + z_x² + z_y²)^(3/2)),
+//! ```
+//!
+//! which is positive where the surface is convex, on ridges and hills, and negative in grooves and pits. A hill that is part
+//! of a sphere has one over the radius of the sphere, at every place of any slope.
+//!
+//! Reference: Manfredo P. do Carmo, "Differential Geometry of Curves and Surfaces", 1976, section 3.3, example 5, with the
+//! sign turned, as maps of curvature have it.
+//!
+//! Derivatives are central differences over a radius of whole pixels to each side: second differences are weighted means of
+//! the derivative over that radius. Lengths are in units of the plane and curvature in one over them: it does not depend on
+//! the resolution as long as the radius is at least a pixel. Where a part is not finite the curvature is 0.
+
+use crate::{ColorError, plane};
+use dapple_raster::glam::DVec2;
+use dapple_raster::{Raster, Window, Wrap};
+
+/// How heights become curvature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct CurvatureOptions {
+    /// How many units of the plane a height of 1 stands for; negative turns hills into dents. By default 1.
+    pub strength: f64,
+    /// The width and height of the raster in the plane, above zero. By default 1 × 1, as in [`Window::unit`]; a raster
+    /// with square pixels that is not square needs its true proportions here.
+    pub extent: DVec2,
+    /// What lies past the edges of the height, per axis. By default both repeat.
+    pub wrap: [Wrap; 2],
+    /// The size of what is measured, in units of the plane, at least zero. By default 1/128. It is rounded to whole pixels,
+    /// and less than one is one.
+    pub radius: f64,
+}
+
+impl Default for CurvatureOptions {
+    fn default() -> Self {
+        Self {
+            strength: 1.0,
+            extent: DVec2::ONE,
+            wrap: [Wrap::Repeat; 2],
+            radius: 0.007_812_5,
+        }
+    }
+}
+
+impl CurvatureOptions {
+    /// The options with the extent of a window, for heights that were rendered there.
+    #[must_use]
+    pub fn for_window(window: &Window) -> Self {
+        Self {
+            extent: plane::extent(window),
+            ..Self::default()
+        }
+    }
+
+    /// How many columns and rows around a pixel its value depends on, in a raster of `size` pixels.
+    ///
+    /// A crop with so many more pixels on each side has the same bits inside: see [`curvature_of_part`]. Options that
+    /// [`curvature`] refuses have a halo of 1 × 1.
+    #[must_use]
+    pub fn halo(&self, size: [u32; 2]) -> [u32; 2] {
+        self.spans(size).unwrap_or([1; 2])
+    }
+
+    /// The radius in columns and rows.
+    fn spans(&self, size: [u32; 2]) -> Result<[u32; 2], ColorError> {
+        plane::check("strength of the curvature", self.strength, self.extent)?;
+        let pixel = plane::pixel(self.extent, size);
+        plane::check_radius("radius of the curvature", self.radius, pixel)?;
+        // The margin rounds half a pixel up, whatever the extent rounds to.
+        Ok([pixel.x, pixel.y].map(|pixel| ((self.radius / pixel + 0.5 + 1e-9) as u32).max(1)))
+    }
+}
+
+/// The mean curvature of a raster of heights, in one over units of the plane, on all cores where the feature `rayon` is on.
+///
+/// Positive is convex (ridges, hills), negative concave. [`curvature_to_gray`] shows it as a gray.
+///
+/// # Errors
+///
+/// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength or the radius is NaN or infinite,
+/// [`Extent`](crate::ColorErrorKind::Extent) if the extent is not above zero and finite,
+/// [`Radius`](crate::ColorErrorKind::Radius) if the radius is negative or more than 16384 pixels.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::{CurvatureOptions, curvature, curvature_to_gray};
+/// use dapple_raster::{Raster, Window};
+///
+/// // A hill around the middle of the unit square.
+/// let window = Window::unit([64, 64])?;
+/// let hill = Raster::from_window(&window, |at| -(at - 0.5).length_squared() as f32)?;
+/// let bent = curvature(&hill, &CurvatureOptions::for_window(&window))?;
+/// assert!((bent.row(32)[32] - 2.0).abs() < 0.01, "the top is that of a sphere of radius 1/2");
+/// assert!(curvature_to_gray(bent.row(32)[32], 0.1) > 0.59);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn curvature(
+    height: &Raster<f32>,
+    options: &CurvatureOptions,
+) -> Result<Raster<f32>, ColorError> {
+    curvature_of_part(height, height.size(), options)
+}
+
+/// As [`curvature`] for a part of a raster of `whole` pixels, whose extent is that of the options.
+///
+/// Every pixel that is further from the edges of the part than the [halo](CurvatureOptions::halo) of the whole has the bits that it has in the whole.
+///
+/// # Errors
+///
+/// As [`curvature`].
+pub fn curvature_of_part(
+    height: &Raster<f32>,
+    whole: [u32; 2],
+    options: &CurvatureOptions,
+) -> Result<Raster<f32>, ColorError> {
+    let size = height.size();
+    let spans = options.spans(whole)?;
+    let [step_x, step_y] = spans.map(i64::from);
+    let scales = Scales::new(options, whole, spans);
+    let [wrap_x, wrap_y] = options.wrap;
+    let mut bent = Raster::filled(size, 0.0)?;
+    plane::fill_rows(&mut bent, |row, values| {
+        let [above, below] =
+            [-step_y, step_y].map(|step| height.row(wrap_y.index(i64::from(row) + step, size[1])));
+        let here = height.row(row);
+        for (column, value) in values.iter_mut().enumerate() {
+            let left = plane::index(wrap_x, column as i64 - step_x, size[0]);
+            let right = plane::index(wrap_x, column as i64 + step_x, size[0]);
+            *value = scales.mean_curvature([
+                [above[left], above[column], above[right]],
+                [here[left], here[column], here[right]],
+                [below[left], below[column], below[right]],
+            ]);
+        }
+    });
+    Ok(bent)
+}
+
+/// The gray of a curvature: 0.5 where it is flat, brighter where it is convex, from 0 to 1.
+///
+/// `radius` is in units of the plane: a hill that is part of a sphere of that radius, or a sharper one, is white, and a pit
+/// of that radius black. A curvature that is not a number gives 0.5.
+#[must_use]
+pub fn curvature_to_gray(curvature: f32, radius: f32) -> f32 {
+    let part = curvature * radius;
+    if part.is_nan() {
+        return 0.5;
+    }
+    0.5 + 0.5 * part.clamp(-1.0, 1.0)
+}
+
+/// Derivatives per difference of heights.
+struct Scales {
+    /// Of the two neighbors of a pixel, across and downward.
+    first: DVec2,
+    /// Of the differences on both sides of a pixel.
+    second: DVec2,
+    /// Across, of the differences downward.
+    mixed: f64,
+}
+
+impl Scales {
+    fn new(options: &CurvatureOptions, size: [u32; 2], spans: [u32; 2]) -> Self {
+        let step = plane::pixel(options.extent, size) * DVec2::from(spans.map(f64::from));
+        Self {
+            first: options.strength / (2.0 * step),
+            second: options.strength / (step * step),
+            mixed: options.strength / (4.0 * step.x * step.y),
+        }
+    }
+
+    /// The curvature in the middle of nine heights.
+    #[inline(always)]
+    fn mean_curvature(&self, heights: [[f32; 3]; 3]) -> f32 {
+        let [above, here, below] = heights;
+        let difference = |from: f32, to: f32| f64::from(to) - f64::from(from);
+        let x = difference(here[0], here[2]) * self.first.x;
+        let y = difference(above[1], below[1]) * self.first.y;
+        let xx = (difference(here[1], here[2]) - difference(here[0], here[1])) * self.second.x;
+        let yy = (difference(here[1], below[1]) - difference(above[1], here[1])) * self.second.y;
+        let xy = (difference(below[0], below[2]) - difference(above[0], above[2])) * self.mixed;
+        // Squared lengths of the tangents across and downward, and of the normal whose upward part is 1.
+        let [across_sq, down_sq] = [1.0 + x * x, 1.0 + y * y];
+        let length_sq = across_sq + y * y;
+        let bend = down_sq * xx - 2.0 * x * y * xy + across_sq * yy;
+        let curvature = (-bend / (2.0 * length_sq * length_sq.sqrt())) as f32;
+        if curvature.is_finite() {
+            curvature
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

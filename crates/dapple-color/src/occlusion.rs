@@ -1,0 +1,173 @@
+//! Ambient occlusion of heights: how much of the sky each place sees.
+//!
+//! A place on the surface `z = s h(x, y)` with the unit normal `n` is lit by the sky where nothing rises above it. Around
+//! it, in each of 16 azimuths `d`, the horizon is the largest slope `H` from the place to a place on the ray, within the
+//! radius, and not below the slope `t` of the tangent plane. Light from an angle `θ` to the zenith counts with the cosine
+//! to the normal, so the azimuth gives
+//!
+//! ```text
+//! ∫ (n_z cos θ + (n·d) sin θ) sin θ dθ  =  n_z/2 ((1 + t H)/(1 + H²) - t (π/2 - arctan H)),  θ from 0 to arccot H.
+//! ```
+//!
+//! `t π/2` is lost between opposite azimuths. What is divided by is the same sum with nothing above the tangent plane, so
+//! that a plane of any slope sees exactly 1.
+//!
+//! Reference: Louis Bavoil, Miguel Sainz and Rouslan Dimitrov, "Image-space horizon-based ambient occlusion", SIGGRAPH
+//! 2008 talks, for the horizon, and Jorge Jimenez, Xianchun Wu, Angelo Pesce and Adrian Jarabo, "Practical Real-Time
+//! Strategies for Accurate Indirect Occlusion", SIGGRAPH 2016 courses, for the integral about the normal. There are no
+//! random turns of the azimuths here: a value depends on the heights within the halo alone, and is the same in every window.
+//! Toward the radius, slopes above that of the tangent plane are lowered to it, as the fade says.
+//!
+//! Of the true value, 16 azimuths miss about 0.005 on smooth and 0.015 on broken heights (root mean square). Samples are
+//! one pixel apart, or an eighth of the way, so that a sharp edge far away is seen up to a ninth too low.
+//!
+//! Heights times the strength, the radius and the extent are in units of the plane. A height that is not finite hides
+//! nothing, and the tangent plane beside it is level, as in a normal map.
+
+use crate::{ColorError, ColorErrorKind, plane};
+use dapple_raster::glam::DVec2;
+use dapple_raster::{Raster, Window, Wrap, simd};
+use fearless_simd::{Level, dispatch};
+use lines::Heights;
+use rays::Ray;
+use sky::see_row;
+
+mod lines;
+mod rays;
+mod sky;
+
+/// How heights hide the sky.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct OcclusionOptions {
+    /// How many units of the plane a height of 1 stands for; negative turns hills into dents. By default 1.
+    pub strength: f64,
+    /// The width and height of the raster in the plane, above zero. By default 1 × 1, as in [`Window::unit`]; a raster
+    /// with square pixels that is not square needs its true proportions here.
+    pub extent: DVec2,
+    /// What lies past the edges of the height, per axis. By default both repeat.
+    pub wrap: [Wrap; 2],
+    /// How far away heights hide the sky, in units of the plane, at least zero; less than a pixel hides nothing. By
+    /// default 1/16. The time grows with its logarithm once it is more than 16 pixels.
+    pub radius: f64,
+    /// Over which outer part of the radius heights lose their effect, from 0 to 1. By default 1/2. Without a fade the map is
+    /// exact for what lies within the radius, but what lies across it begins to hide the sky all at once.
+    pub fade: f64,
+}
+
+impl Default for OcclusionOptions {
+    fn default() -> Self {
+        Self {
+            strength: 1.0,
+            extent: DVec2::ONE,
+            wrap: [Wrap::Repeat; 2],
+            radius: 0.0625,
+            fade: 0.5,
+        }
+    }
+}
+
+impl OcclusionOptions {
+    /// The options with the extent of a window, for heights that were rendered there.
+    #[must_use]
+    pub fn for_window(window: &Window) -> Self {
+        Self {
+            extent: plane::extent(window),
+            ..Self::default()
+        }
+    }
+
+    /// How many columns and rows around a pixel its value depends on, in a raster of `size` pixels.
+    ///
+    /// A crop with so many more pixels on each side has the same bits inside: see [`ambient_occlusion_of_part`]. Options
+    /// that [`ambient_occlusion`] refuses have a halo of 1 × 1.
+    #[must_use]
+    pub fn halo(&self, size: [u32; 2]) -> [u32; 2] {
+        // The tangent plane needs the neighbors.
+        self.rays(size)
+            .map_or([1; 2], |rays| rays::reach(&rays).map(|reach| reach.max(1)))
+    }
+
+    fn rays(&self, size: [u32; 2]) -> Result<Vec<Ray>, ColorError> {
+        plane::check("strength of the occlusion", self.strength, self.extent)?;
+        let pixel = plane::pixel(self.extent, size);
+        plane::check_radius("radius of the occlusion", self.radius, pixel)?;
+        // Written so that what is not a number is refused too.
+        if !(0.0..=1.0).contains(&self.fade) {
+            let fade = self.fade;
+            return Err(ColorError::new(ColorErrorKind::Fade { fade }));
+        }
+        Ok(rays::rays(self, pixel))
+    }
+}
+
+/// The part of the sky that each place of a raster of heights sees, from 0 to 1, on all cores where the feature `rayon` is
+/// on.
+///
+/// The sky is the half space above the tangent plane, and counts with the cosine to the normal, as for a matte surface
+/// under an even sky. A flat raster is 1 everywhere, the wall of a long groove that opens by an angle `a` is `sin²(a/2)`,
+/// the inside of a hemispherical bowl is 1/2.
+///
+/// # Errors
+///
+/// [`ColorErrorKind::NotFinite`] if the strength or the radius is NaN or infinite, [`ColorErrorKind::Extent`] if the extent
+/// is not above zero and finite, [`ColorErrorKind::Radius`] if the radius is negative or more than 16384 pixels,
+/// [`ColorErrorKind::Fade`] if the fade is not from 0 to 1, [`ColorErrorKind::Raster`] if the raster with the radius at its
+/// sides is too large.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_color::{OcclusionOptions, ambient_occlusion};
+/// use dapple_raster::Raster;
+///
+/// let step = Raster::from_fn([64, 64], |column, _| if column < 32 { 0.0 } else { 0.1 })?;
+/// let seen = ambient_occlusion(&step, &OcclusionOptions::default())?;
+/// assert!(seen.row(9)[30] < 0.75, "the foot of the step is dark");
+/// assert_eq!(seen.row(9)[16], 1.0, "far from it nothing hides the sky");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn ambient_occlusion(
+    height: &Raster<f32>,
+    options: &OcclusionOptions,
+) -> Result<Raster<f32>, ColorError> {
+    ambient_occlusion_of_part(height, height.size(), options)
+}
+
+/// As [`ambient_occlusion`] for a part of a raster of `whole` pixels, whose extent is that of the options.
+///
+/// Every pixel that is further from the edges of the part than the [halo](OcclusionOptions::halo) of the whole has the bits that it has in the whole.
+///
+/// # Errors
+///
+/// As [`ambient_occlusion`].
+pub fn ambient_occlusion_of_part(
+    height: &Raster<f32>,
+    whole: [u32; 2],
+    options: &OcclusionOptions,
+) -> Result<Raster<f32>, ColorError> {
+    occlusion_at(simd::level(), height, whole, options)
+}
+
+fn occlusion_at(
+    level: Level,
+    height: &Raster<f32>,
+    whole: [u32; 2],
+    options: &OcclusionOptions,
+) -> Result<Raster<f32>, ColorError> {
+    let rays = options.rays(whole)?;
+    let heights = Heights::new(height, whole, options, &rays)?;
+    let mut seen = Raster::filled(height.size(), 0.0)?;
+    plane::fill_rows(&mut seen, |row, values| {
+        let lines = heights.lines(row, &rays, options.strength);
+        dispatch!(level, simd => see_row(simd, &lines, values));
+    });
+    Ok(seen)
+}
+
+#[cfg(test)]
+mod tests;

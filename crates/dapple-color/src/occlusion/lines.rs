@@ -1,0 +1,113 @@
+//! The heights that a row of pixels is compared with: for each sample of each ray one or two lines of them.
+//!
+//! Samples lie at whole pixels, so that what registers of neighboring pixels look at is contiguous.
+
+use super::OcclusionOptions;
+use super::rays::{Ray, Sample, reach};
+use super::sky::LANES;
+use crate::{ColorError, plane};
+use dapple_raster::{Raster, Wrap};
+
+/// Heights with columns at both sides, as the wrap says, so that whole registers can be read beside every pixel.
+pub(super) struct Heights {
+    padded: Raster<f32>,
+    wrap_y: Wrap,
+    /// How many columns there are on the left.
+    margin: i32,
+    /// The columns of the raster, up to whole registers.
+    span: usize,
+    /// Slope per difference of two neighbors, for columns and rows.
+    scale: [f32; 2],
+}
+
+/// The heights that a row of pixels is compared with.
+pub(super) struct Lines<'a> {
+    pub(super) here: &'a [f32],
+    /// Left, right, above and below.
+    pub(super) around: [&'a [f32]; 4],
+    /// Slope per difference of `around`, for columns and rows.
+    pub(super) scale: [f32; 2],
+    /// Each is followed by the opposite one.
+    pub(super) views: Vec<View<'a>>,
+}
+
+/// A ray, for a row of pixels.
+pub(super) struct View<'a> {
+    pub(super) direction: [f32; 2],
+    pub(super) samples: Vec<Line<'a>>,
+}
+
+/// A sample of a ray, for a row of pixels.
+pub(super) struct Line<'a> {
+    pub(super) near: &'a [f32],
+    pub(super) far: &'a [f32],
+    pub(super) part: f32,
+    /// Slope per difference in height.
+    pub(super) scale: f32,
+    /// How much of a slope above that of the tangent plane counts.
+    pub(super) weight: f32,
+}
+
+impl Heights {
+    /// # Errors
+    ///
+    /// [`Raster`](crate::ColorErrorKind::Raster) if the raster with the columns at its sides is too large.
+    pub(super) fn new(
+        height: &Raster<f32>,
+        whole: [u32; 2],
+        options: &OcclusionOptions,
+        rays: &[Ray],
+    ) -> Result<Self, ColorError> {
+        let size = height.size();
+        let margin = reach(rays)[0].max(1);
+        let span = size[0].next_multiple_of(LANES as u32);
+        let mut padded = Raster::filled([span.saturating_add(2 * margin), size[1]], 0.0)?;
+        let wrap_x = options.wrap[0];
+        plane::fill_rows(&mut padded, |row, values| {
+            let source = height.row(row);
+            let first = -i64::from(margin);
+            for (column, value) in (first..).zip(values) {
+                let height = source[plane::index(wrap_x, column, size[0])];
+                // Not a number is above nothing, and infinity would be above all.
+                *value = if height.is_finite() { height } else { f32::NAN };
+            }
+        });
+        let slope = options.strength / (2.0 * plane::pixel(options.extent, whole));
+        Ok(Self {
+            padded,
+            wrap_y: options.wrap[1],
+            margin: margin as i32,
+            span: span as usize,
+            scale: [slope.x as f32, slope.y as f32],
+        })
+    }
+
+    /// What lies so many columns and rows from a row of pixels.
+    fn line(&self, row: u32, [x, y]: [i32; 2]) -> &[f32] {
+        let row = i64::from(row) + i64::from(y);
+        let row = plane::index(self.wrap_y, row, self.padded.height());
+        let first = (self.margin + x) as usize;
+        &self.padded.row(row as u32)[first..first + self.span]
+    }
+
+    /// All that a row of pixels is compared with.
+    pub(super) fn lines(&self, row: u32, rays: &[Ray], strength: f64) -> Lines<'_> {
+        let line = |sample: &Sample| Line {
+            near: self.line(row, sample.near),
+            far: self.line(row, sample.far),
+            part: sample.part,
+            scale: (strength / sample.distance) as f32,
+            weight: sample.weight,
+        };
+        let view = |ray: &Ray| View {
+            direction: [ray.direction.x as f32, ray.direction.y as f32],
+            samples: ray.samples.iter().map(line).collect(),
+        };
+        Lines {
+            here: self.line(row, [0, 0]),
+            around: [[-1, 0], [1, 0], [0, -1], [0, 1]].map(|offset| self.line(row, offset)),
+            scale: self.scale,
+            views: rays.iter().map(view).collect(),
+        }
+    }
+}

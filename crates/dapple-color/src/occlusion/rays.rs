@@ -1,0 +1,139 @@
+//! Where occlusion looks: steps along rays, in whole pixels.
+//!
+//! Rays leave a pixel at 16 even azimuths of the plane. A ray is followed in whole steps along the axis on which it
+//! crosses more pixels, and between the two pixels beside it on the other axis the height is linear, so that samples lie on
+//! the ray and not near it. Steps are one pixel at first and later an eighth of the way, so that their number grows with
+//! the logarithm of the radius.
+
+use super::OcclusionOptions;
+use dapple_raster::glam::DVec2;
+
+/// How many azimuths there are.
+const AZIMUTHS: usize = 16;
+
+/// The directions of the first half, a sixteenth of a turn apart; the other half is opposite.
+const DIRECTIONS: [[f64; 2]; AZIMUTHS / 2] = {
+    // The cosine of 1/16, 2/16 and 3/16 of a turn.
+    const C: [f64; 3] = [
+        0.923_879_532_511_286_7,
+        core::f64::consts::FRAC_1_SQRT_2,
+        0.382_683_432_365_089_8,
+    ];
+    [
+        [1.0, 0.0],
+        [C[0], C[2]],
+        [C[1], C[1]],
+        [C[2], C[0]],
+        [0.0, 1.0],
+        [-C[2], C[0]],
+        [-C[1], C[1]],
+        [-C[0], C[2]],
+    ]
+};
+
+/// About how many steps double the way, once they are longer than a pixel.
+const STEPS_TO_DOUBLE: u32 = 8;
+
+/// Places across a ray are multiples of this part of a pixel: the same for every window, whatever its extent rounds to.
+const PARTS: f64 = (1 << 20) as f64;
+
+/// What is seen in one azimuth.
+#[derive(Clone, Debug)]
+pub(super) struct Ray {
+    /// The unit vector of the plane.
+    pub(super) direction: DVec2,
+    /// Where to look, from near to far.
+    pub(super) samples: Vec<Sample>,
+}
+
+/// A place on a ray: between two pixels, which are the same pixel or neighbors.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    /// Columns and rows from the pixel at the start of the ray.
+    pub(super) near: [i32; 2],
+    /// The same, for the other pixel.
+    pub(super) far: [i32; 2],
+    /// How far it is from `near` to `far`, from 0 to below 1.
+    pub(super) part: f32,
+    /// How far it is from the start of the ray, in units of the plane.
+    pub(super) distance: f64,
+    /// How much of what rises there above the tangent plane counts, from 0 to 1.
+    pub(super) weight: f32,
+}
+
+/// The rays of options, each followed by the opposite one. The radius is at most some thousand pixels.
+pub(super) fn rays(options: &OcclusionOptions, pixel: DVec2) -> Vec<Ray> {
+    let halves = DIRECTIONS.iter().flat_map(|&direction| {
+        let direction = DVec2::from(direction);
+        [direction, -direction]
+    });
+    let ray = |direction| Ray {
+        direction,
+        samples: samples(options, direction, pixel),
+    };
+    halves.map(ray).collect()
+}
+
+/// How many columns and rows rays reach to each side.
+pub(super) fn reach(rays: &[Ray]) -> [u32; 2] {
+    let samples = rays.iter().flat_map(|ray| &ray.samples);
+    samples.fold([0; 2], |reach, sample| {
+        [0, 1].map(|axis| {
+            let ends = [sample.near, sample.far].map(|end| end[axis].unsigned_abs());
+            reach[axis].max(ends[0]).max(ends[1])
+        })
+    })
+}
+
+/// Where to look in a direction.
+fn samples(options: &OcclusionOptions, direction: DVec2, pixel: DVec2) -> Vec<Sample> {
+    // Pixels crossed per unit of the way.
+    let speed = direction / pixel;
+    let [along, across] = if speed.x.abs() >= speed.y.abs() {
+        [0, 1]
+    } else {
+        [1, 0]
+    };
+    let crossed = speed[along].abs();
+    let sample = |step: u32| {
+        let place = f64::from(step) * (speed[across] / crossed);
+        let place = (place * PARTS + 0.5).floor() / PARTS;
+        let offset = |place: f64| {
+            let mut offset = [0; 2];
+            offset[along] = if speed[along] < 0.0 { -1 } else { 1 } * step as i32;
+            offset[across] = place as i32;
+            offset
+        };
+        let distance = f64::from(step) / crossed;
+        Sample {
+            near: offset(place.floor()),
+            far: offset(place.ceil()),
+            part: (place - place.floor()) as f32,
+            distance,
+            weight: weight(distance / options.radius, options.fade),
+        }
+    };
+    // The margin keeps a radius of a whole number of pixels whole, whatever the extent rounds to.
+    let last = (options.radius * crossed * (1.0 + 1e-9)).floor() as u32;
+    steps(last).into_iter().map(sample).collect()
+}
+
+/// What is left after this part of the radius.
+fn weight(part: f64, fade: f64) -> f32 {
+    if part <= 1.0 - fade {
+        1.0
+    } else {
+        ((1.0 - part) / fade).clamp(0.0, 1.0) as f32
+    }
+}
+
+/// Whole numbers up to `last`, one apart and then ever further, with `last` at the end.
+fn steps(last: u32) -> Vec<u32> {
+    let mut steps = Vec::new();
+    let mut step = 0;
+    while step < last {
+        step = last.min(step + (step / STEPS_TO_DOUBLE).max(1));
+        steps.push(step);
+    }
+    steps
+}

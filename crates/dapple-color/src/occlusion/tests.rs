@@ -1,0 +1,333 @@
+//! Ambient occlusion: crops, turns, resolution, fading, levels, threads, bad input.
+
+use super::{OcclusionOptions, ambient_occlusion, ambient_occlusion_of_part, occlusion_at};
+use crate::ColorErrorKind;
+use dapple_raster::glam::DVec2;
+use dapple_raster::simd::for_every_level;
+use dapple_raster::{Raster, Window, Wrap};
+use proptest::prelude::*;
+
+mod exact;
+
+fn options() -> OcclusionOptions {
+    OcclusionOptions::default()
+}
+
+/// The options for pixels of 1 × 1 without repeats, so that lengths are in pixels.
+fn in_pixels(size: [u32; 2], radius: f64) -> OcclusionOptions {
+    OcclusionOptions {
+        extent: DVec2::new(size[0].into(), size[1].into()),
+        wrap: [Wrap::Clamp; 2],
+        radius,
+        fade: 0.0,
+        ..options()
+    }
+}
+
+/// Heights without any order, multiples of 1/64 below 1.
+fn rubble(size: [u32; 2]) -> Raster<f32> {
+    let height = |x: u32, y: u32| {
+        let mixed =
+            (x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA6B)).wrapping_mul(0xC2B2_AE35);
+        (mixed >> 26) as f32 / 64.0
+    };
+    Raster::from_fn(size, height).unwrap()
+}
+
+#[test]
+fn crops_with_the_halo_have_the_same_bits() {
+    let [size, first, part] = [[97, 83], [31, 40], [29, 17]];
+    let height = rubble(size);
+    for (extent, radius) in [
+        (DVec2::new(1.0, 1.0), 0.1),
+        (DVec2::new(0.97, 0.83), 0.1),
+        (DVec2::new(0.7, 1.3), 0.11),
+        (DVec2::new(97.0, 83.0), 0.5),
+    ] {
+        let whole = OcclusionOptions {
+            extent,
+            radius,
+            ..options()
+        };
+        let [x, y] = whole.halo(size);
+        let crop_size = [part[0] + 2 * x, part[1] + 2 * y];
+        let crop = height
+            .crop([first[0] - x, first[1] - y], crop_size)
+            .unwrap();
+        let cropped = OcclusionOptions {
+            wrap: [Wrap::Clamp; 2],
+            ..whole
+        };
+        let seen = ambient_occlusion(&height, &whole)
+            .unwrap()
+            .crop(first, part)
+            .unwrap();
+        let inside = ambient_occlusion_of_part(&crop, size, &cropped)
+            .unwrap()
+            .crop([x, y], part)
+            .unwrap();
+        assert_eq!(
+            inside.map(|seen| seen.to_bits()),
+            seen.map(|seen| seen.to_bits()),
+            "{whole:?}"
+        );
+    }
+}
+
+#[test]
+fn the_halo_is_the_radius_in_pixels() {
+    let halo = |radius, extent| {
+        OcclusionOptions {
+            radius,
+            extent,
+            ..options()
+        }
+        .halo([100, 50])
+    };
+    assert_eq!(halo(0.1, DVec2::ONE), [10, 5], "whole pixels");
+    assert_eq!(
+        halo(0.1, DVec2::new(1.0, 0.1)),
+        [10, 50],
+        "pixels that are not square"
+    );
+    assert_eq!(
+        halo(0.0, DVec2::ONE),
+        [1, 1],
+        "the tangent plane needs the neighbors"
+    );
+    assert_eq!(halo(f64::NAN, DVec2::ONE), [1, 1], "refused");
+}
+
+#[test]
+fn a_quarter_turn_turns_the_map() {
+    let height = rubble([24, 31]);
+    let turned = Raster::from_fn([31, 24], |x, y| height.row(30 - x)[y as usize]).unwrap();
+    let extent = DVec2::new(1.0, 1.6);
+    let options = OcclusionOptions {
+        extent,
+        radius: 0.4,
+        ..options()
+    };
+    let seen = ambient_occlusion(&height, &options).unwrap();
+    let options = OcclusionOptions {
+        extent: DVec2::new(extent.y, extent.x),
+        ..options
+    };
+    let seen_turned = ambient_occlusion(&turned, &options).unwrap();
+    for y in 0..24 {
+        for x in 0..31 {
+            let [before, after] = [seen.row(30 - x)[y as usize], seen_turned.row(y)[x as usize]];
+            // The azimuths are added in another order.
+            assert!(
+                (before - after).abs() < 1e-6,
+                "{before} became {after} at {x}, {y}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_fade_lets_walls_vanish_toward_the_radius() {
+    let wall = Raster::from_fn([128, 1], |column, _| if column < 64 { 9.0 } else { 0.0 }).unwrap();
+    let seen = |fade| {
+        let options = OcclusionOptions {
+            fade,
+            ..in_pixels([128, 1], 40.0)
+        };
+        ambient_occlusion(&wall, &options).unwrap().row(0)[64..110].to_vec()
+    };
+    let [hard, soft] = [seen(0.0), seen(0.5)];
+    // The last pixel that the wall reaches sees it 40 pixels away, at a slope of 9/40 in one azimuth.
+    assert!(
+        hard[39] < 0.999 && hard[40] == 1.0,
+        "the wall ends all at once: {:?}",
+        &hard[39..]
+    );
+    // Samples are 36 and 40 pixels away, and the farther one does not count.
+    assert!(
+        soft[35] < 1.0 && soft[35] > 0.999,
+        "the wall fades: {:?}",
+        &soft[35..]
+    );
+    // At 67.5 degrees the wall is half the radius away after 20 cos 67.5° = 7.6 pixels.
+    assert_eq!(soft[..7], hard[..7], "nothing fades before half the radius");
+    assert!(soft[1..].is_sorted(), "the wall hides ever less: {soft:?}");
+}
+
+#[test]
+fn occlusion_does_not_change_with_resolution() {
+    let [coarse, fine] = [64, 256].map(|side| {
+        let wave = |t: f64| 16.0 * (t * (1.0 - t)) * (t * (1.0 - t));
+        let hill = |at: DVec2| (wave((3.0 * at.x).fract()) * wave((2.0 * at.y).fract())) as f32;
+        let height = Raster::from_window(&Window::unit([side, side]).unwrap(), hill).unwrap();
+        let options = OcclusionOptions {
+            strength: 0.3,
+            radius: 0.125,
+            ..options()
+        };
+        ambient_occlusion(&height, &options).unwrap()
+    });
+    for row in 0..64 {
+        for column in 0..64 {
+            // The four fine pixels around the center of the coarse one.
+            let around = [(1, 1), (2, 1), (1, 2), (2, 2)];
+            let mean = around.map(|(x, y)| fine.row(4 * row + y)[4 * column + x] * 0.25);
+            let mean: f32 = mean.iter().sum();
+            let here = coarse.row(row)[column];
+            // Both look for the horizon in steps of up to an eighth of the way, but at other places.
+            assert!(
+                (here - mean).abs() < 0.015,
+                "{here} and {mean} at {column}, {row}"
+            );
+        }
+    }
+}
+
+#[test]
+fn heights_that_are_not_finite_hide_nothing() {
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let height = Raster::from_fn([9, 9], |x, y| if [x, y] == [4, 4] { bad } else { 0.5 });
+        let seen = ambient_occlusion(
+            &height.unwrap(),
+            &OcclusionOptions {
+                radius: 0.5,
+                ..options()
+            },
+        );
+        assert!(
+            seen.unwrap().pixels().iter().all(|&seen| seen == 1.0),
+            "around {bad}"
+        );
+    }
+}
+
+#[test]
+fn bad_options_are_refused() {
+    let kind = |options: OcclusionOptions| {
+        let refused = ambient_occlusion(&rubble([4, 4]), &options).unwrap_err();
+        refused.kind().clone()
+    };
+    for bad in [f64::NAN, f64::INFINITY] {
+        let strength = kind(OcclusionOptions {
+            strength: bad,
+            ..options()
+        });
+        assert!(
+            matches!(strength, ColorErrorKind::NotFinite { .. }),
+            "{strength:?}"
+        );
+        let radius = kind(OcclusionOptions {
+            radius: bad,
+            ..options()
+        });
+        assert!(
+            matches!(radius, ColorErrorKind::NotFinite { .. }),
+            "{radius:?}"
+        );
+    }
+    for radius in [-0.1, 4097.0, f64::MAX] {
+        let refused = kind(OcclusionOptions {
+            radius,
+            ..options()
+        });
+        assert!(
+            matches!(refused, ColorErrorKind::Radius { .. }),
+            "{refused:?}"
+        );
+    }
+    for fade in [-0.1, 1.1, f64::NAN] {
+        let refused = kind(OcclusionOptions { fade, ..options() });
+        assert!(
+            matches!(refused, ColorErrorKind::Fade { .. }),
+            "{refused:?}"
+        );
+    }
+    for extent in [
+        DVec2::ZERO,
+        DVec2::new(1.0, -1.0),
+        DVec2::new(f64::NAN, 1.0),
+    ] {
+        let refused = kind(OcclusionOptions {
+            extent,
+            ..options()
+        });
+        assert!(
+            matches!(refused, ColorErrorKind::Extent { .. }),
+            "{refused:?}"
+        );
+    }
+}
+
+#[test]
+fn levels_and_threads_do_not_change_a_bit() {
+    let height = rubble([67, 45]);
+    let options = OcclusionOptions {
+        radius: 0.4,
+        ..options()
+    };
+    let bits = |raster: Raster<f32>| raster.map(|seen| seen.to_bits());
+    let expected = bits(ambient_occlusion(&height, &options).unwrap());
+    for_every_level(|level| {
+        let seen = occlusion_at(level, &height, height.size(), &options).unwrap();
+        assert_eq!(bits(seen), expected, "{level:?}");
+    });
+    for threads in [1, 2, 7] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let seen = pool
+            .build()
+            .unwrap()
+            .install(|| ambient_occlusion(&height, &options));
+        assert_eq!(bits(seen.unwrap()), expected, "{threads} threads");
+    }
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn options_are_data_and_what_is_not_known_is_refused() {
+    let options = OcclusionOptions {
+        radius: 0.25,
+        ..options()
+    };
+    let text = serde_json::to_string(&options).unwrap();
+    let back = serde_json::from_str::<OcclusionOptions>(&text).unwrap();
+    assert_eq!(back, options, "{text}");
+    let error = serde_json::from_str::<OcclusionOptions>(r#"{"radios": 0.25}"#).unwrap_err();
+    assert!(error.to_string().contains("radios"), "{error}");
+}
+
+#[test]
+fn value_stability_ambient_occlusion() {
+    let options = OcclusionOptions {
+        strength: 0.2,
+        radius: 0.5,
+        ..options()
+    };
+    let seen = ambient_occlusion(&rubble([20, 20]), &options).unwrap();
+    assert_eq!(
+        seen.row(7)[..4]
+            .iter()
+            .map(|seen| seen.to_bits())
+            .collect::<Vec<_>>(),
+        [1062810830, 1060561378, 1059347992, 1050819558]
+    );
+}
+
+proptest! {
+    #[test]
+    fn values_are_parts_of_the_sky_for_any_heights(
+        heights in prop::collection::vec(any::<f32>(), 35),
+        strength in any::<f64>(),
+        extent in [any::<f64>(), any::<f64>()],
+        (radius, fade) in (any::<f64>(), 0.0..=1.0),
+    ) {
+        let height = Raster::from_vec([7, 5], heights).unwrap();
+        let wild = OcclusionOptions { strength, extent: extent.into(), radius, fade, ..options() };
+        let tame = OcclusionOptions { radius: 0.5, ..options() };
+        for options in [wild, tame] {
+            prop_assert!(options.halo([7, 5])[0] >= 1);
+            if let Ok(seen) = ambient_occlusion(&height, &options) {
+                prop_assert!(seen.pixels().iter().all(|seen| (0.0..=1.0).contains(seen)), "{seen:?}");
+            }
+        }
+    }
+}
