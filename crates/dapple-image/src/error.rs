@@ -21,7 +21,7 @@ pub struct ImageError {
 pub enum ImageErrorKind {
     /// The operating system refused to read or write; the source says why.
     Io,
-    /// The bytes begin neither like PNG nor like OpenEXR, or not like the format that was asked for.
+    /// The bytes begin like no format that is read, or not like the one that was asked for.
     UnknownFormat,
     /// The bytes break the rules of their format, or end too soon.
     Damaged {
@@ -51,6 +51,36 @@ pub enum ImageErrorKind {
         bytes: u64,
         /// The limit.
         limit: u64,
+    },
+    /// The image has a side that the format has no room for.
+    TooLarge {
+        /// The format.
+        format: &'static str,
+        /// Columns and rows.
+        size: [u32; 2],
+        /// The longest side, in pixels.
+        limit: u32,
+    },
+    /// Rows of the wrong width were to be written.
+    RowWidth {
+        /// The width of the rows, in pixels.
+        width: u32,
+        /// The width of the image.
+        needed: u32,
+    },
+    /// More rows were to be written than the image has.
+    TooManyRows {
+        /// How many there would be.
+        rows: u64,
+        /// How many the image has.
+        needed: u32,
+    },
+    /// The image was to be finished before all of its rows were written.
+    MissingRows {
+        /// How many there are.
+        rows: u32,
+        /// How many the image has.
+        needed: u32,
     },
     /// The image has other channels than what was asked for.
     Channels {
@@ -152,6 +182,29 @@ impl fmt::Display for ImageErrorKind {
                 f,
                 "the image takes {bytes} bytes or more, but the limit is {limit}"
             ),
+            Self::TooLarge {
+                format,
+                size: [w, h],
+                limit,
+            } => write!(
+                f,
+                "an image of {w} × {h} pixels does not fit into {format}: the limit is {limit} a side"
+            ),
+            Self::RowWidth { width, needed } => {
+                write!(
+                    f,
+                    "the rows have {width} pixels, but the image has {needed} columns"
+                )
+            }
+            Self::TooManyRows { rows, needed } => {
+                write!(
+                    f,
+                    "there are {rows} rows to write, but the image has {needed}"
+                )
+            }
+            Self::MissingRows { rows, needed } => {
+                write!(f, "only {rows} rows of {needed} are written")
+            }
             Self::Channels { found, needed } => {
                 write!(f, "the image is {found}, but {needed} is needed")
             }

@@ -6,10 +6,13 @@
 
 mod decode;
 mod encode;
+mod tiles;
 
 pub use decode::decode_exr;
 pub use encode::{encode_exr, write_exr};
+pub(crate) use tiles::TileStream;
 
+use crate::content::Pixel;
 use crate::{ImageError, ImageErrorKind};
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_raster::Raster;
@@ -41,19 +44,20 @@ impl ExrPlane {
     /// The three planes `R`, `G` and `B` of a color image.
     #[must_use]
     pub fn from_colors(colors: &Raster<LinearRgb>) -> Vec<Self> {
-        vec![
-            Self::new("R", colors.map(|color| color.r)),
-            Self::new("G", colors.map(|color| color.g)),
-            Self::new("B", colors.map(|color| color.b)),
-        ]
+        Self::from_pixels(colors)
     }
 
     /// The four planes `R`, `G`, `B` and `A` of a color image, with alpha multiplied into the color.
     #[must_use]
     pub fn from_colors_with_alpha(colors: &Raster<LinearRgba>) -> Vec<Self> {
-        let mut planes = Self::from_colors(&colors.map(|pixel| pixel.color * pixel.alpha));
-        planes.push(Self::new("A", colors.map(|pixel| pixel.alpha)));
-        planes
+        Self::from_pixels(colors)
+    }
+
+    fn from_pixels<T: Pixel>(raster: &Raster<T>) -> Vec<Self> {
+        let names = T::CONTENT.planes().iter().enumerate().rev();
+        names
+            .map(|(plane, &name)| Self::new(name, raster.map(|value| value.part(plane))))
+            .collect()
     }
 }
 

@@ -1,7 +1,8 @@
 //! Images whose format is found out by their first bytes.
 
 use crate::{
-    ExrImage, ImageError, ImageErrorKind, Limits, PngImage, decode_exr, decode_png, exr, file, png,
+    ExrImage, ImageError, ImageErrorKind, Limits, PngImage, decode_exr, decode_jpeg, decode_png,
+    exr, file, jpeg, png,
 };
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_raster::Raster;
@@ -13,6 +14,8 @@ use std::path::Path;
 pub enum Image {
     /// A PNG file.
     Png(PngImage),
+    /// A JPEG file, as the PNG image of the same pixels.
+    Jpeg(PngImage),
     /// An OpenEXR file.
     Exr(ExrImage),
 }
@@ -21,10 +24,13 @@ pub enum Image {
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::UnknownFormat`] if it is none that is known, else those of [`decode_png`] and [`decode_exr`].
+/// [`ImageErrorKind::UnknownFormat`] if it is none that is known, else those of [`decode_png`], [`decode_jpeg`] and
+/// [`decode_exr`].
 pub fn decode_image(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
     if bytes.starts_with(&png::SIGNATURE) {
         decode_png(bytes, limits).map(Image::Png)
+    } else if bytes.starts_with(&jpeg::SIGNATURE) {
+        decode_jpeg(bytes, limits).map(Image::Jpeg)
     } else if bytes.starts_with(&exr::SIGNATURE) {
         decode_exr(bytes, limits).map(Image::Exr)
     } else {
@@ -48,7 +54,7 @@ impl Image {
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
-            Self::Png(image) => image.pixels.size(),
+            Self::Png(image) | Self::Jpeg(image) => image.pixels.size(),
             Self::Exr(image) => image
                 .planes
                 .first()
@@ -56,7 +62,7 @@ impl Image {
         }
     }
 
-    /// The numbers of a gray image as they are: from 0 to 1 in PNG, of any size in OpenEXR.
+    /// The numbers of a gray image as they are: from 0 to 1 in PNG and JPEG, of any size in OpenEXR.
     ///
     /// This is for data (heights, masks). No transfer curve is undone, whatever the file says. Alpha is allowed where it is
     /// 1 everywhere.
@@ -66,14 +72,14 @@ impl Image {
     /// [`ImageErrorKind::Channels`] if the image is not gray, or partly transparent.
     pub fn gray(&self) -> Result<Raster<f32>, ImageError> {
         match self {
-            Self::Png(image) => image.gray(),
+            Self::Png(image) | Self::Jpeg(image) => image.gray(),
             Self::Exr(image) => image.gray().cloned(),
         }
     }
 
     /// The colors of the image in linear light. Gray images give grays; alpha is allowed where it is 1 everywhere.
     ///
-    /// PNG is read as sRGB, also where the file does not say so, as the web does.
+    /// PNG and JPEG are read as sRGB, also where the file does not say so, as the web does.
     ///
     /// # Errors
     ///
@@ -81,7 +87,7 @@ impl Image {
     /// [`ImageErrorKind::SizeMismatch`] if an OpenEXR file does not have three planes of color.
     pub fn color(&self) -> Result<Raster<LinearRgb>, ImageError> {
         match self {
-            Self::Png(image) => image.color(),
+            Self::Png(image) | Self::Jpeg(image) => image.color(),
             Self::Exr(image) => {
                 let pixels = image.color_alpha()?;
                 if pixels.pixels().iter().any(|pixel| pixel.alpha != 1.0) {
@@ -94,7 +100,7 @@ impl Image {
 
     /// The colors of the image in linear light with their alpha, which is 1 where the file has none.
     ///
-    /// PNG is read as sRGB, also where the file does not say so, as the web does.
+    /// PNG and JPEG are read as sRGB, also where the file does not say so, as the web does.
     ///
     /// # Errors
     ///
@@ -102,7 +108,7 @@ impl Image {
     /// of color.
     pub fn color_alpha(&self) -> Result<Raster<LinearRgba>, ImageError> {
         match self {
-            Self::Png(image) => Ok(image.color_alpha()),
+            Self::Png(image) | Self::Jpeg(image) => Ok(image.color_alpha()),
             Self::Exr(image) => image.color_alpha(),
         }
     }

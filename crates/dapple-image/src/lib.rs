@@ -1,8 +1,8 @@
-//! Image files: PNG with 8 or 16 bits and OpenEXR, with typed errors and limits.
+//! Image files: PNG with 8 or 16 bits, OpenEXR and JPEG, with typed errors and limits.
 //!
 //! This is the only crate of dapple that knows an image format. Data (heights, masks, normals) is written as it is;
-//! color is linear inside of dapple and in OpenEXR, and sRGB in PNG. A file is written under a temporary name and then
-//! renamed, so that half a file is never seen. Whatever the bytes that are read: the result is an image or an
+//! color is linear inside of dapple and in OpenEXR, and sRGB in PNG and JPEG. A file is written under a temporary name and
+//! then renamed, so that half a file is never seen. Whatever the bytes that are read: the result is an image or an
 //! [`ImageError`], within the [`Limits`].
 //!
 //! | to write | in one call | with more choice |
@@ -11,7 +11,10 @@
 //! | color | [`write_color_png`], [`write_color_alpha_png`] | [`write_png`], [`encode_png`] |
 //! | any numbers | [`write_gray_exr`], [`write_color_exr`], [`write_color_alpha_exr`] | [`write_exr`], [`encode_exr`] |
 //!
-//! [`read_image`] reads all of them back:
+//! An image that is too large for memory is written row by row with a [`RowWriter`], as PNG or as OpenEXR in tiles; its
+//! [`Content`] and its [`Encoding`] say how.
+//!
+//! [`read_image`] reads all of them back, and JPEG, too:
 //!
 //! ```no_run
 //! use dapple_image::{Depth, Limits, read_image, write_gray_png};
@@ -20,25 +23,35 @@
 //! write_gray_png("height.png", &height, Depth::Sixteen)?;
 //! # Ok::<(), dapple_image::ImageError>(())
 //! ```
+//!
+//! What a file holds is said by [`Image::format`], [`Image::channels`], [`Image::bits`] and [`Image::size`].
 
 #![forbid(unsafe_code)]
 
+mod channels;
+mod content;
 mod error;
 mod exr;
 mod file;
 mod image;
+mod jpeg;
 mod limits;
 mod png;
+mod rows;
 mod shortcut;
 
 pub use self::exr::{ExrImage, ExrPlane, decode_exr, encode_exr, write_exr};
 pub use self::image::{Image, decode_image, read_image};
+pub use self::jpeg::decode_jpeg;
 pub use self::png::{PngImage, PngPixel, PngPixels, Transfer, decode_png, encode_png, write_png};
+pub use channels::Channels;
+pub use content::{Content, Depth, Encoding};
 pub use error::{ImageError, ImageErrorKind};
 pub use limits::Limits;
+pub use rows::RowWriter;
 pub use shortcut::{
-    Depth, write_color_alpha_exr, write_color_alpha_png, write_color_exr, write_color_png,
-    write_gray_exr, write_gray_png, write_normal_png,
+    write_color_alpha_exr, write_color_alpha_png, write_color_exr, write_color_png, write_gray_exr,
+    write_gray_png, write_normal_png,
 };
 
 #[cfg(test)]

@@ -60,3 +60,23 @@ impl Limits {
         Ok(())
     }
 }
+
+/// Refuses to write an image without pixels, or with a side that a format has no room for.
+pub(crate) fn check_side(
+    size: [u32; 2],
+    limit: u32,
+    format: &'static str,
+) -> Result<(), ImageError> {
+    if size.contains(&0) {
+        let size = size.map(u64::from);
+        return Err(ImageError::new(ImageErrorKind::Empty { size }));
+    }
+    if size[0].max(size[1]) > limit {
+        return Err(ImageError::new(ImageErrorKind::TooLarge {
+            format,
+            size,
+            limit,
+        }));
+    }
+    Ok(())
+}

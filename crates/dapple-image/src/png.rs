@@ -6,11 +6,13 @@
 mod decode;
 mod encode;
 mod pixel;
+mod stream;
 mod values;
 
 pub use decode::{PngImage, PngPixels, decode_png};
 pub use encode::{encode_png, write_png};
 pub use pixel::PngPixel;
+pub(crate) use stream::PngStream;
 
 /// The bytes that every PNG file begins with.
 pub(crate) const SIGNATURE: [u8; 8] = [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n'];

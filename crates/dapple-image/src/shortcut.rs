@@ -1,93 +1,64 @@
 //! From rasters of values to files in one call.
 //!
-//! Codes are made on all cores where the feature `rayon` is on. Values below 0 and above 1 are clamped in PNG, and NaN
-//! becomes 0; OpenEXR keeps every number as it is.
+//! Values below 0 and above 1 are clamped in PNG, and NaN becomes 0; OpenEXR keeps every number as it is.
 
-use crate::{ExrPlane, ImageError, PngPixel, Transfer, write_exr, write_png};
-use dapple_color::{Code, LinearRgb, LinearRgba, Normal};
+use crate::content::Pixel;
+use crate::{Depth, Encoding, ExrPlane, ImageError, RowWriter, file, write_exr};
+use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
+use std::io::Cursor;
 use std::path::Path;
-
-/// How many bits a channel has in a PNG file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Depth {
-    /// 8 bits: 256 steps.
-    #[default]
-    Eight,
-    /// 16 bits: 65536 steps, for heights and whatever is computed with later.
-    Sixteen,
-}
 
 /// Writes data from 0 to 1 as a gray PNG file: `round(value · max)`, linear, without a color chunk.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::Io`](crate::ImageErrorKind::Io) if the file cannot be written.
+/// Those of [`write_png`](crate::write_png).
 pub fn write_gray_png(
     path: impl AsRef<Path>,
     values: &Raster<f32>,
     depth: Depth,
 ) -> Result<(), ImageError> {
-    let path = path.as_ref();
-    match depth {
-        Depth::Eight => write(path, values, Transfer::Data, |&value| u8::from_unit(value)),
-        Depth::Sixteen => write(path, values, Transfer::Data, |&value| u16::from_unit(value)),
-    }
+    write(path.as_ref(), values, depth)
 }
 
 /// Writes colors as an RGB PNG file under the sRGB curve, with the chunk that says so.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::Io`](crate::ImageErrorKind::Io) if the file cannot be written.
+/// Those of [`write_png`](crate::write_png).
 pub fn write_color_png(
     path: impl AsRef<Path>,
     colors: &Raster<LinearRgb>,
     depth: Depth,
 ) -> Result<(), ImageError> {
-    let path = path.as_ref();
-    match depth {
-        Depth::Eight => write(path, colors, Transfer::Srgb, |color| color.to_srgb::<u8>()),
-        Depth::Sixteen => write(path, colors, Transfer::Srgb, |color| color.to_srgb::<u16>()),
-    }
+    write(path.as_ref(), colors, depth)
 }
 
 /// Writes colors with alpha as an RGBA PNG file: color under the sRGB curve, with the chunk that says so, alpha linear.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::Io`](crate::ImageErrorKind::Io) if the file cannot be written.
+/// Those of [`write_png`](crate::write_png).
 pub fn write_color_alpha_png(
     path: impl AsRef<Path>,
     colors: &Raster<LinearRgba>,
     depth: Depth,
 ) -> Result<(), ImageError> {
-    let path = path.as_ref();
-    match depth {
-        Depth::Eight => write(path, colors, Transfer::Srgb, |color| color.to_srgb::<u8>()),
-        Depth::Sixteen => write(path, colors, Transfer::Srgb, |color| color.to_srgb::<u16>()),
-    }
+    write(path.as_ref(), colors, depth)
 }
 
 /// Writes normals as an RGB PNG file: `round((part + 1) / 2 · max)`, linear, without a color chunk.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::Io`](crate::ImageErrorKind::Io) if the file cannot be written.
+/// Those of [`write_png`](crate::write_png).
 pub fn write_normal_png(
     path: impl AsRef<Path>,
     normals: &Raster<Normal>,
     depth: Depth,
 ) -> Result<(), ImageError> {
-    let path = path.as_ref();
-    match depth {
-        Depth::Eight => write(path, normals, Transfer::Data, |normal| {
-            normal.to_codes::<u8>()
-        }),
-        Depth::Sixteen => write(path, normals, Transfer::Data, |normal| {
-            normal.to_codes::<u16>()
-        }),
-    }
+    write(path.as_ref(), normals, depth)
 }
 
 /// Writes data as an OpenEXR file with the one plane `Y`.
@@ -123,11 +94,14 @@ pub fn write_color_alpha_exr(
     write_exr(path, &ExrPlane::from_colors_with_alpha(colors))
 }
 
-fn write<T: Sync, P: PngPixel + Send>(
-    path: &Path,
-    raster: &Raster<T>,
-    transfer: Transfer,
-    code: impl Fn(&T) -> P + Sync,
-) -> Result<(), ImageError> {
-    write_png(path, raster.par_map(code).view(), transfer)
+fn write<T: Pixel>(path: &Path, raster: &Raster<T>, depth: Depth) -> Result<(), ImageError> {
+    let encode = || {
+        let sink = Cursor::new(Vec::new());
+        let encoding = Encoding::Png(depth);
+        let mut writer = RowWriter::new(sink, raster.size(), T::CONTENT, encoding)?;
+        writer.write(raster.view())?;
+        writer.finish()
+    };
+    let bytes = encode().map_err(|error| error.at(path))?.into_inner();
+    file::replace(path, &bytes)
 }

@@ -1,12 +1,14 @@
 //! The whole way: values to a file and back.
 
 use crate::{
-    Depth, Image, ImageError, ImageErrorKind, Limits, PngImage, PngPixels, Transfer, decode_image,
-    encode_png, read_image, write_color_alpha_exr, write_color_alpha_png, write_color_exr,
-    write_color_png, write_gray_exr, write_gray_png, write_normal_png,
+    Content, Depth, Encoding, Image, ImageError, ImageErrorKind, Limits, PngImage, PngPixels,
+    RowWriter, Transfer, decode_image, encode_png, read_image, write_color_alpha_exr,
+    write_color_alpha_png, write_color_exr, write_color_png, write_gray_exr, write_gray_png,
+    write_normal_png,
 };
 use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 /// A file name of its own for a test, removed at the end.
@@ -50,7 +52,7 @@ fn covered() -> Raster<LinearRgba> {
 fn png(image: Image) -> PngImage {
     match image {
         Image::Png(png) => png,
-        Image::Exr(_) => panic!("the file is not PNG"),
+        _ => panic!("the file is not PNG"),
     }
 }
 
@@ -175,7 +177,7 @@ fn other_formats_are_refused_by_name() {
     for bytes in [
         b"".as_slice(),
         b"GIF89a",
-        &[0xff, 0xd8, 0xff, 0xe0],
+        &[0xff, 0xd8],
         &[0x89, b'P', b'N'],
     ] {
         let error = decode_image(bytes, &Limits::default()).unwrap_err();
@@ -185,15 +187,22 @@ fn other_formats_are_refused_by_name() {
 
 #[test]
 fn the_same_pixels_make_the_same_bytes_with_any_number_of_threads() {
+    let image = Raster::from_fn([300, 70], |x, y| (x * y % 17) as f32).unwrap();
     let bytes = |threads| {
-        let scratch = Scratch::new(&format!("threads-{threads}.png"));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let write = || write_color_png(&scratch.0, &colors(), Depth::Sixteen);
-        pool.build().unwrap().install(write).unwrap();
-        crate::file::read(&scratch.0, 1 << 20).unwrap()
+        let write = || {
+            [Encoding::Png(Depth::Sixteen), Encoding::Exr].map(|encoding| {
+                let sink = Cursor::new(Vec::new());
+                let mut writer =
+                    RowWriter::new(sink, image.size(), Content::Gray, encoding).unwrap();
+                writer.write_gray(image.view()).unwrap();
+                writer.finish().unwrap().into_inner()
+            })
+        };
+        pool.build().unwrap().install(write)
     };
     let one = bytes(1);
     for threads in [2, 7] {
-        assert_eq!(bytes(threads), one, "{threads} threads");
+        assert!(bytes(threads) == one, "{threads} threads");
     }
 }

@@ -4,8 +4,9 @@
 //! the specification recommends. Data carries no color chunk at all: a `gAMA` of 1 would make viewers brighten a height
 //! map, while programs that read data take the numbers as they are.
 
-use super::{GAMMA_OF_SRGB, PngPixel, Transfer};
-use crate::{ImageError, ImageErrorKind, file};
+use super::stream::PngStream;
+use super::{PngPixel, Transfer};
+use crate::{ImageError, file};
 use dapple_raster::RasterView;
 use std::path::Path;
 
@@ -15,7 +16,9 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::Empty`] if the view has no pixel.
+/// [`Empty`](crate::ImageErrorKind::Empty) if the view has no pixel,
+/// [`TooManyBytes`](crate::ImageErrorKind::TooManyBytes) if a row takes more than 2^30 bytes,
+/// [`TooLarge`](crate::ImageErrorKind::TooLarge) if a side is longer than 2^31 - 1 pixels.
 ///
 /// # Examples
 ///
@@ -32,27 +35,17 @@ pub fn encode_png<P: PngPixel>(
     pixels: RasterView<'_, P>,
     transfer: Transfer,
 ) -> Result<Vec<u8>, ImageError> {
-    let size = pixels.size();
-    if size.contains(&0) {
-        let size = size.map(u64::from);
-        return Err(ImageError::new(ImageErrorKind::Empty { size }));
-    }
-    let mut samples = Vec::with_capacity(size[0] as usize * size[1] as usize * size_of::<P>());
-    for pixel in pixels.rows().flatten() {
-        pixel.push_bytes(&mut samples);
-    }
-    let mut bytes = Vec::new();
-    write(&mut bytes, size, P::FORMAT, transfer, &samples)
-        .map_err(|error| ImageError::new(ImageErrorKind::Io).because(error))?;
-    Ok(bytes)
+    let mut stream = PngStream::new::<P>(Vec::new(), pixels.size(), transfer)?;
+    stream.write_rows(pixels, |&pixel| pixel)?;
+    stream.finish()
 }
 
 /// Writes a PNG file from pixels of 8 or 16 bits.
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::Io`] if the file cannot be written; what was there before is then untouched.
-/// [`ImageErrorKind::Empty`] if the view has no pixel.
+/// Those of [`encode_png`], and [`Io`](crate::ImageErrorKind::Io) if the file cannot be written; what was there before is
+/// then untouched.
 pub fn write_png<P: PngPixel>(
     path: impl AsRef<Path>,
     pixels: RasterView<'_, P>,
@@ -61,23 +54,4 @@ pub fn write_png<P: PngPixel>(
     let path = path.as_ref();
     let bytes = encode_png(pixels, transfer).map_err(|error| error.at(path))?;
     file::replace(path, &bytes)
-}
-
-fn write(
-    bytes: &mut Vec<u8>,
-    [width, height]: [u32; 2],
-    (color, depth): (png::ColorType, png::BitDepth),
-    transfer: Transfer,
-    samples: &[u8],
-) -> Result<(), png::EncodingError> {
-    let mut encoder = png::Encoder::new(bytes, width, height);
-    encoder.set_color(color);
-    encoder.set_depth(depth);
-    if transfer == Transfer::Srgb {
-        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        encoder.set_source_gamma(png::ScaledFloat::from_scaled(GAMMA_OF_SRGB));
-    }
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(samples)?;
-    writer.finish()
 }

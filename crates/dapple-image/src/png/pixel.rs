@@ -11,9 +11,9 @@ pub trait PngPixel: Copy + sealed::Sealed {
     #[doc(hidden)]
     const FORMAT: (ColorType, BitDepth);
 
-    /// Appends the samples as the file has them.
+    /// Writes the samples as the file has them into bytes of their length.
     #[doc(hidden)]
-    fn push_bytes(&self, bytes: &mut Vec<u8>);
+    fn write_bytes(self, bytes: &mut [u8]);
 
     /// The pixel of these samples, which are of its length.
     #[doc(hidden)]
@@ -25,8 +25,9 @@ macro_rules! png_pixel {
         impl PngPixel for [u8; $channels] {
             const FORMAT: (ColorType, BitDepth) = (ColorType::$color, BitDepth::Eight);
 
-            fn push_bytes(&self, bytes: &mut Vec<u8>) {
-                bytes.extend_from_slice(self);
+            #[inline(always)]
+            fn write_bytes(self, bytes: &mut [u8]) {
+                bytes.copy_from_slice(&self);
             }
 
             fn from_bytes(bytes: &[u8]) -> Self {
@@ -37,8 +38,11 @@ macro_rules! png_pixel {
         impl PngPixel for [u16; $channels] {
             const FORMAT: (ColorType, BitDepth) = (ColorType::$color, BitDepth::Sixteen);
 
-            fn push_bytes(&self, bytes: &mut Vec<u8>) {
-                self.iter().for_each(|sample| bytes.extend_from_slice(&sample.to_be_bytes()));
+            #[inline(always)]
+            fn write_bytes(self, bytes: &mut [u8]) {
+                for (sample, bytes) in self.into_iter().zip(bytes.chunks_exact_mut(2)) {
+                    bytes.copy_from_slice(&sample.to_be_bytes());
+                }
             }
 
             fn from_bytes(bytes: &[u8]) -> Self {
@@ -58,8 +62,9 @@ png_pixel!(2 GrayscaleAlpha, 3 Rgb, 4 Rgba);
 impl PngPixel for u8 {
     const FORMAT: (ColorType, BitDepth) = (ColorType::Grayscale, BitDepth::Eight);
 
-    fn push_bytes(&self, bytes: &mut Vec<u8>) {
-        bytes.push(*self);
+    #[inline(always)]
+    fn write_bytes(self, bytes: &mut [u8]) {
+        bytes[0] = self;
     }
 
     fn from_bytes(bytes: &[u8]) -> Self {
@@ -70,8 +75,9 @@ impl PngPixel for u8 {
 impl PngPixel for u16 {
     const FORMAT: (ColorType, BitDepth) = (ColorType::Grayscale, BitDepth::Sixteen);
 
-    fn push_bytes(&self, bytes: &mut Vec<u8>) {
-        bytes.extend_from_slice(&self.to_be_bytes());
+    #[inline(always)]
+    fn write_bytes(self, bytes: &mut [u8]) {
+        bytes.copy_from_slice(&self.to_be_bytes());
     }
 
     fn from_bytes(bytes: &[u8]) -> Self {

@@ -1,0 +1,198 @@
+//! What an image holds, and how each kind of it becomes the numbers of a file.
+//!
+//! Here alone values turn into codes and planes; the writers of whole images and of rows share it.
+
+use crate::{PngPixel, Transfer};
+use dapple_color::{Code, LinearRgb, LinearRgba, Normal};
+
+/// What the pixels of an image are, which decides how they are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Content {
+    /// Data such as heights and masks. PNG: gray from 0 to 1, `round(value · max)`, linear, without a color chunk.
+    /// OpenEXR: the plane `Y`, any number.
+    Gray,
+    /// Color in linear light. PNG: RGB under the sRGB curve, with the chunk that says so. OpenEXR: the planes `R`, `G`
+    /// and `B`, linear.
+    Color,
+    /// Color with alpha. PNG: RGBA, color under the sRGB curve, alpha linear. OpenEXR: the planes `R`, `G`, `B` and `A`,
+    /// linear, with alpha multiplied into the color.
+    ColorAlpha,
+    /// Unit vectors. PNG: RGB of `round((part + 1) / 2 · max)`, linear, without a color chunk. OpenEXR: the same numbers
+    /// before they are rounded, `(part + 1) / 2`, in the planes `R`, `G` and `B`, since that is where programs look for a
+    /// normal map and what they undo.
+    Normal,
+    /// Three numbers that are no color, such as occlusion, roughness and metallic. PNG: RGB from 0 to 1, linear, without a
+    /// color chunk. OpenEXR: the planes `R`, `G` and `B`, any numbers.
+    Packed,
+}
+
+/// How many bits a channel has in a PNG file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Depth {
+    /// 8 bits: 256 steps.
+    #[default]
+    Eight,
+    /// 16 bits: 65536 steps, for heights and whatever is computed with later.
+    Sixteen,
+}
+
+/// The format of a file and of its numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Encoding {
+    /// PNG with 8 or 16 bits.
+    Png(Depth),
+    /// OpenEXR with 32-bit floating point, in tiles.
+    Exr,
+}
+
+impl Content {
+    /// How an error calls it.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Gray => "gray",
+            Self::Color => "RGB",
+            Self::ColorAlpha => "RGB with alpha",
+            Self::Normal => "a normal map",
+            Self::Packed => "packed maps",
+        }
+    }
+
+    pub(crate) const fn transfer(self) -> Transfer {
+        match self {
+            Self::Color | Self::ColorAlpha => Transfer::Srgb,
+            Self::Gray | Self::Normal | Self::Packed => Transfer::Data,
+        }
+    }
+
+    /// The names of the planes of an OpenEXR file, sorted as that format wants them.
+    pub(crate) const fn planes(self) -> &'static [&'static str] {
+        match self {
+            Self::Gray => &["Y"],
+            Self::Color | Self::Normal | Self::Packed => &["B", "G", "R"],
+            Self::ColorAlpha => &["A", "B", "G", "R"],
+        }
+    }
+}
+
+/// A value of an image that can be written.
+pub(crate) trait Pixel: Sync {
+    /// The content that is made of such values.
+    const CONTENT: Content;
+    /// Its codes of 8 bits.
+    type Eight: PngPixel;
+    /// Its codes of 16 bits.
+    type Sixteen: PngPixel;
+
+    fn eight(&self) -> Self::Eight;
+
+    fn sixteen(&self) -> Self::Sixteen;
+
+    /// Its number in a plane, by the place of that in [`Content::planes`].
+    fn part(&self, plane: usize) -> f32;
+}
+
+impl Pixel for f32 {
+    const CONTENT: Content = Content::Gray;
+    type Eight = u8;
+    type Sixteen = u16;
+
+    #[inline(always)]
+    fn eight(&self) -> u8 {
+        u8::from_unit(*self)
+    }
+
+    #[inline(always)]
+    fn sixteen(&self) -> u16 {
+        u16::from_unit(*self)
+    }
+
+    #[inline(always)]
+    fn part(&self, _plane: usize) -> f32 {
+        *self
+    }
+}
+
+impl Pixel for LinearRgb {
+    const CONTENT: Content = Content::Color;
+    type Eight = [u8; 3];
+    type Sixteen = [u16; 3];
+
+    #[inline(always)]
+    fn eight(&self) -> [u8; 3] {
+        self.to_srgb()
+    }
+
+    #[inline(always)]
+    fn sixteen(&self) -> [u16; 3] {
+        self.to_srgb()
+    }
+
+    #[inline(always)]
+    fn part(&self, plane: usize) -> f32 {
+        [self.b, self.g, self.r][plane]
+    }
+}
+
+impl Pixel for [f32; 3] {
+    const CONTENT: Content = Content::Packed;
+    type Eight = [u8; 3];
+    type Sixteen = [u16; 3];
+
+    #[inline(always)]
+    fn eight(&self) -> [u8; 3] {
+        self.map(u8::from_unit)
+    }
+
+    #[inline(always)]
+    fn sixteen(&self) -> [u16; 3] {
+        self.map(u16::from_unit)
+    }
+
+    #[inline(always)]
+    fn part(&self, plane: usize) -> f32 {
+        self[2 - plane]
+    }
+}
+
+impl Pixel for LinearRgba {
+    const CONTENT: Content = Content::ColorAlpha;
+    type Eight = [u8; 4];
+    type Sixteen = [u16; 4];
+
+    #[inline(always)]
+    fn eight(&self) -> [u8; 4] {
+        self.to_srgb()
+    }
+
+    #[inline(always)]
+    fn sixteen(&self) -> [u16; 4] {
+        self.to_srgb()
+    }
+
+    #[inline(always)]
+    fn part(&self, plane: usize) -> f32 {
+        let LinearRgb { r, g, b } = self.color * self.alpha;
+        [self.alpha, b, g, r][plane]
+    }
+}
+
+impl Pixel for Normal {
+    const CONTENT: Content = Content::Normal;
+    type Eight = [u8; 3];
+    type Sixteen = [u16; 3];
+
+    #[inline(always)]
+    fn eight(&self) -> [u8; 3] {
+        self.to_codes()
+    }
+
+    #[inline(always)]
+    fn sixteen(&self) -> [u16; 3] {
+        self.to_codes()
+    }
+
+    #[inline(always)]
+    fn part(&self, plane: usize) -> f32 {
+        [self.z, self.y, self.x][plane] * 0.5 + 0.5
+    }
+}

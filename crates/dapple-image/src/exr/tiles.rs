@@ -1,0 +1,205 @@
+//! An OpenEXR file in tiles that is written row by row, with one band of tiles in memory.
+//!
+//! A file has a header, a table with the place of every tile, and the tiles. The codec makes the header and the tiles;
+//! the order is kept here: tiles go to the file band by band, and the table is written last, into the gap that was left
+//! for it.
+//!
+//! Runs of equal bytes are compressed, and nothing else. Measured on a fractal height of 2048 × 2048 pixels and on colors
+//! and normals from it, ZIP makes files that are 0.6 to 2.5 % smaller, since the lower bits of `f32` are noise, and takes
+//! eleven times as long; PIZ gains less and takes longer still. Masks, cells and flat parts are runs.
+
+use crate::limits::check_side;
+use crate::{ImageError, ImageErrorKind};
+use dapple_raster::{Raster, RasterView};
+use exr::block::chunk::Chunk;
+use exr::block::{BlockIndex, UncompressedBlock};
+use exr::compression::Compression;
+use exr::math::{RoundingMode, Vec2};
+use exr::meta::attribute::{
+    ChannelDescription, LevelMode, LineOrder, SampleType, Text, TileDescription,
+};
+use exr::meta::header::{Header, LayerAttributes};
+use exr::meta::{BlockDescription, MetaData, magic_number};
+use std::io::{Seek, SeekFrom, Write};
+
+/// Columns and rows of a tile.
+const TILE: usize = 64;
+
+/// How many tiles are compressed before they are written.
+const GROUP: usize = 64;
+
+/// The longest side that is written, in pixels. Coordinates have 32 bits with a sign, and programs refuse those past half
+/// of that.
+const SIDE_LIMIT: u32 = i32::MAX as u32 / 2 - 1;
+
+/// An OpenEXR file on its way into `sink`.
+pub(crate) struct TileStream<W> {
+    sink: W,
+    band: Band,
+    /// Where the table of tiles begins in the file.
+    table: u64,
+    /// Where the next tile begins in the file.
+    position: u64,
+    /// Where the tiles so far begin.
+    places: Vec<u64>,
+}
+
+/// The rows that are not in the file yet.
+struct Band {
+    /// The only header of the file.
+    headers: [Header; 1],
+    /// Of each row the numbers of the first plane, then those of the second, and so on.
+    values: Vec<f32>,
+    /// The first of these rows.
+    first_row: usize,
+}
+
+impl<W: Write + Seek> TileStream<W> {
+    /// A file of planes whose names are sorted, into an empty sink. The header is written at once.
+    pub(crate) fn new(mut sink: W, size: [u32; 2], planes: &[&str]) -> Result<Self, ImageError> {
+        check_side(size, SIDE_LIMIT, "OpenEXR")?;
+        let headers = [header(size, planes)];
+        let feature = "an OpenEXR image of this size";
+        let unsupported = || ImageError::new(ImageErrorKind::Unsupported { feature });
+        // The format counts tiles with 32 bits and a sign, and the codec relies on it.
+        i32::try_from(headers[0].chunk_count).map_err(|error| unsupported().because(error))?;
+        let bytes = header_bytes(&headers).map_err(|error| unsupported().because(error))?;
+        let table = bytes.len() as u64;
+        let position = table + 8 * headers[0].chunk_count as u64;
+        sink.write_all(&bytes).map_err(failure)?;
+        sink.seek(SeekFrom::Start(position)).map_err(failure)?;
+        Ok(Self {
+            sink,
+            band: Band {
+                headers,
+                values: Vec::new(),
+                first_row: 0,
+            },
+            table,
+            position,
+            places: Vec::new(),
+        })
+    }
+
+    /// Writes whole rows of the width that the file has, no more than it lacks. `part` is the number of a value in a
+    /// plane.
+    pub(crate) fn write_rows<T>(
+        &mut self,
+        rows: RasterView<'_, T>,
+        part: impl Fn(&T, usize) -> f32,
+    ) -> Result<(), ImageError> {
+        for row in rows.rows() {
+            for plane in 0..self.band.planes() {
+                let parts = row.iter().map(|value| part(value, plane));
+                self.band.values.extend(parts);
+            }
+            if self.band.is_full() {
+                self.write_band()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends the file, all of whose rows must be there.
+    pub(crate) fn finish(mut self) -> Result<W, ImageError> {
+        let table: Vec<u8> = self.places.iter().flat_map(|at| at.to_le_bytes()).collect();
+        let mut write = || {
+            self.sink.seek(SeekFrom::Start(self.table))?;
+            self.sink.write_all(&table)?;
+            self.sink.seek(SeekFrom::Start(self.position))?;
+            self.sink.flush()
+        };
+        write().map_err(failure)?;
+        Ok(self.sink)
+    }
+
+    /// Writes the tiles of the rows that wait, from left to right.
+    fn write_band(&mut self) -> Result<(), ImageError> {
+        let columns: Vec<usize> = (0..self.band.size().x()).step_by(TILE).collect();
+        let mut bytes = Vec::new();
+        for group in columns.chunks(GROUP) {
+            let group =
+                Raster::from_vec([group.len() as u32, 1], group.to_vec()).map_err(failure)?;
+            let chunks = group.par_map(|&column| self.band.chunk(column));
+            bytes.clear();
+            for chunk in chunks.into_pixels() {
+                self.places.push(self.position + bytes.len() as u64);
+                chunk
+                    .and_then(|chunk| chunk.write(&mut bytes, 1))
+                    .map_err(failure)?;
+            }
+            self.sink.write_all(&bytes).map_err(failure)?;
+            self.position += bytes.len() as u64;
+        }
+        self.band.first_row += self.band.height();
+        self.band.values.clear();
+        Ok(())
+    }
+}
+
+impl Band {
+    fn size(&self) -> Vec2<usize> {
+        self.headers[0].layer_size
+    }
+
+    fn planes(&self) -> usize {
+        self.headers[0].channels.list.len()
+    }
+
+    fn height(&self) -> usize {
+        self.values.len() / (self.size().x() * self.planes())
+    }
+
+    fn is_full(&self) -> bool {
+        self.height() == TILE || self.first_row + self.height() == self.size().y()
+    }
+
+    /// The tile that begins in a column, compressed.
+    fn chunk(&self, column: usize) -> exr::error::Result<Chunk> {
+        let columns = self.size().x();
+        let width = TILE.min(columns - column);
+        let mut data = Vec::with_capacity(4 * width * self.planes() * self.height());
+        for line in self.values.chunks_exact(columns) {
+            for value in &line[column..column + width] {
+                data.extend_from_slice(&value.to_ne_bytes());
+            }
+        }
+        let index = BlockIndex {
+            layer: 0,
+            pixel_position: Vec2(column, self.first_row),
+            pixel_size: Vec2(width, self.height()),
+            level: Vec2(0, 0),
+        };
+        UncompressedBlock { index, data }.compress_to_chunk(&self.headers)
+    }
+}
+
+fn header(size: [u32; 2], planes: &[&str]) -> Header {
+    let channel = |name: &&str| {
+        let name = Text::from_slice_unchecked(name.as_bytes());
+        ChannelDescription::new(name, SampleType::F32, false)
+    };
+    let blocks = BlockDescription::Tiles(TileDescription {
+        tile_size: Vec2(TILE, TILE),
+        level_mode: LevelMode::Singular,
+        rounding_mode: RoundingMode::Down,
+    });
+    let size = (size[0] as usize, size[1] as usize);
+    // The name is that of a part, and a file of one part needs none.
+    Header::new(Text::default(), size, planes.iter().map(channel).collect())
+        .with_encoding(Compression::RLE, blocks, LineOrder::Increasing)
+        .with_attributes(LayerAttributes::default())
+}
+
+fn header_bytes(headers: &[Header]) -> exr::error::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let requirements = MetaData::validate(headers, true)?;
+    magic_number::write(&mut bytes)?;
+    requirements.write(&mut bytes)?;
+    Header::write_all(headers, &mut bytes, false)?;
+    Ok(bytes)
+}
+
+fn failure(error: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> ImageError {
+    ImageError::new(ImageErrorKind::Io).because(error)
+}

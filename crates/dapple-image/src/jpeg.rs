@@ -1,0 +1,119 @@
+//! Reading JPEG: gray and color with 8 bits, baseline and progressive.
+//!
+//! Reference: ITU-T T.81, "Digital compression and coding of continuous-tone still images", 1992, with JFIF (ITU-T T.871)
+//! and Exif. The codec is the crate `zune-jpeg`, without its SIMD, so that a file gives the same pixels on every machine.
+//! Profiles are ignored, and the codes are sRGB. An image with an Exif orientation is turned the way that it is meant to be
+//! seen, as browsers and editors do. CMYK is refused.
+//!
+//! Where a program unwinds on panic (the default), a panic of the codec is caught here and becomes
+//! [`ImageErrorKind::Damaged`].
+
+mod orientation;
+
+use crate::{ImageError, ImageErrorKind, Limits, PngImage, PngPixels, Transfer};
+use orientation::Orientation;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use zune_jpeg::JpegDecoder;
+use zune_jpeg::errors::DecodeErrors;
+use zune_jpeg::zune_core::bytestream::ZCursor;
+use zune_jpeg::zune_core::colorspace::ColorSpace;
+use zune_jpeg::zune_core::options::DecoderOptions;
+
+/// The bytes that every JPEG file begins with.
+pub(crate) const SIGNATURE: [u8; 3] = [0xff, 0xd8, 0xff];
+
+/// The second byte of the marker that a scan begins with.
+const START_OF_SCAN: u8 = 0xda;
+
+/// The second byte of the marker that an image ends with.
+const END_OF_IMAGE: u8 = 0xd9;
+
+/// The longest side that the format has, in pixels.
+const SIDE_LIMIT: usize = 65_535;
+
+/// Bytes of memory for each sample: its code, and its coefficient of 16 bits, of which a progressive file needs all.
+const SAMPLE_BYTES: u64 = 3;
+
+/// The image in the bytes of a JPEG file, as the PNG image of the same pixels: [`PngPixels::Gray8`] or
+/// [`PngPixels::Rgb8`], under the sRGB curve.
+///
+/// # Errors
+///
+/// [`ImageErrorKind::UnknownFormat`] if the bytes do not begin like JPEG, [`ImageErrorKind::Damaged`] if they break its
+/// rules or end too soon, [`ImageErrorKind::Unsupported`] for CMYK and for arithmetic or lossless coding,
+/// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit, where each sample counts for three
+/// bytes, since decoding may take as much.
+pub fn decode_jpeg(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
+    if !bytes.starts_with(&SIGNATURE) {
+        return Err(ImageError::new(ImageErrorKind::UnknownFormat));
+    }
+    // Nothing outlives the call that a panic could leave half done.
+    catch_unwind(AssertUnwindSafe(|| decode(bytes, limits)))
+        .unwrap_or_else(|_| Err(ImageError::damaged("JPEG", "the codec gave up")))
+}
+
+fn decode(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
+    check_end(bytes)?;
+    let options = DecoderOptions::default()
+        .set_strict_mode(true)
+        .set_max_width(SIDE_LIMIT)
+        .set_max_height(SIDE_LIMIT);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    decoder.decode_headers().map_err(refusal)?;
+    let [width, height] = decoder
+        .dimensions()
+        .map_or([0, 0], |(width, height)| [width as u32, height as u32]);
+    limits.check_pixels([width, height].map(u64::from))?;
+    let output = match decoder.input_colorspace() {
+        Some(ColorSpace::Luma) => ColorSpace::Luma,
+        Some(ColorSpace::YCbCr | ColorSpace::RGB) => ColorSpace::RGB,
+        _ => {
+            let feature = "a JPEG image that is neither gray nor RGB";
+            return Err(ImageError::new(ImageErrorKind::Unsupported { feature }));
+        }
+    };
+    decoder.set_options(options.jpeg_set_out_colorspace(output));
+    let n_samples = decoder.output_buffer_size().unwrap_or(usize::MAX);
+    limits.check_bytes(SAMPLE_BYTES.saturating_mul(n_samples as u64))?;
+    let mut samples = vec![0; n_samples];
+    decoder.decode_into(&mut samples).map_err(refusal)?;
+    let orientation = decoder
+        .exif()
+        .map_or_else(Orientation::default, |exif| Orientation::from_exif(exif));
+    let pixels = match output {
+        ColorSpace::Luma => PngPixels::Gray8(orientation.raster([width, height], &samples)?),
+        _ => {
+            let (pixels, _) = samples.as_chunks::<3>();
+            PngPixels::Rgb8(orientation.raster([width, height], pixels)?)
+        }
+    };
+    Ok(PngImage {
+        pixels,
+        transfer: Transfer::Srgb,
+    })
+}
+
+/// Refuses a file whose last scan has no end; the codec makes up the last pixels of it.
+///
+/// Within a scan neither marker can occur, and a preview in the header ends before the first scan begins.
+fn check_end(bytes: &[u8]) -> Result<(), ImageError> {
+    let last = |marker: u8| bytes.windows(2).rposition(|pair| pair == [0xff, marker]);
+    if last(END_OF_IMAGE) > last(START_OF_SCAN) {
+        Ok(())
+    } else {
+        Err(ImageError::damaged("JPEG", "the end is missing"))
+    }
+}
+
+fn refusal(error: DecodeErrors) -> ImageError {
+    match error {
+        DecodeErrors::Unsupported(_) => {
+            let feature = "this kind of JPEG coding";
+            ImageError::new(ImageErrorKind::Unsupported { feature }).because(error.to_string())
+        }
+        _ => ImageError::damaged("JPEG", error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

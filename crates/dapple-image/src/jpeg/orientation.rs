@@ -1,0 +1,143 @@
+//! The orientation of a photograph, as its Exif data says, and turning it upright.
+//!
+//! Reference: "Exchangeable image file format for digital still cameras: Exif Version 2.32", CIPA DC-008, 2019, tag
+//! 274 of the first directory of its TIFF data. Whatever is odd about the data means the usual orientation.
+
+use crate::ImageError;
+use dapple_raster::Raster;
+
+/// The tag in a directory.
+const TAG: u16 = 274;
+
+/// The bytes of an entry in a directory.
+const ENTRY: usize = 12;
+
+/// How the rows and columns of a file lie in the picture: from 1 (as they should) to 8.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Orientation(u16);
+
+impl Default for Orientation {
+    fn default() -> Self {
+        Self(1)
+    }
+}
+
+impl Orientation {
+    /// What the bytes say, which begin with the TIFF header.
+    pub(super) fn from_exif(exif: &[u8]) -> Self {
+        match find(exif) {
+            Some(number @ 1..=8) => Self(number),
+            _ => Self::default(),
+        }
+    }
+
+    /// The upright picture of pixels that lie like this in a file of `size` columns and rows.
+    pub(super) fn raster<T: Copy>(
+        self,
+        size: [u32; 2],
+        pixels: &[T],
+    ) -> Result<Raster<T>, ImageError> {
+        let damaged = |error| ImageError::damaged("JPEG", error);
+        let stored = Raster::from_vec(size, pixels.to_vec()).map_err(damaged)?;
+        if self == Self::default() {
+            return Ok(stored);
+        }
+        let [last_column, last_row] = size.map(|side| side - 1);
+        let is_turned = self.0 >= 5;
+        let upright = if is_turned { [size[1], size[0]] } else { size };
+        Raster::from_fn(upright, |x, y| {
+            let [mut column, mut row] = if is_turned { [y, x] } else { [x, y] };
+            if matches!(self.0, 2 | 3 | 7 | 8) {
+                column = last_column - column;
+            }
+            if matches!(self.0, 3 | 4 | 6 | 7) {
+                row = last_row - row;
+            }
+            stored.row(row)[column as usize]
+        })
+        .map_err(damaged)
+    }
+}
+
+/// The number in the entry of the orientation, if there is one.
+fn find(exif: &[u8]) -> Option<u16> {
+    let is_little = match exif.get(..2)? {
+        b"II" => true,
+        b"MM" => false,
+        _ => return None,
+    };
+    let short = |at: usize| {
+        let bytes = exif.get(at..)?.first_chunk::<2>()?;
+        Some(if is_little {
+            u16::from_le_bytes(*bytes)
+        } else {
+            u16::from_be_bytes(*bytes)
+        })
+    };
+    let [first, second] = [short(4)?, short(6)?].map(usize::from);
+    let directory = if is_little {
+        first | second << 16
+    } else {
+        first << 16 | second
+    };
+    let n_entries = short(directory)?;
+    let entries = (0..usize::from(n_entries)).map(|entry| directory + 2 + ENTRY * entry);
+    // After tag, type and count comes the number itself, where it is short.
+    entries
+        .take_while(|&at| at < exif.len())
+        .find(|&at| short(at) == Some(TAG))
+        .and_then(|at| short(at + 8))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Orientation;
+    use dapple_raster::Raster;
+
+    /// The pixels of a picture of 3 columns and 2 rows, as the eight orientations store it: the specification says where
+    /// the first row and the first column of the file are in the picture.
+    const STORED: [([u32; 2], &[u8]); 8] = [
+        ([3, 2], b"abcdef"),
+        ([3, 2], b"cbafed"),
+        ([3, 2], b"fedcba"),
+        ([3, 2], b"defabc"),
+        ([2, 3], b"adbecf"),
+        ([2, 3], b"cfbead"),
+        ([2, 3], b"fcebda"),
+        ([2, 3], b"daebfc"),
+    ];
+
+    #[test]
+    fn all_eight_orientations_become_upright() {
+        let picture = Raster::from_vec([3, 2], b"abcdef".to_vec()).unwrap();
+        for (number, (size, pixels)) in (1..).zip(STORED) {
+            let upright = Orientation(number).raster(size, pixels).unwrap();
+            assert_eq!(upright, picture, "orientation {number}");
+        }
+    }
+
+    #[test]
+    fn both_orders_of_bytes_are_read() {
+        let little = b"II*\0\x08\0\0\0\x02\0\x0f\x01\x02\0\x01\0\0\0\0\0\0\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0";
+        let big = b"MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x08\0\0";
+        assert_eq!(Orientation::from_exif(little), Orientation(6), "II");
+        assert_eq!(Orientation::from_exif(big), Orientation(8), "MM");
+        for length in 0..little.len() - 2 {
+            let cut = Orientation::from_exif(&little[..length]);
+            assert_eq!(cut, Orientation::default(), "{length} bytes");
+        }
+    }
+
+    #[test]
+    fn odd_numbers_and_places_mean_the_usual_orientation() {
+        let nine = b"MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x09\0\0";
+        let far = b"II*\0\xff\xff\xff\xff";
+        for exif in [nine.as_slice(), far, b"", b"XX"] {
+            assert_eq!(
+                Orientation::from_exif(exif),
+                Orientation::default(),
+                "{exif:?}"
+            );
+        }
+    }
+}

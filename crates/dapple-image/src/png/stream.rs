@@ -1,0 +1,160 @@
+//! A PNG file that is written row by row in constant memory.
+//!
+//! The codec writes into a buffer that cannot fail, and what is in it goes on to the file after every row: the codec
+//! would keep the file to itself, and nothing that a file does can reach it this way.
+//!
+//! How hard it tries was measured on maps of 2048 × 2048 pixels: a fractal height, its normals, and colors from it. With
+//! 16 bits the lower half of a sample is nearly noise, and level 1 makes files no larger than level 6 does (6.65 and 6.73
+//! MB of 8.4 for the height, 24.13 and 24.15 of 25.2 for the normals, 19.14 and 19.19 of 25.2 for the colors) in a fifth
+//! to a seventh of the time. With 8 bits level 3 takes a fifth of the time of level 6, for files that are at most 5 %
+//! larger, where level 1 would make them up to a third larger. The fastest way of the codec has a fixed code for small
+//! numbers, and cannot make normals smaller at all.
+
+use super::{GAMMA_OF_SRGB, PngPixel, Transfer};
+use crate::limits::check_side;
+use crate::{ImageError, ImageErrorKind};
+use dapple_raster::RasterView;
+use png::{BitDepth, DeflateCompression, EncodingError, StreamWriter};
+use std::io::{self, Write};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// The longest side that the format has, in pixels.
+const SIDE_LIMIT: u32 = i32::MAX as u32;
+
+/// The longest row that is written, in bytes; the codec holds three of them from the beginning.
+const ROW_LIMIT: u64 = 1 << 30;
+
+/// How many bytes of compressed data make a chunk of the file.
+const CHUNK_LENGTH: usize = 1 << 16;
+
+/// A PNG file on its way into `sink`.
+pub(crate) struct PngStream<W> {
+    sink: W,
+    codec: StreamWriter<'static, Pipe>,
+    pipe: Pipe,
+    /// The samples of a row.
+    samples: Vec<u8>,
+}
+
+/// Bytes between the codec and the file; both ends hold it.
+#[derive(Clone, Default)]
+struct Pipe(Arc<Mutex<Vec<u8>>>);
+
+impl<W: Write> PngStream<W> {
+    /// A file of pixels of one kind, of which the header is written at once.
+    pub(crate) fn new<P: PngPixel>(
+        sink: W,
+        size: [u32; 2],
+        transfer: Transfer,
+    ) -> Result<Self, ImageError> {
+        let length = check_size(size, size_of::<P>())?;
+        let pipe = Pipe::default();
+        let mut stream = Self {
+            sink,
+            codec: codec::<P>(pipe.clone(), size, transfer).map_err(failure)?,
+            pipe,
+            samples: vec![0; length],
+        };
+        stream.pass_on()?;
+        Ok(stream)
+    }
+
+    /// Writes whole rows of the width that the file has, no more than it lacks.
+    pub(crate) fn write_rows<T, P: PngPixel>(
+        &mut self,
+        rows: RasterView<'_, T>,
+        code: impl Fn(&T) -> P,
+    ) -> Result<(), ImageError> {
+        for row in rows.rows() {
+            for (value, bytes) in row
+                .iter()
+                .zip(self.samples.chunks_exact_mut(size_of::<P>()))
+            {
+                code(value).write_bytes(bytes);
+            }
+            self.codec.write_all(&self.samples).map_err(failure)?;
+            self.pass_on()?;
+        }
+        Ok(())
+    }
+
+    /// Ends the file, all of whose rows must be there.
+    pub(crate) fn finish(self) -> Result<W, ImageError> {
+        let Self {
+            mut sink,
+            codec,
+            pipe,
+            ..
+        } = self;
+        codec.finish().map_err(failure)?;
+        sink.write_all(&pipe.bytes()).map_err(failure)?;
+        sink.flush().map_err(failure)?;
+        Ok(sink)
+    }
+
+    fn pass_on(&mut self) -> Result<(), ImageError> {
+        let mut bytes = self.pipe.bytes();
+        self.sink.write_all(&bytes).map_err(failure)?;
+        bytes.clear();
+        Ok(())
+    }
+}
+
+impl Pipe {
+    fn bytes(&self) -> MutexGuard<'_, Vec<u8>> {
+        // Nobody panics while holding it, and bytes would be in order all the same.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Write for Pipe {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.bytes().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// The bytes of a row, for a size that can be written.
+fn check_size(size: [u32; 2], pixel: usize) -> Result<usize, ImageError> {
+    check_side(size, SIDE_LIMIT, "PNG")?;
+    let bytes = u64::from(size[0]) * pixel as u64;
+    if bytes > ROW_LIMIT || usize::try_from(bytes * u64::from(size[1])).is_err() {
+        let limit = ROW_LIMIT;
+        return Err(ImageError::new(ImageErrorKind::TooManyBytes {
+            bytes,
+            limit,
+        }));
+    }
+    Ok(bytes as usize)
+}
+
+fn codec<P: PngPixel>(
+    pipe: Pipe,
+    [width, height]: [u32; 2],
+    transfer: Transfer,
+) -> Result<StreamWriter<'static, Pipe>, EncodingError> {
+    let (color, depth) = P::FORMAT;
+    let mut encoder = png::Encoder::new(pipe, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    encoder.set_filter(png::Filter::Adaptive);
+    encoder.set_deflate_compression(match depth {
+        BitDepth::Sixteen => DeflateCompression::Level(1),
+        _ => DeflateCompression::Level(3),
+    });
+    if transfer == Transfer::Srgb {
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+        encoder.set_source_gamma(png::ScaledFloat::from_scaled(GAMMA_OF_SRGB));
+    }
+    encoder
+        .write_header()?
+        .into_stream_writer_with_size(CHUNK_LENGTH)
+}
+
+fn failure(error: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> ImageError {
+    ImageError::new(ImageErrorKind::Io).because(error)
+}

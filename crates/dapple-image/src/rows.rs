@@ -1,0 +1,229 @@
+//! Writing an image by its rows, from the top down, however large it is.
+
+use crate::content::Pixel;
+use crate::exr::TileStream;
+use crate::png::PngStream;
+use crate::{Content, Depth, Encoding, ImageError, ImageErrorKind};
+use core::fmt;
+use dapple_color::{LinearRgb, LinearRgba, Normal};
+use dapple_raster::RasterView;
+use std::io::{Seek, Write};
+
+/// Writes an image by its rows, from the top down, so that it never has to be in memory as a whole.
+///
+/// The rows come in bands of any height; how they are divided does not change a byte of the file. PNG takes a few rows of
+/// memory, and gives the bytes of [`encode_png`](crate::encode_png). OpenEXR is written in tiles of 64 × 64 pixels and
+/// takes a band of these: 64 rows of 4 bytes for each plane. It is compressed on all cores where the feature `rayon` is
+/// on.
+///
+/// The sink should be empty, and buffered if it is a file. What is in it is an image only after
+/// [`finish`](Self::finish).
+///
+/// # Examples
+///
+/// ```
+/// use dapple_image::{Content, Depth, Encoding, Limits, RowWriter, decode_image};
+/// use dapple_raster::Raster;
+/// use std::io::Cursor;
+///
+/// let sink = Cursor::new(Vec::new());
+/// let mut writer = RowWriter::new(sink, [200, 100], Content::Gray, Encoding::Png(Depth::Sixteen))?;
+/// for band in 0..10 {
+///     let rows = Raster::filled([200, 10], band as f32 / 9.0)?;
+///     writer.write_gray(rows.view())?;
+/// }
+/// let bytes = writer.finish()?.into_inner();
+/// assert_eq!(decode_image(&bytes, &Limits::default())?.size(), [200, 100]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct RowWriter<W: Write + Seek> {
+    content: Content,
+    size: [u32; 2],
+    /// How many rows are written.
+    rows: u32,
+    /// If a row went astray, and the file can never be whole.
+    is_broken: bool,
+    file: File<W>,
+}
+
+/// The file of each encoding.
+enum File<W: Write + Seek> {
+    Eight(Box<PngStream<W>>),
+    Sixteen(Box<PngStream<W>>),
+    Exr(Box<TileStream<W>>),
+}
+
+impl<W: Write + Seek> RowWriter<W> {
+    /// A writer of an image of `size` columns and rows into `sink`. The header is written at once.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageErrorKind::Empty`] if the image has no pixel, [`ImageErrorKind::TooLarge`] if a side is longer than
+    /// 2^31 - 1 pixels in PNG or 2^30 - 2 in OpenEXR, [`ImageErrorKind::TooManyBytes`] if a row of PNG takes more than
+    /// 2^30 bytes,
+    /// [`ImageErrorKind::Unsupported`] if OpenEXR has no room for as many tiles, [`ImageErrorKind::Io`] if the sink
+    /// refuses.
+    pub fn new(
+        sink: W,
+        size: [u32; 2],
+        content: Content,
+        encoding: Encoding,
+    ) -> Result<Self, ImageError> {
+        let file = match content {
+            Content::Gray => File::new::<f32>(sink, size, encoding),
+            Content::Color => File::new::<LinearRgb>(sink, size, encoding),
+            Content::ColorAlpha => File::new::<LinearRgba>(sink, size, encoding),
+            Content::Normal => File::new::<Normal>(sink, size, encoding),
+            Content::Packed => File::new::<[f32; 3]>(sink, size, encoding),
+        }?;
+        Ok(Self {
+            content,
+            size,
+            rows: 0,
+            is_broken: false,
+            file,
+        })
+    }
+
+    /// Writes the next rows of an image of [`Content::Gray`].
+    ///
+    /// # Errors
+    ///
+    /// [`ImageErrorKind::RowWidth`] if the rows do not have the width of the image, [`ImageErrorKind::TooManyRows`] if
+    /// there are more than the image lacks, [`ImageErrorKind::Channels`] if the image has another content; then nothing
+    /// is written, and one may go on. [`ImageErrorKind::Io`] if the sink refuses, and ever after.
+    pub fn write_gray(&mut self, rows: RasterView<'_, f32>) -> Result<(), ImageError> {
+        self.write(rows)
+    }
+
+    /// Writes the next rows of an image of [`Content::Color`].
+    ///
+    /// # Errors
+    ///
+    /// As of [`write_gray`](Self::write_gray).
+    pub fn write_color(&mut self, rows: RasterView<'_, LinearRgb>) -> Result<(), ImageError> {
+        self.write(rows)
+    }
+
+    /// Writes the next rows of an image of [`Content::ColorAlpha`].
+    ///
+    /// # Errors
+    ///
+    /// As of [`write_gray`](Self::write_gray).
+    pub fn write_color_alpha(
+        &mut self,
+        rows: RasterView<'_, LinearRgba>,
+    ) -> Result<(), ImageError> {
+        self.write(rows)
+    }
+
+    /// Writes the next rows of an image of [`Content::Normal`].
+    ///
+    /// # Errors
+    ///
+    /// As of [`write_gray`](Self::write_gray).
+    pub fn write_normals(&mut self, rows: RasterView<'_, Normal>) -> Result<(), ImageError> {
+        self.write(rows)
+    }
+
+    /// Writes the next rows of an image of [`Content::Packed`].
+    ///
+    /// # Errors
+    ///
+    /// As of [`write_gray`](Self::write_gray).
+    pub fn write_packed(&mut self, rows: RasterView<'_, [f32; 3]>) -> Result<(), ImageError> {
+        self.write(rows)
+    }
+
+    /// Ends the file and gives the sink back.
+    ///
+    /// # Errors
+    ///
+    /// [`ImageErrorKind::MissingRows`] if rows are missing, [`ImageErrorKind::Io`] if the sink refuses or did before.
+    pub fn finish(self) -> Result<W, ImageError> {
+        self.check_whole()?;
+        let [rows, needed] = [self.rows, self.size[1]];
+        if rows < needed {
+            return Err(ImageError::new(ImageErrorKind::MissingRows {
+                rows,
+                needed,
+            }));
+        }
+        match self.file {
+            File::Eight(stream) | File::Sixteen(stream) => stream.finish(),
+            File::Exr(stream) => stream.finish(),
+        }
+    }
+
+    pub(crate) fn write<T: Pixel>(&mut self, rows: RasterView<'_, T>) -> Result<(), ImageError> {
+        self.check_whole()?;
+        let [_, height] = rows.size();
+        self.check_rows::<T>(rows.size())?;
+        // Whoever returns early leaves it broken.
+        self.is_broken = true;
+        match &mut self.file {
+            File::Eight(stream) => stream.write_rows(rows, T::eight)?,
+            File::Sixteen(stream) => stream.write_rows(rows, T::sixteen)?,
+            File::Exr(stream) => stream.write_rows(rows, T::part)?,
+        }
+        self.is_broken = false;
+        self.rows += height;
+        Ok(())
+    }
+
+    fn check_whole(&self) -> Result<(), ImageError> {
+        if self.is_broken {
+            let message = "an earlier row was not written, so that the file cannot be completed";
+            return Err(ImageError::new(ImageErrorKind::Io).because(message));
+        }
+        Ok(())
+    }
+
+    fn check_rows<T: Pixel>(&self, [width, height]: [u32; 2]) -> Result<(), ImageError> {
+        let rows = u64::from(self.rows) + u64::from(height);
+        let kind = if T::CONTENT != self.content {
+            ImageErrorKind::Channels {
+                found: T::CONTENT.name(),
+                needed: self.content.name(),
+            }
+        } else if width != self.size[0] {
+            let needed = self.size[0];
+            ImageErrorKind::RowWidth { width, needed }
+        } else if rows > u64::from(self.size[1]) {
+            let needed = self.size[1];
+            ImageErrorKind::TooManyRows { rows, needed }
+        } else {
+            return Ok(());
+        };
+        Err(ImageError::new(kind))
+    }
+}
+
+impl<W: Write + Seek> File<W> {
+    fn new<T: Pixel>(sink: W, size: [u32; 2], encoding: Encoding) -> Result<Self, ImageError> {
+        let transfer = T::CONTENT.transfer();
+        Ok(match encoding {
+            Encoding::Png(Depth::Eight) => {
+                Self::Eight(PngStream::new::<T::Eight>(sink, size, transfer)?.into())
+            }
+            Encoding::Png(Depth::Sixteen) => {
+                Self::Sixteen(PngStream::new::<T::Sixteen>(sink, size, transfer)?.into())
+            }
+            Encoding::Exr => Self::Exr(TileStream::new(sink, size, T::CONTENT.planes())?.into()),
+        })
+    }
+}
+
+impl<W: Write + Seek> fmt::Debug for RowWriter<W> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // The codecs cannot be shown.
+        f.debug_struct("RowWriter")
+            .field("content", &self.content)
+            .field("size", &self.size)
+            .field("rows", &self.rows)
+            .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests;

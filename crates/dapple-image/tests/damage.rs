@@ -1,0 +1,147 @@
+//! Damaged files of every format: an image within the limits or an error, never a panic, and never much memory. A binary
+//! of its own, since it looks at its peak.
+
+use dapple_image::{
+    Content, Depth, Encoding, ExrPlane, Limits, RowWriter, Transfer, decode_image, encode_exr,
+    encode_png,
+};
+use dapple_raster::Raster;
+use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
+use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
+use std::io::Cursor;
+
+/// What a damaged file may ask for.
+const LIMITS: Limits = Limits {
+    pixels: 1 << 16,
+    bytes: 1 << 20,
+};
+
+/// The most memory in bytes that reading may take beyond what is there before: the codecs' tables and copies come on top
+/// of the limit, but not by orders of magnitude.
+const MEMORY: u64 = 48 << 20;
+
+/// Whole files, small enough that a change hits something.
+fn files() -> Vec<Vec<u8>> {
+    let size = [21, 18];
+    let gray = Raster::from_fn(size, |x, y| (x * 5 + y * 7) as f32 / 255.0).unwrap();
+    let codes = gray.map(|&value| (255.0 * value) as u8);
+    let colors = codes.map(|&code| [code, 255 - code, 7, code / 2]);
+    let planes = [
+        ExrPlane::new("Y", gray.clone()),
+        ExrPlane::new("Z", gray.clone()),
+    ];
+    let mut files = vec![
+        encode_png(codes.view(), Transfer::Data).unwrap(),
+        encode_png(colors.view(), Transfer::Srgb).unwrap(),
+        encode_exr(&planes).unwrap(),
+    ];
+    for encoding in [Encoding::Png(Depth::Sixteen), Encoding::Exr] {
+        let sink = Cursor::new(Vec::new());
+        let mut writer = RowWriter::new(sink, size, Content::Gray, encoding).unwrap();
+        writer.write_gray(gray.view()).unwrap();
+        files.push(writer.finish().unwrap().into_inner());
+    }
+    for (is_progressive, restart, sampling) in [
+        (false, 0, SamplingFactor::F_1_1),
+        (false, 1, SamplingFactor::F_2_2),
+        (true, 0, SamplingFactor::F_2_1),
+        (true, 1, SamplingFactor::F_1_1),
+    ] {
+        let samples: Vec<u8> = colors
+            .pixels()
+            .iter()
+            .flat_map(|&[r, g, b, _]| [r, g, b])
+            .collect();
+        let mut bytes = Vec::new();
+        let mut encoder = Encoder::new(&mut bytes, 80);
+        encoder.set_progressive(is_progressive);
+        encoder.set_restart_interval(restart);
+        encoder.set_sampling_factor(sampling);
+        encoder.encode(&samples, 21, 18, ColorType::Rgb).unwrap();
+        files.push(bytes);
+    }
+    files
+}
+
+/// A change of a file, at a part of its length.
+#[derive(Clone, Debug)]
+enum Change {
+    Set(f64, u8),
+    Flip(f64, u8),
+    Insert(f64, u8),
+    Remove(f64, usize),
+    Repeat(f64, usize),
+    Cut(f64),
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    let part = || 0.0..1.0;
+    let byte = || {
+        prop_oneof![
+            any::<u8>(),
+            prop::sample::select(vec![0, 1, 0x7f, 0x80, 0xff])
+        ]
+    };
+    prop_oneof![
+        4 => (part(), byte()).prop_map(|(at, byte)| Change::Set(at, byte)),
+        4 => (part(), 0_u8..8).prop_map(|(at, bit)| Change::Flip(at, bit)),
+        1 => (part(), byte()).prop_map(|(at, byte)| Change::Insert(at, byte)),
+        1 => (part(), 1_usize..30).prop_map(|(at, n)| Change::Remove(at, n)),
+        1 => (part(), 1_usize..30).prop_map(|(at, n)| Change::Repeat(at, n)),
+        1 => (0.5..1.0).prop_map(Change::Cut),
+    ]
+}
+
+fn apply(change: &Change, bytes: &mut Vec<u8>) {
+    let length = bytes.len();
+    let at = |part: f64| (part * length as f64) as usize;
+    match *change {
+        _ if length == 0 => (),
+        Change::Set(part, byte) => bytes[at(part)] = byte,
+        Change::Flip(part, bit) => bytes[at(part)] ^= 1 << bit,
+        Change::Insert(part, byte) => bytes.insert(at(part), byte),
+        Change::Remove(part, n) => drop(bytes.drain(at(part)..length.min(at(part) + n))),
+        Change::Repeat(part, n) => bytes.extend_from_within(at(part)..length.min(at(part) + n)),
+        Change::Cut(part) => bytes.truncate(at(part)),
+    }
+}
+
+/// The most memory that this process had so far, where the system says so.
+#[expect(clippy::disallowed_methods, reason = "the test asks the system")]
+fn peak() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let number: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(number << 10)
+}
+
+#[test]
+fn damaged_files_give_an_image_within_the_limits_or_an_error() {
+    let files = files();
+    for bytes in &files {
+        assert_eq!(
+            decode_image(bytes, &LIMITS).unwrap().size(),
+            [21, 18],
+            "a whole file"
+        );
+    }
+    let before = peak();
+    let changes = (0..files.len(), proptest::collection::vec(change(), 1..6));
+    let mut runner = TestRunner::new(ProptestConfig::with_cases(20_000));
+    runner
+        .run(&changes, |(file, changes)| {
+            let mut bytes = files[file].clone();
+            changes.iter().for_each(|change| apply(change, &mut bytes));
+            if let Ok(image) = decode_image(&bytes, &LIMITS) {
+                let [width, height] = image.size().map(u64::from);
+                prop_assert!(width * height <= LIMITS.pixels, "{width} × {height}");
+            }
+            Ok(())
+        })
+        .unwrap();
+    match before.zip(peak()) {
+        Some((before, peak)) => assert!(peak - before < MEMORY, "{before} and {peak} bytes"),
+        None => println!("skipped: this system does not say how much memory was taken"),
+    }
+}
