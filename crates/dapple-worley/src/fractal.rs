@@ -21,7 +21,7 @@ use glam::DVec2;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(default)
+    serde(default, deny_unknown_fields)
 )]
 pub struct Octaves {
     /// How many: from 1 to 32; 6 by default.

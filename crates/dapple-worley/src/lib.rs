@@ -47,6 +47,7 @@ mod scatter;
 
 mod combination;
 
+mod cell_values;
 mod cellular;
 mod features;
 mod fractal;
@@ -56,6 +57,8 @@ mod radial;
 mod ranges;
 mod scattered;
 mod set;
+#[cfg(feature = "slices")]
+mod slice;
 mod voronoi;
 
 mod fixed;
@@ -70,6 +73,7 @@ mod sink;
 
 mod error;
 
+pub use cell_values::CellValues;
 pub use cellular::Cellular;
 pub use combination::Combination;
 pub use dapple_hash as hash;
@@ -83,6 +87,8 @@ pub use profile::Profile;
 pub use radial::{Radial, RadialCells};
 pub use scatter::Scatter;
 pub use set::FeatureSet;
+#[cfg(feature = "slices")]
+pub use slice::Slice;
 pub use space::{Axes, Space, Vector};
 pub use worley::{CellPoint, Feature, LIMIT, RESOLUTION, Worley, Worley2, Worley3, Worley4};
 

@@ -71,6 +71,18 @@ impl Profile {
         Ok(Self::Channels { width })
     }
 
+    /// Refuses a profile that was made, or read, without a constructor and could not have been made with one.
+    ///
+    /// # Errors
+    ///
+    /// [`WorleyErrorKind::Range`] if its radius or width is not finite and above 0.
+    pub fn check(self) -> Result<(), WorleyError> {
+        match self {
+            Self::Spots { radius } => Self::spots(radius).map(drop),
+            Self::Channels { width } => Self::channels(width).map(drop),
+        }
+    }
+
     /// The height where the texture has a value: from 0 to 1.
     #[must_use]
     pub fn height(self, value: f32) -> f32 {

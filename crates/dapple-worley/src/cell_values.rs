@@ -1,0 +1,93 @@
+//! The random number of the Voronoi cell at each position, as a field.
+
+use crate::{FeatureView, Plane, Worley2};
+use dapple_raster::glam::DVec2;
+use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
+
+/// A random number in `[0, 1)` for each Voronoi cell: [`Feature::cell_value`](crate::Feature::cell_value) of the nearest
+/// feature point.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_worley::{Worley2, hash::Seed, raster::{Field, glam::DVec2}};
+///
+/// let worley = Worley2::new(Seed(7));
+/// let at = DVec2::new(0.25, 0.75);
+/// assert_eq!(worley.cell_values().sample(at), worley.sample::<1>(at)[0].cell_value());
+/// ```
+#[derive(Clone, Debug)]
+pub struct CellValues {
+    worley: Worley2,
+}
+
+impl Worley2 {
+    /// The texture whose value is the random number of the cell.
+    #[must_use]
+    pub fn cell_values(&self) -> CellValues {
+        CellValues {
+            worley: self.clone(),
+        }
+    }
+}
+
+impl Field for CellValues {
+    fn sample(&self, position: DVec2) -> f32 {
+        let [nearest] = self.worley.sample(position);
+        value(nearest.distance, nearest.id)
+    }
+
+    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        window.check_size(out.size())?;
+        let mut ids = Raster::filled(window.size, 0)?;
+        let nearest = FeatureView {
+            id: Some(ids.view_mut()),
+            distance: Some(out.reborrow()),
+            ..FeatureView::default()
+        };
+        self.worley
+            .render_features(&Plane::default(), window, [nearest])?;
+        for (row, values) in (0..).zip(out.rows_mut()) {
+            for (distance, &id) in values.iter_mut().zip(ids.row(row)) {
+                *distance = value(*distance, id);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The number of a point; of a position without a place it is NaN.
+fn value(distance: f32, id: u64) -> f32 {
+    if distance.is_nan() {
+        return f32::NAN;
+    }
+    let vector = ();
+    crate::Feature {
+        distance,
+        vector,
+        id,
+    }
+    .cell_value()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Worley2;
+    use dapple_hash::Seed;
+    use dapple_raster::{Field, Window, glam::DVec2};
+
+    #[test]
+    fn render_equals_sample_bit_for_bit() {
+        let cells = Worley2::new(Seed(7)).cell_values();
+        let window = Window::new(DVec2::new(-3.0, 1e6), DVec2::new(8.0, 5.0), [67, 41]).unwrap();
+        let raster = cells.to_raster(&window).unwrap();
+        for row in 0..41 {
+            for column in 0..67 {
+                let sample = cells.sample(window.position(column, row));
+                let rendered = raster.row(row)[column as usize];
+                assert_eq!(sample.to_bits(), rendered.to_bits(), "{column}, {row}");
+            }
+        }
+        assert!(cells.sample(DVec2::NAN).is_nan(), "no place, no number");
+    }
+}

@@ -1,0 +1,98 @@
+//! Slices of textures of four dimensions, as fields of the plane.
+//!
+//! Rendering is compiled for every metric, depth and SIMD level, which takes a while in four dimensions, so this lies behind
+//! the feature `slices`: it is compiled here once, and not again in every crate that uses it.
+
+use crate::{Cellular, Fractal, Plane};
+use dapple_raster::glam::{DVec2, DVec4};
+use dapple_raster::{Field, RasterError, RasterViewMut, Window};
+
+/// A slice along the first two axes through a texture of four dimensions: a solid at one depth and one moment.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_worley::{Combination, Worley4, hash::Seed, raster::{Field, glam::DVec2}};
+///
+/// let sea = Worley4::new(Seed(7)).with_period([None, None, None, Some(2)])?.combine(Combination::F1);
+/// let at = DVec2::new(0.25, 0.75);
+/// assert_eq!(sea.slice([0.0, 0.5]).sample(at), sea.slice([0.0, 2.5]).sample(at), "a loop");
+/// # Ok::<(), dapple_worley::WorleyError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Slice {
+    texture: Texture,
+    plane: Plane<4>,
+}
+
+#[derive(Clone, Debug)]
+enum Texture {
+    Cellular(Cellular<4>),
+    Fractal(Fractal<4>),
+}
+
+impl Cellular<4> {
+    /// The slice at a place along the third and the fourth axis, in cells.
+    #[must_use]
+    pub fn slice(&self, place: [f64; 2]) -> Slice {
+        Slice::new(Texture::Cellular(self.clone()), place)
+    }
+}
+
+impl Fractal<4> {
+    /// The slice at a place along the third and the fourth axis, in cells of the first octave.
+    #[must_use]
+    pub fn slice(&self, place: [f64; 2]) -> Slice {
+        Slice::new(Texture::Fractal(self.clone()), place)
+    }
+}
+
+impl Slice {
+    fn new(texture: Texture, [z, w]: [f64; 2]) -> Self {
+        let plane = Plane::slice(DVec4::new(0.0, 0.0, z, w));
+        Self { texture, plane }
+    }
+}
+
+impl Field for Slice {
+    fn sample(&self, position: DVec2) -> f32 {
+        let position = self.plane.position(position);
+        match &self.texture {
+            Texture::Cellular(cellular) => cellular.value(position),
+            Texture::Fractal(fractal) => fractal.value(position),
+        }
+    }
+
+    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        match &self.texture {
+            Texture::Cellular(cellular) => cellular.render_plane(&self.plane, window, out),
+            Texture::Fractal(fractal) => fractal.render_plane(&self.plane, window, out),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Combination, Octaves, Worley4};
+    use dapple_hash::Seed;
+    use dapple_raster::{Field, Window, glam::DVec2};
+
+    #[test]
+    fn render_equals_sample_bit_for_bit() {
+        let cells = Worley4::new(Seed(7)).combine(Combination::F1);
+        let octaves = Octaves {
+            count: 2,
+            ..Octaves::default()
+        };
+        let fractal = cells.fractal(octaves).unwrap();
+        let window = Window::new(DVec2::new(-3.0, 7.0), DVec2::new(4.0, 3.0), [23, 17]).unwrap();
+        for slice in [cells.slice([0.5, 1.25]), fractal.slice([0.5, 1.25])] {
+            let raster = slice.to_raster(&window).unwrap();
+            for (row, column) in (0..17).flat_map(|row| (0..23).map(move |column| (row, column))) {
+                let sample = slice.sample(window.position(column, row));
+                let rendered = raster.row(row)[column as usize];
+                assert_eq!(sample.to_bits(), rendered.to_bits(), "{column}, {row}");
+            }
+        }
+    }
+}
