@@ -58,6 +58,8 @@ pub enum Falloff {
 }
 
 /// How a light is blocked.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/shadows.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Shadows {
     /// Not at all: the light goes through everything.

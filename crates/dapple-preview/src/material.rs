@@ -13,6 +13,8 @@ use glam::DVec3;
 ///
 /// A number that is not finite counts as zero, so that a texture with a hole gives a dark spot and not NaN.
 ///
+#[cfg_attr(doc, doc = include_str!("../docs/material.md"))]
+///
 /// # Examples
 ///
 /// ```
@@ -42,6 +44,8 @@ pub struct Material {
 }
 
 /// The part of the light that comes from the mirrored direction; what is mirrored is not scattered.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/mirror.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Mirror {
     /// None.

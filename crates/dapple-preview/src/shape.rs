@@ -18,6 +18,8 @@ use solid::{Boundary, Skin, Solid};
 use std::sync::Arc;
 
 /// What an object is, in its own space.
+///
+#[cfg_attr(doc, doc = include_str!("../docs/shape.md"))]
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Shape {

@@ -12,6 +12,8 @@ use glam::DVec3;
 
 /// What is left of a solid, in the space of the object. The faces of the cut are closed and belong to the solid.
 ///
+#[cfg_attr(doc, doc = include_str!("../../docs/cut.md"))]
+///
 /// # Examples
 ///
 /// ```
