@@ -1,0 +1,190 @@
+//! Baking: the maps of a material, band by band.
+//!
+//! A band is some rows of all maps. Maps that look around a pixel (normals, occlusion, curvature) are made from the height
+//! of the band and of a margin about it, which is rendered like everything else, so that bands, regions and the whole
+//! picture have the same bits. What sees the whole tile is made beforehand; without it, the memory of a bake depends on its
+//! width alone.
+//!
+//! Reference: our own; occlusion, curvature and normals have theirs in `dapple-color`.
+
+mod heights;
+mod maps;
+
+pub use maps::{MapKind, MapRows};
+
+use crate::{Plan, RecipeError, Whole};
+use dapple_raster::Window;
+use heights::Heights;
+
+/// What is baked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BakeOptions {
+    /// Columns and rows of the whole tile; 1024 × 1024 by default. There may be more pixels than a raster has.
+    pub size: [u32; 2],
+    /// The part of the tile that is made; all of it by default.
+    pub region: Option<Region>,
+    /// The maps; the height by default.
+    pub maps: Vec<MapKind>,
+    /// How much may lie in memory at once.
+    pub memory: BakeMemory,
+}
+
+/// A part of a picture, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// Its first column and row.
+    pub first: [u32; 2],
+    /// Its columns and rows.
+    pub size: [u32; 2],
+}
+
+/// How much may lie in memory at once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BakeMemory {
+    /// Nodes that see the whole tile are made for all of it.
+    #[default]
+    Whole,
+    /// Some rows at a time; nodes that see the whole tile are refused.
+    Banded,
+}
+
+impl Default for BakeOptions {
+    fn default() -> Self {
+        Self {
+            size: [1024; 2],
+            region: None,
+            maps: vec![MapKind::Height],
+            memory: BakeMemory::Whole,
+        }
+    }
+}
+
+/// Some rows of all maps that were asked for.
+#[derive(Clone, Debug)]
+pub struct Band {
+    /// The first row, counted within the region.
+    pub first_row: u32,
+    /// The maps in the order in which they were asked for.
+    pub maps: Vec<(MapKind, MapRows)>,
+}
+
+/// The maps of a material, as an iterator over bands from the top down.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_recipe::{Bake, BakeOptions, Images, MapKind, Plan, Recipe};
+///
+/// let plan = Plan::new(&Recipe::builtin("flagstone")?, &Images::new(), 0.0)?;
+/// let maps = vec![MapKind::Height, MapKind::Normal, MapKind::Albedo];
+/// let bake = Bake::new(&plan, &BakeOptions { size: [64, 64], maps, ..BakeOptions::default() })?;
+/// let rows: u32 = bake.map(|band| band.map(|band| band.maps[0].1.size()[1])).sum::<Result<u32, _>>()?;
+/// assert_eq!(rows, 64);
+/// # Ok::<(), dapple_recipe::RecipeError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Bake<'a> {
+    plan: &'a Plan,
+    whole: Whole,
+    maps: Vec<MapKind>,
+    /// The size of the whole tile.
+    tile: [u32; 2],
+    /// The pixels that are made.
+    window: Window,
+    next_row: u32,
+    heights: Heights,
+}
+
+/// The pixels of a band, about: enough for all cores, and few enough that several values of each are no burden.
+const BAND_PIXELS: u32 = 1 << 20;
+
+impl<'a> Bake<'a> {
+    /// Prepares a bake; the work is done when bands are asked for.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](crate::RecipeErrorKind::Range) for a size of zero, a region past the tile, or a radius out of range,
+    /// [`Global`](crate::RecipeErrorKind::Global) for a node that sees the whole tile under [`BakeMemory::Banded`], and
+    /// what such nodes refuse.
+    pub fn new(plan: &'a Plan, options: &BakeOptions) -> Result<Self, RecipeError> {
+        let whole_window = plan.window(options.size)?;
+        let window = match options.region {
+            None => whole_window,
+            Some(region) => crop(&whole_window, region)?,
+        };
+        if options.memory == BakeMemory::Banded {
+            plan.check_local()?;
+        }
+        let heights = Heights::new(plan, &whole_window, &options.maps)?;
+        Ok(Self {
+            plan,
+            whole: plan.whole(options.size)?,
+            maps: options.maps.clone(),
+            tile: options.size,
+            window,
+            next_row: 0,
+            heights,
+        })
+    }
+
+    /// Columns and rows of what is made.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.window.size
+    }
+
+    fn band(&mut self) -> Result<Band, RecipeError> {
+        let [width, height] = self.window.size;
+        let first_row = self.next_row;
+        let rows = (BAND_PIXELS / width).max(16).min(height - first_row);
+        self.next_row += rows;
+        let band = Window {
+            first: [
+                self.window.first[0],
+                self.window.first[1].saturating_add(first_row.into()),
+            ],
+            size: [width, rows],
+            ..self.window
+        };
+        let heights = self.heights.of(self.plan, &self.whole, &band)?;
+        let maps = maps::maps(
+            self.plan,
+            &self.whole,
+            &band,
+            self.tile,
+            &heights,
+            &self.maps,
+        )?;
+        Ok(Band { first_row, maps })
+    }
+}
+
+impl Iterator for Bake<'_> {
+    type Item = Result<Band, RecipeError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        (self.next_row < self.window.size[1]).then(|| self.band())
+    }
+}
+
+/// The window of a region.
+fn crop(whole: &Window, region: Region) -> Result<Window, RecipeError> {
+    for axis in 0..2 {
+        let end = u64::from(region.first[axis]) + u64::from(region.size[axis]);
+        let fits = region.size[axis] > 0 && end <= u64::from(whole.size[axis]);
+        RecipeError::check(
+            fits,
+            "end of the region",
+            end as f64,
+            "within the tile, past its first pixel",
+        )?;
+    }
+    Ok(Window {
+        first: region.first.map(i64::from),
+        size: region.size,
+        ..*whole
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,296 @@
+//! The maps of a band.
+
+use super::heights::Margined;
+use crate::{Plan, RecipeError, Values, Whole};
+use dapple_color::{
+    CurvatureOptions, LinearRgb, Normal, NormalOptions, OcclusionOptions,
+    ambient_occlusion_of_part, curvature_of_part, curvature_to_gray, normal_map_of_part,
+};
+use dapple_raster::{Raster, Window, Wrap};
+
+/// A map of a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum MapKind {
+    /// The height, from 0 to 1 where the recipe keeps to it.
+    Height,
+    /// The normals of the height.
+    Normal,
+    /// How much of the sky a place sees, from 0 to 1: ambient occlusion.
+    Occlusion,
+    /// The curvature as a gray: ½ where it is flat, more on edges, less in grooves.
+    Curvature,
+    /// The color.
+    Albedo,
+    /// From 0, a mirror, to 1, chalk.
+    Roughness,
+    /// From 0, no metal, to 1, all metal.
+    Metallic,
+    /// Occlusion, roughness and metallic as red, green and blue, as glTF and engines pack them.
+    Orm,
+}
+
+/// Some rows of a map.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MapRows {
+    /// Numbers.
+    Gray(Raster<f32>),
+    /// Colors.
+    Color(Raster<LinearRgb>),
+    /// Normals.
+    Normal(Raster<Normal>),
+    /// Three numbers that are no color.
+    Packed(Raster<[f32; 3]>),
+}
+
+impl MapKind {
+    /// All maps, in the order of their definition.
+    pub const ALL: [Self; 8] = [
+        Self::Height,
+        Self::Normal,
+        Self::Occlusion,
+        Self::Curvature,
+        Self::Albedo,
+        Self::Roughness,
+        Self::Metallic,
+        Self::Orm,
+    ];
+
+    /// The map of this name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// What the map is called in file names and on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Height => "height",
+            Self::Normal => "normal",
+            Self::Occlusion => "ao",
+            Self::Curvature => "curvature",
+            Self::Albedo => "albedo",
+            Self::Roughness => "roughness",
+            Self::Metallic => "metallic",
+            Self::Orm => "orm",
+        }
+    }
+}
+
+impl MapRows {
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        match self {
+            Self::Gray(raster) => raster.size(),
+            Self::Color(raster) => raster.size(),
+            Self::Normal(raster) => raster.size(),
+            Self::Packed(raster) => raster.size(),
+        }
+    }
+
+    /// A range of numbers, made as wide as the finite numbers of these rows need.
+    #[must_use]
+    pub fn range(&self, range: [f32; 2]) -> [f32; 2] {
+        fn widened(range: [f32; 2], numbers: impl Iterator<Item = f32>) -> [f32; 2] {
+            numbers
+                .filter(|number| number.is_finite())
+                .fold(range, |[min, max], number| {
+                    [
+                        if number < min { number } else { min },
+                        if number > max { number } else { max },
+                    ]
+                })
+        }
+        match self {
+            Self::Gray(raster) => widened(range, raster.pixels().iter().copied()),
+            Self::Color(raster) => widened(
+                range,
+                raster.pixels().iter().flat_map(|color| color.to_array()),
+            ),
+            Self::Normal(raster) => widened(
+                range,
+                raster.pixels().iter().flat_map(|normal| normal.to_array()),
+            ),
+            Self::Packed(raster) => widened(range, raster.pixels().iter().flatten().copied()),
+        }
+    }
+}
+
+/// A plan's choices for ambient occlusion. What lies past the margin does not matter.
+pub(super) fn occlusion_options(plan: &Plan) -> Result<OcclusionOptions, RecipeError> {
+    let material = plan.material();
+    let radius = material
+        .occlusion_radius
+        .unwrap_or(plan.extent().min_element() / 20.0);
+    let holds = radius > 0.0 && radius <= plan.extent().max_element();
+    RecipeError::check(
+        holds,
+        "occlusion radius",
+        radius,
+        "above 0 and at most the extent",
+    )?;
+    Ok(OcclusionOptions {
+        strength: material.relief,
+        extent: plan.extent(),
+        wrap: [Wrap::Clamp; 2],
+        radius,
+        ..OcclusionOptions::default()
+    })
+}
+
+/// A plan's choices for curvature.
+pub(super) fn curvature_options(plan: &Plan) -> Result<CurvatureOptions, RecipeError> {
+    let material = plan.material();
+    let radius = material
+        .curvature_radius
+        .unwrap_or(plan.extent().min_element() / 100.0);
+    let holds = radius > 0.0 && radius <= plan.extent().max_element();
+    RecipeError::check(
+        holds,
+        "curvature radius",
+        radius,
+        "above 0 and at most the extent",
+    )?;
+    Ok(CurvatureOptions {
+        strength: material.relief,
+        extent: plan.extent(),
+        wrap: [Wrap::Clamp; 2],
+        radius,
+    })
+}
+
+/// The maps of a band, of which the heights are known.
+pub(super) fn maps(
+    plan: &Plan,
+    whole: &Whole,
+    band: &Window,
+    tile: [u32; 2],
+    heights: &Margined,
+    kinds: &[MapKind],
+) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
+    let channels = plan.channels();
+    let of_kind = |kind: &MapKind| match kind {
+        MapKind::Albedo => vec![channels.albedo],
+        MapKind::Roughness => vec![channels.roughness],
+        MapKind::Metallic => vec![channels.metallic],
+        MapKind::Orm => vec![channels.roughness, channels.metallic],
+        MapKind::Height | MapKind::Normal | MapKind::Occlusion | MapKind::Curvature => Vec::new(),
+    };
+    let wanted: Vec<usize> = kinds.iter().flat_map(of_kind).collect();
+    let mut values = plan.values(whole, band, &wanted)?.into_iter();
+    let mut local = || values.next().unwrap_or(Values::Numbers(Vec::new()));
+    let mut around = Around {
+        plan,
+        tile,
+        size: band.size,
+        heights,
+        occlusion: None,
+    };
+    // Two maps may show it, and it takes the longest.
+    let shows_occlusion = |kind: &MapKind| matches!(kind, MapKind::Occlusion | MapKind::Orm);
+    if kinds.iter().any(shows_occlusion) {
+        around.occlusion = Some(around.make_occlusion()?);
+    }
+    let mut maps = Vec::with_capacity(kinds.len());
+    for &kind in kinds {
+        let rows = match kind {
+            MapKind::Height => MapRows::Gray(around.height()?),
+            MapKind::Normal => MapRows::Normal(around.normal()?),
+            MapKind::Occlusion => MapRows::Gray(around.occlusion()?.clone()),
+            MapKind::Curvature => MapRows::Gray(around.curvature()?),
+            MapKind::Albedo => match local() {
+                Values::Colors(colors) => MapRows::Color(Raster::from_vec(band.size, colors)?),
+                Values::Numbers(grays) => {
+                    let colors = grays.into_iter().map(LinearRgb::gray).collect();
+                    MapRows::Color(Raster::from_vec(band.size, colors)?)
+                }
+            },
+            MapKind::Roughness | MapKind::Metallic => MapRows::Gray(numbers(local(), band.size)?),
+            MapKind::Orm => {
+                let [roughness, metallic] =
+                    [numbers(local(), band.size)?, numbers(local(), band.size)?];
+                MapRows::Packed(pack(around.occlusion()?, &roughness, &metallic)?)
+            }
+        };
+        maps.push((kind, rows));
+    }
+    Ok(maps)
+}
+
+fn numbers(values: Values, size: [u32; 2]) -> Result<Raster<f32>, RecipeError> {
+    let numbers = match values {
+        Values::Numbers(numbers) => numbers,
+        Values::Colors(colors) => colors.into_iter().map(LinearRgb::luminance).collect(),
+    };
+    Ok(Raster::from_vec(size, numbers)?)
+}
+
+fn pack(
+    red: &Raster<f32>,
+    green: &Raster<f32>,
+    blue: &Raster<f32>,
+) -> Result<Raster<[f32; 3]>, RecipeError> {
+    let two = red.zip_map(green, |&red, &green| [red, green])?;
+    Ok(two.zip_map(blue, |&[red, green], &blue| [red, green, blue])?)
+}
+
+/// The maps that look around a pixel.
+struct Around<'a> {
+    plan: &'a Plan,
+    tile: [u32; 2],
+    size: [u32; 2],
+    heights: &'a Margined,
+    /// Made where a map shows it.
+    occlusion: Option<Raster<f32>>,
+}
+
+impl Around<'_> {
+    /// The heights with a margin; there are some wherever a map is made of them.
+    fn margined(&self) -> Result<&Raster<f32>, RecipeError> {
+        foreseen(self.heights.raster.as_ref())
+    }
+
+    /// The occlusion; there is some wherever a map shows it.
+    fn occlusion(&self) -> Result<&Raster<f32>, RecipeError> {
+        foreseen(self.occlusion.as_ref())
+    }
+
+    fn height(&self) -> Result<Raster<f32>, RecipeError> {
+        Ok(self.margined()?.crop(self.heights.halo, self.size)?)
+    }
+
+    fn normal(&self) -> Result<Raster<Normal>, RecipeError> {
+        let material = self.plan.material();
+        let options = NormalOptions {
+            strength: material.relief,
+            extent: self.plan.extent(),
+            wrap: [Wrap::Clamp; 2],
+            y: material.normal_y,
+        };
+        let normals = normal_map_of_part(self.margined()?, self.tile, &options)?;
+        Ok(normals.crop(self.heights.halo, self.size)?)
+    }
+
+    fn make_occlusion(&self) -> Result<Raster<f32>, RecipeError> {
+        let free =
+            ambient_occlusion_of_part(self.margined()?, self.tile, &occlusion_options(self.plan)?)?;
+        Ok(free.crop(self.heights.halo, self.size)?)
+    }
+
+    fn curvature(&self) -> Result<Raster<f32>, RecipeError> {
+        let options = curvature_options(self.plan)?;
+        let curved = curvature_of_part(self.margined()?, self.tile, &options)?;
+        let gray = curved.map(|&curvature| curvature_to_gray(curvature, options.radius as f32));
+        Ok(gray.crop(self.heights.halo, self.size)?)
+    }
+}
+
+/// What is made before the maps that need it.
+fn foreseen(raster: Option<&Raster<f32>>) -> Result<&Raster<f32>, RecipeError> {
+    raster.ok_or_else(|| {
+        let rule = "a map was not foreseen";
+        RecipeError::new(crate::RecipeErrorKind::Conflict { rule })
+    })
+}

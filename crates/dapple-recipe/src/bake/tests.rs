@@ -1,0 +1,418 @@
+//! Tests of bakes: bands, regions, threads and looks around a pixel.
+
+use crate::{
+    Bake, BakeMemory, BakeOptions, Images, MapKind, MapRows, Picture, Plan, Recipe,
+    RecipeErrorKind, Region,
+};
+use dapple_color::LinearRgb;
+use dapple_raster::{Raster, Wrap};
+use std::sync::Arc;
+
+const ALL_NODES: &str = r##"
+dapple = 1
+seed = 7
+extent = [4.0, 3.0]
+
+[nodes]
+shifted = { warp = { input = "cells", x = "bumps", y = 0.25, amount = 0.3 } }
+sum = { add = ["shifted", 0.1, "band"] }
+product = { multiply = ["sum", "fine"] }
+ratio = { divide = ["product", "cells"] }
+least = { minimum = ["ratio", "patches"] }
+most = { maximum = ["least", "far"] }
+rest = { subtract = ["most", "along"] }
+size = { absolute = "rest" }
+squared = { power = { input = "size", exponent = 2.0 } }
+rings = { wave = { input = "far", frequency = 3.0, form = "triangle" } }
+flat = { levels = { input = "squared", from = [0.0, 2.0], curve = "smooth" } }
+bump = { profile = { input = "cells", shape = { spots = { radius = 0.5 } } } }
+height = { mix = { from = "flat", to = "bump", by = "rings" } }
+colors = { ramp = { input = "height", colors = ["#102030", "#f0e0c0"] } }
+both = { mix = { from = "colors", to = "#ff0000", by = "patches" } }
+layered = { blend = { layers = [{ input = "both" }, { input = "noise_colors", weight = "rings" }] } }
+noise_colors = { pups = { color_noise = { spacing = 0.5 } } }
+
+[nodes.cells.worley]
+frequency = 2.0
+
+[nodes.fine.worley]
+frequency = 3.0
+value = "cell_value"
+
+[nodes.bumps.wavelet]
+frequency = 4.0
+
+[nodes.band.noise]
+frequency = 2.0
+octaves = 2
+
+[nodes.patches.pups.cow]
+spacing = 0.4
+
+[nodes.far.distance]
+center = [1.0, 2.5]
+
+[nodes.along.coordinate]
+along = [0.25, 0.0]
+
+[material]
+height = "height"
+albedo = "layered"
+roughness = "rings"
+metallic = "patches"
+"##;
+
+fn plan(text: &str) -> Plan {
+    let recipe = Recipe::from_toml(text).unwrap_or_else(|error| panic!("{error}"));
+    Plan::new(&recipe, &Images::new(), 0.0).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// All maps of a bake, each as the bits of its numbers in rows.
+fn bake(plan: &Plan, options: &BakeOptions) -> Vec<Vec<u32>> {
+    let mut maps = vec![Vec::new(); options.maps.len()];
+    for band in Bake::new(plan, options).unwrap() {
+        for (bits, (_, rows)) in maps.iter_mut().zip(band.unwrap().maps) {
+            match rows {
+                MapRows::Gray(raster) => {
+                    bits.extend(raster.pixels().iter().map(|value| value.to_bits()));
+                }
+                MapRows::Color(raster) => {
+                    bits.extend(
+                        raster
+                            .pixels()
+                            .iter()
+                            .flat_map(|color| color.to_array().map(f32::to_bits)),
+                    );
+                }
+                MapRows::Normal(raster) => {
+                    bits.extend(
+                        raster
+                            .pixels()
+                            .iter()
+                            .flat_map(|normal| normal.to_array().map(f32::to_bits)),
+                    );
+                }
+                MapRows::Packed(raster) => {
+                    bits.extend(raster.pixels().iter().flatten().map(|part| part.to_bits()));
+                }
+            }
+        }
+    }
+    maps
+}
+
+fn options(size: [u32; 2]) -> BakeOptions {
+    BakeOptions {
+        size,
+        maps: MapKind::ALL.to_vec(),
+        ..BakeOptions::default()
+    }
+}
+
+/// Part of a map with so many numbers a pixel.
+fn crop(map: &[u32], [width, height]: [u32; 2], region: Region) -> Vec<u32> {
+    let numbers = map.len() / (width * height) as usize;
+    let row = |row: u32| {
+        let first = (row * width + region.first[0]) as usize * numbers;
+        map[first..first + region.size[0] as usize * numbers].to_vec()
+    };
+    (region.first[1]..region.first[1] + region.size[1])
+        .flat_map(row)
+        .collect()
+}
+
+#[test]
+fn a_region_is_the_crop_of_the_whole_bit_for_bit() {
+    let plan = plan(ALL_NODES);
+    for size in [[96, 72], [97, 71]] {
+        let whole = bake(&plan, &options(size));
+        for region in [
+            Region {
+                first: [0, 0],
+                size: [13, 9],
+            },
+            Region {
+                first: [40, 31],
+                size: [56, 40],
+            },
+            Region {
+                first: [size[0] - 1, size[1] - 1],
+                size: [1, 1],
+            },
+        ] {
+            let part = bake(
+                &plan,
+                &BakeOptions {
+                    region: Some(region),
+                    ..options(size)
+                },
+            );
+            for ((map, whole), part) in MapKind::ALL.iter().zip(&whole).zip(&part) {
+                assert!(
+                    crop(whole, size, region) == *part,
+                    "{map:?} of {region:?} in {size:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_wide_bake_in_many_bands_has_the_bits_of_its_regions() {
+    // More than a band's pixels, so that there are several.
+    let (size, plan) = ([40_000, 60], plan(ALL_NODES));
+    let maps = vec![MapKind::Normal, MapKind::Occlusion, MapKind::Roughness];
+    let wide = BakeOptions {
+        size,
+        maps,
+        memory: BakeMemory::Banded,
+        region: None,
+    };
+    assert!(
+        Bake::new(&plan, &wide).unwrap().count() > 1,
+        "several bands"
+    );
+    let region = Region {
+        first: [39_900, 0],
+        size: [100, 60],
+    };
+    let whole = bake(&plan, &wide);
+    let part = bake(
+        &plan,
+        &BakeOptions {
+            region: Some(region),
+            ..wide.clone()
+        },
+    );
+    for ((map, whole), part) in wide.maps.iter().zip(&whole).zip(&part) {
+        assert!(crop(whole, size, region) == *part, "{map:?}");
+    }
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn a_bake_has_the_same_bits_on_any_number_of_threads() {
+    let plan = plan(ALL_NODES);
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| bake(&plan, &options([300, 300])))
+    };
+    let one = on(1);
+    for threads in [2, 7] {
+        assert!(on(threads) == one, "{threads} threads");
+    }
+}
+
+#[test]
+fn a_recipe_that_repeats_has_its_left_columns_past_its_right_edge() {
+    // A power of two, so that positions past the edge are those at the other side to the last bit.
+    let text = ALL_NODES
+        .replace("extent = [4.0, 3.0]", "extent = [4.0, 4.0]")
+        .replace("frequency = 3.0\nvalue", "frequency = 2.0\nvalue");
+    // A coordinate does not repeat.
+    let text = text.replace("along = [0.25, 0.0]", "along = [0.0, 0.0]");
+    let plan = plan(&text);
+    let window = plan.window([64, 64]).unwrap();
+    let height = plan.height();
+    let beyond = window.crop([64, 0], [8, 64]).unwrap();
+    let [here, there] = [window.crop([0, 0], [8, 64]).unwrap(), beyond].map(|window| {
+        use dapple_raster::Field;
+        height.to_raster(&window).unwrap()
+    });
+    assert_eq!(here, there, "one period apart");
+}
+
+#[test]
+fn a_field_of_a_node_gives_the_same_at_a_position_as_in_a_window() {
+    use dapple_raster::Field;
+    let plan = plan(ALL_NODES);
+    let window = plan.window([37, 29]).unwrap();
+    for name in ["height", "shifted", "fine", "bumps", "ratio", "rings"] {
+        let field = plan.field(name).unwrap();
+        let raster = field.to_raster(&window).unwrap();
+        for (column, row) in [(0, 0), (20, 3), (36, 28)] {
+            let sample = field.sample(window.position(column, row));
+            assert_eq!(
+                sample.to_bits(),
+                raster.row(row)[column as usize].to_bits(),
+                "{name} at {column}, {row}"
+            );
+        }
+    }
+    let colors = plan.colors("layered").unwrap();
+    let raster = colors.to_raster(&window).unwrap();
+    assert_eq!(
+        colors.sample(window.position(5, 7)),
+        raster.row(7)[5],
+        "colors"
+    );
+    assert!(
+        plan.field("layered").is_none() && plan.colors("height").is_none(),
+        "each of its kind"
+    );
+}
+
+#[test]
+fn what_sees_the_whole_tile_is_refused_in_bands_and_right_in_regions() {
+    let text = r#"
+dapple = 1
+[nodes.slope.coordinate]
+along = [1.0, 0.5]
+[nodes.even.tile]
+input = "slope"
+method = "periodic"
+[material]
+height = "even"
+"#;
+    let plan = plan(text);
+    assert!(plan.sees_whole(), "a tile does");
+    let size = [48, 32];
+    let banded = BakeOptions {
+        memory: BakeMemory::Banded,
+        ..options(size)
+    };
+    let error = Bake::new(&plan, &banded).unwrap_err();
+    assert!(
+        matches!(error.kind(), RecipeErrorKind::Global { .. }),
+        "{error}"
+    );
+    assert_eq!(error.node(), Some("even"), "{error}");
+    let region = Region {
+        first: [30, 20],
+        size: [18, 12],
+    };
+    let whole = bake(&plan, &options(size));
+    let part = bake(
+        &plan,
+        &BakeOptions {
+            region: Some(region),
+            ..options(size)
+        },
+    );
+    for ((map, whole), part) in MapKind::ALL.iter().zip(&whole).zip(&part) {
+        assert!(crop(whole, size, region) == *part, "{map:?}");
+    }
+    let step = f32::from_bits(whole[0][47]) - f32::from_bits(whole[0][0]);
+    assert!(
+        step.abs() < 0.3,
+        "of a slope of 1, a step of {step} is left at the seam"
+    );
+}
+
+#[test]
+fn an_image_is_read_pixel_by_pixel_at_its_own_size() {
+    let image = Raster::from_fn([32, 16], |x, y| {
+        LinearRgb::new(x as f32 / 32.0, y as f32 / 16.0, 0.5)
+    })
+    .unwrap();
+    let images = Images::from([(
+        "photo.png".to_owned(),
+        Picture::Colors(Arc::new(image.clone())),
+    )]);
+    let text = "dapple = 1\nextent = [2.0, 1.0]\n[nodes.photo.image]\nfile = \"photo.png\"\n[material]\nalbedo = \"photo\"\n";
+    let recipe = Recipe::from_toml(text).unwrap();
+    assert_eq!(recipe.image_files(), ["photo.png"], "what it names");
+    let plan = Plan::new(&recipe, &images, 0.0).unwrap();
+    let maps = vec![MapKind::Albedo];
+    let mut bake = Bake::new(
+        &plan,
+        &BakeOptions {
+            size: [32, 16],
+            maps,
+            ..BakeOptions::default()
+        },
+    )
+    .unwrap();
+    let (_, rows) = bake.next().unwrap().unwrap().maps.swap_remove(0);
+    assert_eq!(rows, MapRows::Color(image), "as it was");
+    let error = Plan::new(&recipe, &Images::new(), 0.0).unwrap_err();
+    assert!(
+        matches!(error.kind(), RecipeErrorKind::NoImage { .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_loop_in_time_joins_and_moves() {
+    let text = "dapple = 1\n[nodes.sea.worley]\nfrequency = 4.0\nmotion = { cells = 2 }\n[material]\nheight = \"sea\"\n";
+    let recipe = Recipe::from_toml(text).unwrap();
+    let at = |time: f64| {
+        let plan = Plan::new(&recipe, &Images::new(), time).unwrap();
+        bake(
+            &plan,
+            &BakeOptions {
+                size: [32, 32],
+                ..BakeOptions::default()
+            },
+        )
+    };
+    assert!(at(0.0) == at(1.0), "the end is the beginning");
+    assert!(at(0.0) != at(0.5), "it moves");
+}
+
+#[test]
+fn value_stability_of_a_bake_of_all_nodes() {
+    let plan = plan(ALL_NODES);
+    let maps = bake(&plan, &options([64, 48]));
+    // FNV-1a over the bits of each map.
+    let hash = |map: &Vec<u32>| {
+        let bytes = map.iter().flat_map(|bits| bits.to_le_bytes());
+        bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+        })
+    };
+    let hashes: Vec<u64> = maps.iter().map(hash).collect();
+    let expected = [
+        0x4a45_2747_2b86_d68c,
+        0x2ad4_d351_6aa6_b7b4,
+        0x0a32_8f34_3316_5176,
+        0x65de_f0f3_3567_8560,
+        0xc6a4_1528_c65e_4225,
+        0x6410_36c6_e89e_3875,
+        0x869a_c710_6856_dc78,
+        0x677d_0ba7_4676_b9d7,
+    ];
+    assert_eq!(hashes, expected, "the bits of the maps");
+}
+
+#[test]
+fn normals_wrap_where_the_recipe_does() {
+    use dapple_color::{NormalOptions, normal_map};
+    // A coordinate does not repeat.
+    let plan = plan(&ALL_NODES.replace("along = [0.25, 0.0]", "along = [0.0, 0.0]"));
+    let size = [64, 48];
+    let maps = vec![MapKind::Height, MapKind::Normal];
+    let baked = BakeOptions {
+        size,
+        maps,
+        ..BakeOptions::default()
+    };
+    let band = Bake::new(&plan, &baked).unwrap().next().unwrap().unwrap();
+    let [(_, MapRows::Gray(height)), (_, MapRows::Normal(normals))] = &band.maps[..] else {
+        panic!("two maps");
+    };
+    let options = NormalOptions {
+        strength: 0.1,
+        extent: plan.extent(),
+        wrap: [Wrap::Repeat; 2],
+        ..NormalOptions::default()
+    };
+    let expected = normal_map(height, &options).unwrap();
+    let inside = [1, 1];
+    let part = [62, 46];
+    assert_eq!(
+        normals.crop(inside, part).unwrap(),
+        expected.crop(inside, part).unwrap(),
+        "away from the edges"
+    );
+    // At the edges the heights beyond are sampled a rounding of the position away from where they wrap to.
+    for (a, b) in normals.row(0).iter().zip(expected.row(0)) {
+        assert!(
+            (a.x - b.x).abs() < 1e-3 && (a.y - b.y).abs() < 1e-3,
+            "{a:?} {b:?}"
+        );
+    }
+}

@@ -1,0 +1,94 @@
+//! What a node is given: a number, a color, or the name of another node.
+
+use core::fmt;
+use dapple_color::LinearRgb;
+use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
+use serde::ser::{Serialize, Serializer};
+
+/// What a node, or a map of the material, is given.
+///
+/// In a file: a number, a color such as `"#c08040"`, or the name of a node such as `"stones"`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Input {
+    /// The same number everywhere.
+    Number(f64),
+    /// The same color everywhere.
+    Color(LinearRgb),
+    /// What the node of this name makes.
+    Node(String),
+}
+
+impl From<f64> for Input {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<&str> for Input {
+    fn from(name: &str) -> Self {
+        Self::Node(name.to_owned())
+    }
+}
+
+impl Input {
+    /// The name of the node, where it is one.
+    pub(crate) fn node(&self) -> Option<&str> {
+        match self {
+            Self::Node(name) => Some(name),
+            Self::Number(_) | Self::Color(_) => None,
+        }
+    }
+}
+
+/// A color as sRGB in hexadecimal, rounded to 8 bits.
+pub(crate) fn hex_from_color(color: LinearRgb) -> String {
+    let [r, g, b] = color.to_srgb::<u8>();
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+impl Serialize for Input {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Number(number) => serializer.serialize_f64(*number),
+            Self::Color(color) => serializer.serialize_str(&hex_from_color(*color)),
+            Self::Node(name) => serializer.serialize_str(name),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Input {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(InputVisitor)
+    }
+}
+
+struct InputVisitor;
+
+impl Visitor<'_> for InputVisitor {
+    type Value = Input;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number, a color such as \"#c08040\", or the name of a node")
+    }
+
+    fn visit_f64<E>(self, number: f64) -> Result<Input, E> {
+        Ok(Input::Number(number))
+    }
+
+    fn visit_i64<E>(self, number: i64) -> Result<Input, E> {
+        Ok(Input::Number(number as f64))
+    }
+
+    fn visit_u64<E>(self, number: u64) -> Result<Input, E> {
+        Ok(Input::Number(number as f64))
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<Input, E> {
+        if !text.starts_with('#') {
+            return Ok(Input::Node(text.to_owned()));
+        }
+        let color = LinearRgb::from_hex(text)
+            .map_err(|_| E::invalid_value(Unexpected::Str(text), &"a color such as \"#c08040\""))?;
+        Ok(Input::Color(color))
+    }
+}

@@ -1,0 +1,28 @@
+//! Recipes and materials as data: textures in TOML or JSON, and the maps that are baked from them.
+#![forbid(unsafe_code)]
+
+mod bake;
+mod builtin;
+mod error;
+mod input;
+mod node;
+mod operation;
+mod plan;
+mod recipe;
+mod rust;
+mod text;
+
+pub use bake::{Bake, BakeMemory, BakeOptions, Band, MapKind, MapRows, Region};
+pub use dapple_color as color;
+pub use dapple_hash as hash;
+pub use dapple_raster as raster;
+pub use error::{Place, RecipeError, RecipeErrorKind};
+pub use input::Input;
+pub use node::*;
+pub use operation::{
+    coordinate, distance, levels, maximum, minimum, mix, mix_colors, multiply_colors, power,
+    quotient, wave,
+};
+pub use plan::{Images, NodeColors, NodeField, Picture, Plan, Values, Whole};
+pub use recipe::{Material, Recipe, SCHEMA};
+pub use text::MAX_TEXT;

@@ -1,0 +1,263 @@
+//! A recipe that is ready to be evaluated: every name found, every seed given, every field made.
+//!
+//! The nodes become steps in an order in which the inputs of each come before it. A window, or a list of positions, is
+//! evaluated step by step, each step once. What every pixel gets depends on its position alone, except after the steps
+//! that see the whole tile, which are evaluated beforehand for a whole picture: see [`Plan::whole`].
+
+mod evaluate;
+mod fields;
+mod generate;
+mod order;
+mod pups;
+mod step;
+mod whole;
+
+pub use fields::{NodeColors, NodeField};
+pub(crate) use generate::Generator;
+pub(crate) use order::{order, unknown};
+pub(crate) use step::Layers;
+pub use whole::Whole;
+pub(crate) use whole::blend_values;
+
+use crate::{Input, Material, Recipe, RecipeError, RecipeErrorKind};
+use dapple_color::LinearRgb;
+use dapple_raster::{Raster, Window};
+use glam::DVec2;
+use indexmap::IndexMap;
+use std::sync::Arc;
+use step::Step;
+
+/// What a node makes: numbers or colors, with one value for each position.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Numbers.
+    Numbers(Vec<f32>),
+    /// Colors, linear.
+    Colors(Vec<LinearRgb>),
+}
+
+/// An image that a recipe may name.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Picture {
+    /// Numbers, as they are.
+    Numbers(Arc<Raster<f32>>),
+    /// Colors, linear.
+    Colors(Arc<Raster<LinearRgb>>),
+}
+
+/// The images that a recipe names, by those names.
+pub type Images = std::collections::BTreeMap<String, Picture>;
+
+/// A recipe, ready to be evaluated.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_recipe::{Images, Plan, Recipe};
+/// use dapple_recipe::raster::{Field, Window};
+///
+/// let recipe = Recipe::builtin("flagstone")?;
+/// let plan = Plan::new(&recipe, &Images::new(), 0.0)?;
+/// let height = plan.height();
+/// let raster = height.to_raster(&plan.window([64, 64])?)?;
+/// assert!(raster.pixels().iter().all(|height| (0.0..=1.0).contains(height)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Plan {
+    extent: DVec2,
+    wrap: [bool; 2],
+    steps: Arc<[Step]>,
+    names: IndexMap<String, usize>,
+    channels: Channels,
+    material: Material,
+}
+
+/// The steps that the maps of the material are made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Channels {
+    pub(crate) height: usize,
+    pub(crate) albedo: usize,
+    pub(crate) roughness: usize,
+    pub(crate) metallic: usize,
+}
+
+impl Recipe {
+    /// The images that the recipe names, each once, in the order of its nodes.
+    #[must_use]
+    pub fn image_files(&self) -> Vec<&str> {
+        let mut files = Vec::new();
+        for node in self.nodes.values() {
+            if let Some(file) = node.image_file()
+                && !files.contains(&file)
+            {
+                files.push(file);
+            }
+        }
+        files
+    }
+}
+
+impl Plan {
+    /// Makes everything that the recipe names. `time` is the part of a loop that has passed, for what moves.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the recipe, with the node in which it is: names that do not exist, circles, colors where numbers
+    /// are needed, numbers out of range, and what the crates of the nodes refuse.
+    pub fn new(recipe: &Recipe, images: &Images, time: f64) -> Result<Self, RecipeError> {
+        RecipeError::check(time.is_finite(), "time", time, "finite")?;
+        for side in recipe.extent {
+            RecipeError::check(
+                side > 0.0 && side <= 1e6,
+                "extent",
+                side,
+                "above 0 and at most 1e6",
+            )?;
+        }
+        let mut builder = step::Builder::new(recipe, images, time);
+        let mut names = IndexMap::new();
+        for name in order(recipe)? {
+            let step = builder.node(name, &recipe.nodes[name]);
+            names.insert(name.to_owned(), step.map_err(|error| error.within(name))?);
+        }
+        let channels = channels(recipe, &mut builder).map_err(|error| error.within("material"))?;
+        Ok(Self {
+            extent: recipe.extent.into(),
+            wrap: recipe.wrap,
+            steps: builder.into_steps().into(),
+            names,
+            channels,
+            material: recipe.material.clone(),
+        })
+    }
+
+    /// The width and height of the tile, in units of the plane.
+    #[must_use]
+    pub fn extent(&self) -> DVec2 {
+        self.extent
+    }
+
+    /// The window that covers the tile with so many pixels. It may have more than a raster can.
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](RecipeErrorKind::Range) if a side has no pixel.
+    pub fn window(&self, size: [u32; 2]) -> Result<Window, RecipeError> {
+        for side in size {
+            RecipeError::check(
+                side > 0,
+                "number of pixels along a side",
+                side.into(),
+                "at least 1",
+            )?;
+        }
+        Ok(Window {
+            origin: DVec2::ZERO,
+            pixel: self.extent / DVec2::new(size[0].into(), size[1].into()),
+            first: [0, 0],
+            size,
+        })
+    }
+
+    /// The height of the material.
+    #[must_use]
+    pub fn height(&self) -> NodeField {
+        NodeField::new(self.steps.clone(), self.channels.height)
+    }
+
+    /// The number that a node makes at every position; none if there is no such node, or if it makes a color.
+    #[must_use]
+    pub fn field(&self, node: &str) -> Option<NodeField> {
+        let &step = self.names.get(node)?;
+        (!self.steps[step].is_color()).then(|| NodeField::new(self.steps.clone(), step))
+    }
+
+    /// The color that a node makes at every position; none if there is no such node, or if it makes a number.
+    #[must_use]
+    pub fn colors(&self, node: &str) -> Option<NodeColors> {
+        let &step = self.names.get(node)?;
+        self.steps[step]
+            .is_color()
+            .then(|| NodeColors::new(self.steps.clone(), step))
+    }
+
+    /// The values of steps at the pixels of a window, in the order of the steps, on all cores where the feature `rayon` is
+    /// on.
+    pub(crate) fn values(
+        &self,
+        whole: &Whole,
+        window: &Window,
+        wanted: &[usize],
+    ) -> Result<Vec<Values>, RecipeError> {
+        evaluate::window(&self.steps, whole, window, wanted)
+    }
+
+    pub(crate) fn material(&self) -> &Material {
+        &self.material
+    }
+
+    pub(crate) fn channels(&self) -> &Channels {
+        &self.channels
+    }
+
+    pub(crate) fn steps(&self) -> &Arc<[Step]> {
+        &self.steps
+    }
+}
+
+/// The steps of the material, which are made after all nodes.
+fn channels(recipe: &Recipe, builder: &mut step::Builder<'_>) -> Result<Channels, RecipeError> {
+    let material = &recipe.material;
+    let relief = material.relief;
+    RecipeError::check(relief.is_finite(), "relief", relief, "finite")?;
+    let height = builder.number(&material.height)?;
+    let albedo = match &material.albedo {
+        Some(albedo) => builder.any(albedo)?,
+        None => height,
+    };
+    Ok(Channels {
+        height,
+        albedo,
+        roughness: builder.number(&material.roughness)?,
+        metallic: builder.number(&material.metallic)?,
+    })
+}
+
+impl Values {
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Numbers(numbers) => numbers.len(),
+            Self::Colors(colors) => colors.len(),
+        }
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+impl Input {
+    /// The input as it is written, for messages.
+    pub(crate) fn written(&self) -> String {
+        match self {
+            Self::Number(number) => number.to_string(),
+            Self::Color(color) => format!("`{}`", crate::input::hex_from_color(*color)),
+            Self::Node(name) => format!("`{name}`"),
+        }
+    }
+}
+
+/// The refusal of a color where a number is needed.
+pub(crate) fn not_a_number(input: &Input) -> RecipeError {
+    RecipeError::new(RecipeErrorKind::NotANumber {
+        input: input.written(),
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,216 @@
+//! The values of steps at many positions.
+
+use super::step::{Laid, Step};
+use super::{Picture, Values, Whole};
+use crate::{RecipeError, RecipeErrorKind};
+use dapple_color::LinearRgb;
+use dapple_raster::{Raster, RasterViewMut, Texel, Window};
+use glam::DVec2;
+use std::sync::Arc;
+
+/// Where the values are wanted.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Places<'a> {
+    Window(&'a Window),
+    Positions(&'a [DVec2]),
+}
+
+impl Places<'_> {
+    fn count(&self) -> usize {
+        match self {
+            Self::Window(window) => window.n_pixels(),
+            Self::Positions(positions) => positions.len(),
+        }
+    }
+
+    /// All positions, row by row.
+    pub(super) fn positions(&self) -> Vec<DVec2> {
+        match self {
+            Self::Positions(positions) => positions.to_vec(),
+            Self::Window(window) => {
+                let rows = (0..window.size[1]).map(|row| window.row_y(row));
+                let row = |y| {
+                    (0..window.size[0]).map(move |column| DVec2::new(window.column_x(column), y))
+                };
+                rows.flat_map(row).collect()
+            }
+        }
+    }
+}
+
+/// The values of the steps `wanted`, in their order.
+pub(super) fn evaluate(
+    steps: &[Step],
+    whole: Option<&Whole>,
+    places: Places<'_>,
+    wanted: &[usize],
+) -> Result<Vec<Arc<Values>>, RecipeError> {
+    let mut values: Vec<Option<Arc<Values>>> = vec![None; steps.len()];
+    for index in needed(steps, wanted) {
+        values[index] = Some(Arc::new(step(steps, whole, places, index, &values)?));
+    }
+    let value = |&index: &usize| values[index].clone().expect("what is wanted is needed");
+    Ok(wanted.iter().map(value).collect())
+}
+
+/// The pixels that a thread takes at a time.
+const CHUNK_PIXELS: u32 = 1 << 16;
+
+/// The values of the steps `wanted` at the pixels of a window, on all cores where the feature `rayon` is on.
+pub(super) fn window(
+    steps: &[Step],
+    whole: &Whole,
+    window: &Window,
+    wanted: &[usize],
+) -> Result<Vec<Values>, RecipeError> {
+    if wanted.is_empty() {
+        return Ok(Vec::new());
+    }
+    let [width, height] = window.size;
+    let rows = (CHUNK_PIXELS / width.max(1)).max(1);
+    let chunk = |chunk: u32| {
+        let first = chunk * rows;
+        let part = Window {
+            first: [
+                window.first[0],
+                window.first[1].saturating_add(first.into()),
+            ],
+            size: [width, rows.min(height - first)],
+            ..*window
+        };
+        evaluate(steps, Some(whole), Places::Window(&part), wanted)
+    };
+    let chunks = 0..height.div_ceil(rows);
+    #[cfg(feature = "rayon")]
+    let chunks: Result<Vec<_>, _> = {
+        use rayon::prelude::*;
+        chunks.into_par_iter().map(chunk).collect()
+    };
+    #[cfg(not(feature = "rayon"))]
+    let chunks: Result<Vec<_>, _> = chunks.map(chunk).collect();
+    Ok(join(&chunks?))
+}
+
+/// The values of all chunks, one after the other, for each of the steps.
+fn join(chunks: &[Vec<Arc<Values>>]) -> Vec<Values> {
+    let steps = chunks.first().map_or(0, Vec::len);
+    let of_step = |step: usize| {
+        let parts = chunks.iter().map(|chunk| chunk[step].as_ref());
+        let mut numbers = Vec::new();
+        let mut colors = Vec::new();
+        for part in parts {
+            match part {
+                Values::Numbers(more) => numbers.extend_from_slice(more),
+                Values::Colors(more) => colors.extend_from_slice(more),
+            }
+        }
+        if colors.is_empty() {
+            Values::Numbers(numbers)
+        } else {
+            Values::Colors(colors)
+        }
+    };
+    (0..steps).map(of_step).collect()
+}
+
+/// The steps that are needed for others, in their order. What a warp asks elsewhere is not needed here, and what sees the
+/// whole tile has been evaluated before.
+fn needed(steps: &[Step], wanted: &[usize]) -> Vec<usize> {
+    let mut needed = vec![false; steps.len()];
+    wanted.iter().for_each(|&index| needed[index] = true);
+    for index in (0..steps.len()).rev() {
+        if needed[index] {
+            match &steps[index] {
+                Step::Warp { by, .. } => by.iter().for_each(|&input| needed[input] = true),
+                Step::Global(..) => {}
+                step => step
+                    .inputs()
+                    .into_iter()
+                    .for_each(|input| needed[input] = true),
+            }
+        }
+    }
+    (0..steps.len()).filter(|&index| needed[index]).collect()
+}
+
+fn step(
+    steps: &[Step],
+    whole: Option<&Whole>,
+    places: Places<'_>,
+    index: usize,
+    values: &[Option<Arc<Values>>],
+) -> Result<Values, RecipeError> {
+    let count = places.count();
+    let made = |input: &usize| values[*input].as_deref().expect("inputs come before");
+    match &steps[index] {
+        Step::Number(number) => Ok(Values::Numbers(vec![*number; count])),
+        Step::Color(color) => Ok(Values::Colors(vec![*color; count])),
+        Step::Field(field) => {
+            let mut numbers = vec![0.0; count];
+            match places {
+                Places::Window(window) => {
+                    let view =
+                        RasterViewMut::new(&mut numbers, window.size[0] as usize, window.size)?;
+                    field.render(window, view)?;
+                }
+                Places::Positions(positions) => field.sample_many(positions, &mut numbers)?,
+            }
+            Ok(Values::Numbers(numbers))
+        }
+        Step::Image(laid) => Ok(laid.at(&places.positions())),
+        Step::ColorNoise(texture) => {
+            let colors = match places {
+                Places::Window(window) => texture.to_raster(window)?.into_pixels(),
+                Places::Positions(positions) => {
+                    positions.iter().map(|&at| texture.sample(at)).collect()
+                }
+            };
+            Ok(Values::Colors(
+                colors.into_iter().map(LinearRgb::from).collect(),
+            ))
+        }
+        Step::Local(operation, inputs, _) => {
+            let inputs: Vec<_> = inputs.iter().map(made).collect();
+            operation.apply(&inputs, count)
+        }
+        Step::Warp {
+            input, by, amount, ..
+        } => {
+            let [x, y] = [made(&by[0]), made(&by[1])];
+            let shifted = shifted(places.positions(), x, y, *amount);
+            let input = evaluate(steps, whole, Places::Positions(&shifted), &[*input])?;
+            Ok(Values::clone(&input[0]))
+        }
+        Step::Global(..) => match whole {
+            Some(whole) => whole.at(index, places),
+            None => Err(RecipeError::new(RecipeErrorKind::Global {
+                during: "at single positions",
+            })),
+        },
+    }
+}
+
+/// The positions, shifted by the amount times two numbers for each.
+fn shifted(mut positions: Vec<DVec2>, x: &Values, y: &Values, amount: f64) -> Vec<DVec2> {
+    if let (Values::Numbers(x), Values::Numbers(y)) = (x, y) {
+        for (position, (&x, &y)) in positions.iter_mut().zip(x.iter().zip(y)) {
+            *position += amount * DVec2::new(x.into(), y.into());
+        }
+    }
+    positions
+}
+
+impl Laid {
+    /// The values of the image at positions of the plane.
+    pub(super) fn at(&self, positions: &[DVec2]) -> Values {
+        match &self.picture {
+            Picture::Numbers(raster) => Values::Numbers(self.read(raster, positions)),
+            Picture::Colors(raster) => Values::Colors(self.read(raster, positions)),
+        }
+    }
+
+    fn read<T: Texel>(&self, raster: &Raster<T>, positions: &[DVec2]) -> Vec<T> {
+        let uv = positions.iter().map(|&position| position / self.extent);
+        uv.map(|uv| raster.sample_bilinear(uv, self.wrap)).collect()
+    }
+}

@@ -1,0 +1,445 @@
+//! The fields of nodes that make something of nothing but a seed.
+//!
+//! A field that has a frequency is asked at the position times the frequency. Where the frequency is a power of two this
+//! is exact, and a whole window is rendered at once; else each position is multiplied on its own, so that a window has the
+//! bits of its positions.
+
+use super::{Images, Picture};
+use crate::operation::{coordinate, distance};
+use crate::{
+    Coordinate, Distance, Fractal, FractalBasis, Motion, NodeSeed, Recipe, RecipeError,
+    RecipeErrorKind, WaveletNode, WorleyNode, WorleyValue,
+};
+use dapple_hash::Seed;
+use dapple_points::Domain;
+use dapple_pups::{OctavesOptions, Spacing, octaves};
+use dapple_raster::{Field, RasterError, RasterViewMut, Window, Wrap};
+use dapple_wavelet::WaveletNoise2;
+use dapple_worley::{Axes, Metric, Space, Worley, Worley2, Worley4};
+use glam::DVec2;
+use std::sync::Arc;
+
+/// The cells of a wavelet tile along axes that do not repeat.
+const UNBOUND_TILE: u32 = 128;
+
+/// Makes the fields of a recipe.
+pub(crate) struct Generator<'a> {
+    pub(crate) recipe: &'a Recipe,
+    pub(crate) images: &'a Images,
+    /// The part of a loop that has passed.
+    pub(crate) time: f64,
+}
+
+impl Generator<'_> {
+    pub(super) fn extent(&self) -> DVec2 {
+        self.recipe.extent.into()
+    }
+
+    /// What lies past the edges of the tile.
+    pub(super) fn wrap(&self) -> [Wrap; 2] {
+        self.recipe
+            .wrap
+            .map(|wraps| if wraps { Wrap::Repeat } else { Wrap::Clamp })
+    }
+
+    /// The tile as a domain.
+    pub(super) fn domain(&self) -> Domain {
+        Domain {
+            origin: DVec2::ZERO,
+            size: self.extent(),
+            wrap: self.recipe.wrap,
+        }
+    }
+
+    /// An image that the recipe names.
+    pub(super) fn image(&self, file: &str) -> Result<&Picture, RecipeError> {
+        self.images.get(file).ok_or_else(|| {
+            let file = file.to_owned();
+            RecipeError::new(RecipeErrorKind::NoImage { file })
+        })
+    }
+
+    /// The seed of a node.
+    pub(super) fn seed(&self, name: &str, other: Option<&NodeSeed>) -> Seed {
+        match other {
+            None => self.recipe.seed.child(name, 0),
+            Some(NodeSeed::Name(name)) => self.recipe.seed.child(name, 0),
+            Some(NodeSeed::Seed(seed)) => *seed,
+        }
+    }
+
+    pub(super) fn worley(
+        &self,
+        name: &str,
+        node: &WorleyNode,
+    ) -> Result<Arc<dyn Field>, RecipeError> {
+        let seed = self.seed(name, node.seed.as_ref());
+        let [x, y] = self.periods(node.frequency.0)?;
+        let field = match node.motion {
+            None => {
+                let worley = Worley2::new(seed).with_period([x, y])?;
+                plane_field(node, worley)?
+            }
+            Some(Motion { cells, z }) => {
+                RecipeError::check(z.is_finite(), "place along z", z, "finite")?;
+                let worley = Worley4::new(seed).with_period([x, y, None, Some(cells)])?;
+                moving_field(node, worley, [z, self.time * f64::from(cells)])?
+            }
+        };
+        Ok(Arc::new(Scaled {
+            field,
+            frequency: node.frequency.0.into(),
+        }))
+    }
+
+    /// The cells of the tile along each axis that repeats.
+    pub(crate) fn periods(&self, frequency: [f64; 2]) -> Result<[Option<u32>; 2], RecipeError> {
+        let mut periods = [None; 2];
+        for axis in 0..2 {
+            let holds = frequency[axis] > 0.0 && frequency[axis] <= 1e6;
+            RecipeError::check(
+                holds,
+                "frequency",
+                frequency[axis],
+                "above 0 and at most 1e6",
+            )?;
+            if self.recipe.wrap[axis] {
+                let cells = self.recipe.extent[axis] * frequency[axis];
+                let whole = cells >= 1.0 && cells.fract() == 0.0 && cells <= f64::from(u32::MAX);
+                let range =
+                    "a whole number, at least 1 (extent times frequency, since the recipe repeats)";
+                RecipeError::check(
+                    whole,
+                    "number of cells along a side of the tile",
+                    cells,
+                    range,
+                )?;
+                periods[axis] = Some(cells as u32);
+            }
+        }
+        Ok(periods)
+    }
+
+    pub(super) fn wavelet(
+        &self,
+        name: &str,
+        node: &WaveletNode,
+    ) -> Result<Arc<dyn Field>, RecipeError> {
+        self.wavelet_noise(
+            self.seed(name, node.seed.as_ref()),
+            node.frequency,
+            &node.weights,
+        )
+    }
+
+    fn wavelet_noise(
+        &self,
+        seed: Seed,
+        frequency: f64,
+        weights: &[f32],
+    ) -> Result<Arc<dyn Field>, RecipeError> {
+        let noise =
+            WaveletNoise2::new(self.wavelet_cells(frequency)?, seed)?.with_weights(weights)?;
+        Ok(Arc::new(Scaled {
+            field: Arc::new(noise),
+            frequency: DVec2::splat(frequency),
+        }))
+    }
+
+    /// The cells of the tile of wavelet noise.
+    pub(crate) fn wavelet_cells(&self, frequency: f64) -> Result<u32, RecipeError> {
+        let cells = self.periods([frequency; 2])?;
+        let cells = cells.into_iter().flatten().reduce(greatest_common_divisor);
+        Ok(cells.unwrap_or(UNBOUND_TILE))
+    }
+
+    pub(super) fn noise(&self, name: &str, node: &Fractal) -> Result<Arc<dyn Field>, RecipeError> {
+        let seed = self.seed(name, node.seed.as_ref());
+        let frequency = node.frequency;
+        RecipeError::check(
+            frequency > 0.0 && frequency <= 1e6,
+            "frequency",
+            frequency,
+            "above 0 and at most 1e6",
+        )?;
+        let count = node.octaves;
+        RecipeError::check(
+            (1..=16).contains(&count),
+            "number of octaves",
+            count.into(),
+            "from 1 to 16",
+        )?;
+        RecipeError::check(
+            node.gain > 0.0 && node.gain <= 1.0,
+            "gain",
+            node.gain,
+            "above 0 and at most 1",
+        )?;
+        match node.basis {
+            FractalBasis::Pups => Ok(Arc::new(
+                octaves(&self.fractal_options(node), seed)?.normalized(),
+            )),
+            FractalBasis::Wavelet => {
+                let noise = self.wavelet_noise(seed, frequency, &Self::fractal_weights(node))?;
+                Ok(Arc::new(AboutHalf(noise)))
+            }
+        }
+    }
+
+    /// The options of the octaves of PUPs noise.
+    pub(crate) fn fractal_options(&self, node: &Fractal) -> OctavesOptions {
+        OctavesOptions {
+            domain: self.domain(),
+            spacing: Spacing::from(1.0 / node.frequency),
+            octaves: node.octaves,
+            gain: node.gain,
+            ..OctavesOptions::default()
+        }
+    }
+
+    /// The weights of the bands of wavelet noise, for a sixth of the standard deviation of their sum.
+    pub(crate) fn fractal_weights(node: &Fractal) -> Vec<f32> {
+        let weights = core::iter::successors(Some(1.0), |weight| Some(weight * node.gain));
+        let weights: Vec<f64> = weights.take(node.octaves as usize).collect();
+        let deviation = weights
+            .iter()
+            .map(|weight| weight * weight)
+            .sum::<f64>()
+            .sqrt();
+        weights
+            .into_iter()
+            .map(|weight| (weight / (6.0 * deviation)) as f32)
+            .collect()
+    }
+
+    pub(super) fn coordinate(&self, node: &Coordinate) -> Result<Arc<dyn Field>, RecipeError> {
+        for number in node.center.into_iter().chain(node.along) {
+            RecipeError::check(number.is_finite(), "part of a coordinate", number, "finite")?;
+        }
+        Ok(Arc::new(Along {
+            center: node.center.into(),
+            along: node.along.into(),
+        }))
+    }
+
+    pub(super) fn distance(&self, node: &Distance) -> Result<Arc<dyn Field>, RecipeError> {
+        for number in node.center {
+            RecipeError::check(number.is_finite(), "center", number, "finite")?;
+        }
+        Ok(Arc::new(From {
+            center: node.center.into(),
+            extent: self.extent(),
+            wrap: self.recipe.wrap,
+        }))
+    }
+}
+
+fn greatest_common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 {
+        a
+    } else {
+        greatest_common_divisor(b, a % b)
+    }
+}
+
+/// A cellular basis with the metric and the scatter of a node.
+fn basis<const N: usize>(node: &WorleyNode, worley: Worley<N>) -> Result<Worley<N>, RecipeError>
+where
+    Axes: Space<N>,
+{
+    match node.value {
+        WorleyValue::Combination(_) => {}
+        WorleyValue::CellValue => check_single(node, true)?,
+        WorleyValue::EdgeDistance => check_single(node, node.metric == Metric::Euclidean)?,
+    }
+    Ok(worley
+        .with_metric(node.metric)?
+        .with_scatter(node.scatter)?)
+}
+
+/// The field of a cellular basis of the plane.
+fn plane_field(node: &WorleyNode, worley: Worley2) -> Result<Arc<dyn Field>, RecipeError> {
+    let worley = basis(node, worley)?;
+    let combination = match node.value {
+        WorleyValue::Combination(combination) => combination,
+        WorleyValue::CellValue => return Ok(Arc::new(worley.cell_values())),
+        WorleyValue::EdgeDistance => return Ok(Arc::new(EdgeDistances(worley))),
+    };
+    let cellular = worley.combine(combination);
+    Ok(match (node.octaves, node.range) {
+        (None, None) => Arc::new(cellular),
+        (None, Some(range)) => Arc::new(cellular.with_range(range)?),
+        (Some(octaves), None) => Arc::new(cellular.fractal(octaves)?),
+        (Some(octaves), Some(range)) => Arc::new(cellular.fractal(octaves)?.with_range(range)?),
+    })
+}
+
+/// The field of a slice of a basis of four dimensions.
+fn moving_field(
+    node: &WorleyNode,
+    worley: Worley4,
+    place: [f64; 2],
+) -> Result<Arc<dyn Field>, RecipeError> {
+    let worley = basis(node, worley)?;
+    let combination = match node.value {
+        WorleyValue::Combination(combination) => combination,
+        WorleyValue::CellValue => return Ok(slice(place, move |at| cell_value(&worley, at))),
+        WorleyValue::EdgeDistance => return Ok(slice(place, move |at| worley.edge_distance(at))),
+    };
+    let cellular = worley.combine(combination);
+    Ok(Arc::new(match (node.octaves, node.range) {
+        (None, None) => cellular.slice(place),
+        (None, Some(range)) => cellular.with_range(range)?.slice(place),
+        (Some(octaves), None) => cellular.fractal(octaves)?.slice(place),
+        (Some(octaves), Some(range)) => cellular.fractal(octaves)?.with_range(range)?.slice(place),
+    }))
+}
+
+fn cell_value(worley: &Worley4, at: [f64; 4]) -> f32 {
+    let [nearest] = worley.sample(at);
+    if nearest.distance.is_nan() {
+        f32::NAN
+    } else {
+        nearest.cell_value()
+    }
+}
+
+fn slice(
+    place: [f64; 2],
+    value: impl Fn([f64; 4]) -> f32 + Send + Sync + 'static,
+) -> Arc<dyn Field> {
+    Arc::new(Slice { place, value })
+}
+
+/// Refuses what only combinations of distances have.
+fn check_single(node: &WorleyNode, metric: bool) -> Result<(), RecipeError> {
+    let rule = if node.octaves.is_some() || node.range.is_some() {
+        "`cell_value` and `edge_distance` have neither `octaves` nor a `range`"
+    } else if !metric {
+        "`edge_distance` is of the Euclidean metric"
+    } else {
+        return Ok(());
+    };
+    Err(RecipeError::new(RecipeErrorKind::Conflict { rule }))
+}
+
+/// The distances to the borders of cells.
+struct EdgeDistances(Worley2);
+
+impl Field for EdgeDistances {
+    fn sample(&self, position: DVec2) -> f32 {
+        self.0.edge_distance(position)
+    }
+}
+
+/// A function of space and time, over the plane at one depth and one time.
+struct Slice<F> {
+    place: [f64; 2],
+    value: F,
+}
+
+impl<F: Fn([f64; 4]) -> f32 + Send + Sync> Field for Slice<F> {
+    fn sample(&self, position: DVec2) -> f32 {
+        (self.value)([position.x, position.y, self.place[0], self.place[1]])
+    }
+}
+
+/// A field that is asked at the position times a frequency.
+struct Scaled {
+    field: Arc<dyn Field>,
+    frequency: DVec2,
+}
+
+impl Scaled {
+    /// Whether a product with the frequency is exact.
+    fn is_exact(&self) -> bool {
+        let is_power_of_two = |number: f64| number.is_normal() && number.to_bits() << 12 == 0;
+        is_power_of_two(self.frequency.x) && is_power_of_two(self.frequency.y)
+    }
+}
+
+impl Field for Scaled {
+    fn sample(&self, position: DVec2) -> f32 {
+        self.field.sample(position * self.frequency)
+    }
+
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        let scaled: Vec<_> = positions
+            .iter()
+            .map(|&position| position * self.frequency)
+            .collect();
+        self.field.sample_many(&scaled, values)
+    }
+
+    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        if self.is_exact() {
+            let scaled = Window {
+                origin: window.origin * self.frequency,
+                pixel: window.pixel * self.frequency,
+                ..*window
+            };
+            return self.field.render(&scaled, out);
+        }
+        window.check_size(out.size())?;
+        for (row, values) in (0..).zip(out.rows_mut()) {
+            let y = window.row_y(row);
+            let positions: Vec<_> = (0..window.size[0])
+                .map(|column| DVec2::new(window.column_x(column), y))
+                .collect();
+            self.sample_many(&positions, values)?;
+        }
+        Ok(())
+    }
+}
+
+/// A field plus ½, cut off at 0 and 1.
+struct AboutHalf(Arc<dyn Field>);
+
+impl Field for AboutHalf {
+    fn sample(&self, position: DVec2) -> f32 {
+        (0.5 + self.0.sample(position)).clamp(0.0, 1.0)
+    }
+
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        self.0.sample_many(positions, values)?;
+        values
+            .iter_mut()
+            .for_each(|value| *value = (0.5 + *value).clamp(0.0, 1.0));
+        Ok(())
+    }
+
+    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        self.0.render(window, out.reborrow())?;
+        for values in out.rows_mut() {
+            values
+                .iter_mut()
+                .for_each(|value| *value = (0.5 + *value).clamp(0.0, 1.0));
+        }
+        Ok(())
+    }
+}
+
+/// How far along a direction a position is.
+struct Along {
+    center: DVec2,
+    along: DVec2,
+}
+
+impl Field for Along {
+    fn sample(&self, position: DVec2) -> f32 {
+        coordinate(position, self.center, self.along)
+    }
+}
+
+/// How far from a center, or its nearest repeat, a position is.
+struct From {
+    center: DVec2,
+    extent: DVec2,
+    wrap: [bool; 2],
+}
+
+impl Field for From {
+    fn sample(&self, position: DVec2) -> f32 {
+        distance(position, self.center, self.extent, self.wrap)
+    }
+}

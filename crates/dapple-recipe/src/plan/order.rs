@@ -1,0 +1,116 @@
+//! The order of nodes: what each is made of comes before it.
+
+use crate::{Node, Recipe, RecipeError, RecipeErrorKind};
+
+/// The most nodes of a recipe. People do not write more, and a chain of them must not be too deep to follow.
+const MAX_NODES: usize = 1024;
+
+/// The names of all nodes, each after those that it is made of; else in the order of the recipe.
+pub(crate) fn order(recipe: &Recipe) -> Result<Vec<&str>, RecipeError> {
+    check_names(recipe)?;
+    let mut order = Order {
+        recipe,
+        states: vec![State::New; recipe.nodes.len()],
+        path: Vec::new(),
+        names: Vec::new(),
+    };
+    for index in 0..recipe.nodes.len() {
+        order.visit(index)?;
+    }
+    Ok(order.names)
+}
+
+fn check_names(recipe: &Recipe) -> Result<(), RecipeError> {
+    let count = recipe.nodes.len();
+    if count > MAX_NODES {
+        return Err(RecipeError::new(RecipeErrorKind::Count {
+            what: "nodes",
+            count,
+            needed: "at most 1024",
+        }));
+    }
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    for name in recipe.nodes.keys() {
+        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(plain) {
+            return Err(RecipeError::new(RecipeErrorKind::Name {
+                name: name.clone(),
+            }));
+        }
+    }
+    Ok(())
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum State {
+    New,
+    /// On the path from the node that was begun with.
+    Open,
+    Done,
+}
+
+struct Order<'a> {
+    recipe: &'a Recipe,
+    states: Vec<State>,
+    path: Vec<usize>,
+    names: Vec<&'a str>,
+}
+
+impl<'a> Order<'a> {
+    /// Puts a node into the order, after its inputs. At most as deep as there are nodes.
+    fn visit(&mut self, index: usize) -> Result<(), RecipeError> {
+        let (name, node) = self.entry(index);
+        match self.states[index] {
+            State::Done => return Ok(()),
+            State::Open => return Err(self.cycle(index)),
+            State::New => {}
+        }
+        self.states[index] = State::Open;
+        self.path.push(index);
+        for input in node.inputs() {
+            if let Some(wanted) = input.node() {
+                let input = self.find(wanted).map_err(|error| error.within(name))?;
+                self.visit(input)?;
+            }
+        }
+        self.path.pop();
+        self.states[index] = State::Done;
+        self.names.push(name);
+        Ok(())
+    }
+
+    fn entry(&self, index: usize) -> (&'a str, &'a Node) {
+        let recipe: &'a Recipe = self.recipe;
+        let (name, node) = &recipe.nodes.as_slice()[index..]
+            .first()
+            .expect("an index of a node");
+        (name, node)
+    }
+
+    fn find(&self, name: &str) -> Result<usize, RecipeError> {
+        self.recipe
+            .nodes
+            .get_index_of(name)
+            .ok_or_else(|| unknown(self.recipe, name))
+    }
+
+    /// The way from a node on the path back to it.
+    fn cycle(&self, index: usize) -> RecipeError {
+        let start = self
+            .path
+            .iter()
+            .position(|&open| open == index)
+            .unwrap_or(0);
+        let way = self.path[start..].iter().chain([&index]);
+        let names = way.map(|&index| self.entry(index).0.to_owned()).collect();
+        RecipeError::new(RecipeErrorKind::Cycle { names })
+    }
+}
+
+/// The refusal of a name that no node has.
+pub(crate) fn unknown(recipe: &Recipe, name: &str) -> RecipeError {
+    let names = recipe.nodes.keys().map(String::as_str);
+    RecipeError::new(RecipeErrorKind::UnknownNode {
+        name: name.to_owned(),
+    })
+    .meant(name, names)
+}

@@ -1,0 +1,139 @@
+//! What a recipe is.
+
+use crate::{Input, Node};
+use dapple_color::NormalY;
+use dapple_hash::Seed;
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+/// The version of the schema that this crate reads and writes.
+pub const SCHEMA: u32 = 1;
+
+/// A texture as data: named nodes, and the material that is made of them.
+///
+/// Lengths are in units of the plane: the tile is [`extent`](Self::extent) units wide and high, from the origin. Nodes are
+/// in any order. Every node that needs chance takes it from the recipe's seed and its own name, so that moving or adding
+/// nodes changes no other.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_recipe::Recipe;
+///
+/// let recipe = Recipe::from_toml(
+///     r#"
+///     dapple = 1
+///     seed = 7
+///     extent = [8.0, 8.0]
+///
+///     [nodes.cells.worley]
+///     value = "f2_minus_f1"
+///
+///     [nodes.stones.levels]
+///     input = "cells"
+///     from = [0.0, 0.3]
+///
+///     [material]
+///     height = "stones"
+///     "#,
+/// )?;
+/// assert_eq!(recipe.nodes.len(), 2);
+/// # Ok::<(), dapple_recipe::RecipeError>(())
+/// ```
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Recipe {
+    /// The version of the schema: [`SCHEMA`].
+    pub dapple: u32,
+    /// What it is called; names the files that are baked from it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub name: String,
+    /// What it is, in a sentence.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub about: String,
+    /// Where all of its chance comes from; 0 by default.
+    #[serde(default)]
+    pub seed: Seed,
+    /// The width and height of the tile, in units of the plane; 1 × 1 by default.
+    #[serde(default = "default_extent")]
+    pub extent: [f64; 2],
+    /// Along which axes it repeats, x first; both by default.
+    #[serde(default = "default_wrap")]
+    pub wrap: [bool; 2],
+    /// The nodes by their names.
+    #[serde(default)]
+    pub nodes: IndexMap<String, Node>,
+    /// What the maps are made of.
+    pub material: Material,
+}
+
+fn default_extent() -> [f64; 2] {
+    [1.0; 2]
+}
+
+fn default_wrap() -> [bool; 2] {
+    [true; 2]
+}
+
+/// What the maps of a recipe are made of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Material {
+    /// The height, from 0 to 1; ½ by default. Files with whole numbers cut off what lies outside.
+    pub height: Input,
+    /// How many units of the plane a height of 1 stands for; 0.1 by default.
+    pub relief: f64,
+    /// The color; the height as a gray by default.
+    pub albedo: Option<Input>,
+    /// From 0, a mirror, to 1, chalk; 0.8 by default.
+    pub roughness: Input,
+    /// From 0, no metal, to 1, all metal; 0 by default.
+    pub metallic: Input,
+    /// Where the green of normals points; up, as in OpenGL, by default.
+    pub normal_y: NormalY,
+    /// How far ambient occlusion looks, in units of the plane; a twentieth of the tile's shorter side by default.
+    pub occlusion_radius: Option<f64>,
+    /// The size of what curvature sees, in units of the plane; a hundredth of the tile's shorter side by default.
+    pub curvature_radius: Option<f64>,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            height: Input::Number(0.5),
+            relief: 0.1,
+            albedo: None,
+            roughness: Input::Number(0.8),
+            metallic: Input::Number(0.0),
+            normal_y: NormalY::OpenGl,
+            occlusion_radius: None,
+            curvature_radius: None,
+        }
+    }
+}
+
+impl Recipe {
+    /// A recipe with one node, which is the height: what the commands that draw a single field bake.
+    #[must_use]
+    pub fn of_node(name: &str, node: Node, seed: Seed) -> Self {
+        Self {
+            dapple: SCHEMA,
+            name: name.to_owned(),
+            about: String::new(),
+            seed,
+            extent: default_extent(),
+            wrap: default_wrap(),
+            nodes: IndexMap::from([(name.to_owned(), node)]),
+            material: Material {
+                height: Input::from(name),
+                ..Material::default()
+            },
+        }
+    }
+
+    /// The shorter side of the tile, in units of the plane.
+    #[must_use]
+    pub fn shorter_side(&self) -> f64 {
+        self.extent[0].min(self.extent[1])
+    }
+}

@@ -1,0 +1,211 @@
+//! Recipes as text: TOML and JSON, with errors that name the line and the nearest valid word.
+
+use crate::{Place, Recipe, RecipeError, RecipeErrorKind, SCHEMA};
+use serde::de::DeserializeOwned;
+
+/// The most bytes of a recipe. More than this is no recipe.
+pub const MAX_TEXT: usize = 1 << 22;
+
+impl Recipe {
+    /// The recipe that a text in TOML holds.
+    ///
+    /// Its names and inputs are not checked here, but when it is made into a plan.
+    ///
+    /// # Errors
+    ///
+    /// [`Text`](RecipeErrorKind::Text) for what is no TOML, or says what a recipe does not have, with the line and the
+    /// nearest valid word; [`Schema`](RecipeErrorKind::Schema) for another version; [`Count`](RecipeErrorKind::Count)
+    /// past [`MAX_TEXT`] bytes.
+    pub fn from_toml(text: &str) -> Result<Self, RecipeError> {
+        check_length(text)?;
+        let parsed = parse_toml(text);
+        checked(parsed, parse_toml::<Version>(text))
+    }
+
+    /// The recipe that a text in JSON holds.
+    ///
+    /// # Errors
+    ///
+    /// As [`from_toml`](Self::from_toml).
+    pub fn from_json(text: &str) -> Result<Self, RecipeError> {
+        check_length(text)?;
+        checked(parse_json(text), parse_json::<Version>(text))
+    }
+
+    /// The recipe as TOML.
+    ///
+    /// # Errors
+    ///
+    /// [`Text`](RecipeErrorKind::Text) if it holds what cannot be written as data, such as a function.
+    pub fn to_toml(&self) -> Result<String, RecipeError> {
+        toml::to_string_pretty(self).map_err(|error| text_error(&error.to_string()))
+    }
+
+    /// The recipe as JSON.
+    ///
+    /// # Errors
+    ///
+    /// [`Text`](RecipeErrorKind::Text) if it holds what cannot be written as data, such as a function.
+    pub fn to_json(&self) -> Result<String, RecipeError> {
+        serde_json::to_string_pretty(self).map_err(|error| text_error(&error.to_string()))
+    }
+}
+
+/// All that is looked at of a recipe that cannot be read: it may be of another version.
+#[derive(serde::Deserialize)]
+struct Version {
+    dapple: u32,
+}
+
+fn check_length(text: &str) -> Result<(), RecipeError> {
+    if text.len() > MAX_TEXT {
+        return Err(RecipeError::new(RecipeErrorKind::Count {
+            what: "bytes",
+            count: text.len(),
+            needed: "at most 4 MiB",
+        }));
+    }
+    Ok(())
+}
+
+/// The recipe, if it is of this version; of another one, that is the error to tell.
+fn checked(
+    recipe: Result<Recipe, RecipeError>,
+    version: Result<Version, RecipeError>,
+) -> Result<Recipe, RecipeError> {
+    match version {
+        Ok(Version { dapple }) if dapple != SCHEMA => {
+            Err(RecipeError::new(RecipeErrorKind::Schema {
+                version: dapple,
+            }))
+        }
+        _ => recipe,
+    }
+}
+
+fn parse_toml<T: DeserializeOwned>(text: &str) -> Result<T, RecipeError> {
+    toml::from_str(text).map_err(|error| {
+        let place = error.span().map(|span| place_of(text, span.start));
+        text_error(error.message()).at(place)
+    })
+}
+
+fn parse_json<T: DeserializeOwned>(text: &str) -> Result<T, RecipeError> {
+    serde_json::from_str(text).map_err(|error| {
+        let (line, column) = (error.line(), error.column());
+        let full = error.to_string();
+        // The reader's own words for the place are cut off, since the error tells it in ours.
+        let message = full.split(" at line ").next().unwrap_or(&full);
+        text_error(message).at((line > 0).then_some(Place { line, column }))
+    })
+}
+
+/// The error of a reader, with the nearest of the words that it says it expected.
+fn text_error(message: &str) -> RecipeError {
+    let message = message.lines().collect::<Vec<_>>().join(" ");
+    let error = RecipeError::new(RecipeErrorKind::Text {
+        message: message.clone(),
+    });
+    // Readers write ``unknown field `densty`, expected one of `density`, `seed` ``.
+    let mut words = message.split('`').skip(1).step_by(2);
+    match words.next() {
+        Some(written) if message.starts_with("unknown ") => error.meant(written, words),
+        _ => error,
+    }
+}
+
+/// The line and the column of a byte.
+fn place_of(text: &str, byte: usize) -> Place {
+    let before = text.get(..byte).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    Place {
+        line: before.matches('\n').count() + 1,
+        column: before[line_start..].chars().count() + 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Place, Recipe, RecipeErrorKind};
+
+    const STONES: &str = "dapple = 1\n\n[nodes.cells.worley]\nvalue = \"f2_minus_f1\"\nfrequency = 8\n\n[material]\nheight = \"cells\"\n";
+
+    #[test]
+    fn a_recipe_is_the_same_after_toml_and_json() {
+        let recipe = Recipe::from_toml(STONES).unwrap();
+        let toml = Recipe::from_toml(&recipe.to_toml().unwrap()).unwrap();
+        let json = Recipe::from_json(&recipe.to_json().unwrap()).unwrap();
+        assert_eq!(
+            recipe.to_json().unwrap(),
+            toml.to_json().unwrap(),
+            "through TOML"
+        );
+        assert_eq!(
+            recipe.to_json().unwrap(),
+            json.to_json().unwrap(),
+            "through JSON"
+        );
+    }
+
+    #[test]
+    fn a_wrong_word_is_told_with_its_line_and_the_nearest_valid_one() {
+        let cases = [
+            ("frequency", "frequenzy", 5, "frequency"),
+            ("worley", "worly", 3, "worley"),
+            ("f2_minus_f1", "f2-minus-f1", 4, "f2_minus_f1"),
+            ("height", "heigth", 8, "height"),
+            ("[material]", "[materials]", 7, "material"),
+        ];
+        for (right, wrong, line, nearest) in cases {
+            let error = Recipe::from_toml(&STONES.replacen(right, wrong, 1)).unwrap_err();
+            assert_eq!(
+                error.place().map(|place| place.line),
+                Some(line),
+                "{wrong}: {error}"
+            );
+            assert_eq!(error.nearest(), Some(nearest), "{wrong}: {error}");
+        }
+    }
+
+    #[test]
+    fn json_errors_name_the_line_too() {
+        let json = Recipe::from_toml(STONES).unwrap().to_json().unwrap();
+        let error = Recipe::from_json(&json.replace("frequency", "frequenzy")).unwrap_err();
+        assert_eq!(error.nearest(), Some("frequency"), "{error}");
+        assert!(error.place().is_some_and(|place| place.line > 3), "{error}");
+        assert!(
+            !error.to_string().contains(" at line "),
+            "the place is told once: {error}"
+        );
+    }
+
+    #[test]
+    fn what_is_no_toml_is_told_with_its_place() {
+        let error = Recipe::from_toml("dapple = 1\nseed = = 3\n").unwrap_err();
+        assert!(
+            matches!(error.kind(), RecipeErrorKind::Text { .. }),
+            "{error}"
+        );
+        assert_eq!(error.place(), Some(Place { line: 2, column: 8 }), "{error}");
+    }
+
+    #[test]
+    fn another_version_is_told_before_anything_else() {
+        for text in ["dapple = 2\nflowers = 3\n", "dapple = 0\n"] {
+            let error = Recipe::from_toml(text).unwrap_err();
+            assert!(
+                matches!(error.kind(), RecipeErrorKind::Schema { .. }),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_text_past_the_limit_is_refused() {
+        let error = Recipe::from_toml(&"#".repeat(super::MAX_TEXT + 1)).unwrap_err();
+        assert!(
+            matches!(error.kind(), RecipeErrorKind::Count { .. }),
+            "{error}"
+        );
+    }
+}
