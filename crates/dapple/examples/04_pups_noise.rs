@@ -1,0 +1,44 @@
+//! Noise from scattered control points (partition-of-unity parametrics): five octaves as a land, with its normal map.
+//!
+//! ```sh
+//! cargo run -p dapple --example 04_pups_noise
+//! ```
+
+mod out;
+
+use dapple::color::{NormalOptions, Palette, normal_map};
+use dapple::hash::Seed;
+use dapple::image::{Depth, write_color_png, write_normal_png};
+use dapple::points::Domain;
+use dapple::pups::{OctavesOptions, octaves};
+use dapple::raster::{Field, Window, Wrap, glam::DVec2};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // Control points at least 0.2 apart in the first octave; each further one is twice as fine and half as strong.
+    let options = OctavesOptions {
+        domain: Domain::torus(DVec2::ZERO, DVec2::ONE),
+        spacing: 0.2.into(),
+        octaves: 5,
+        ..OctavesOptions::default()
+    };
+    let window = Window::unit([512, 512])?;
+    let noise = octaves(&options, Seed(7))?.normalized();
+    let height = noise.to_raster(&window)?;
+
+    // The middle of the range is where most values are, so that is what the colors are for.
+    let land = height.map(|&height| 0.5 + 2.0 * (height - 0.5));
+    let path = out::path("04_pups_noise.png")?;
+    write_color_png(&path, &Palette::Terrain.ramp().apply(&land), Depth::Eight)?;
+    out::wrote(&path);
+
+    // Heights of 1 are a tenth of the tile high. The map repeats because the height does.
+    let options = NormalOptions {
+        strength: 0.1,
+        wrap: [Wrap::Repeat; 2],
+        ..NormalOptions::for_window(&window)
+    };
+    let path = out::path("04_pups_noise_normal.png")?;
+    write_normal_png(&path, &normal_map(&height, &options)?, Depth::Eight)?;
+    out::wrote(&path);
+    Ok(())
+}

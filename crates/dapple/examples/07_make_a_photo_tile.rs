@@ -1,0 +1,57 @@
+//! A picture that does not repeat, made to repeat, with a report of what that did to it.
+//!
+//! The stand-in for a photograph is a part of a paving, in a light that fades to the right. For one of your own, take
+//! `dapple::image::read_image("photo.png", &Default::default())?.color()?`.
+//!
+//! ```sh
+//! cargo run -p dapple --example 07_make_a_photo_tile
+//! ```
+#![expect(clippy::print_stdout, reason = "an example talks")]
+
+mod out;
+
+use dapple::color::LinearRgb;
+use dapple::image::{Depth, write_color_png};
+use dapple::raster::Raster;
+use dapple::recipe::{Images, Plan, Recipe};
+use dapple::tile::{Method, SeamOptions, SeamReport, Seamless, SoftCut};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let photo = photo()?;
+
+    // The periodic part first, which evens out the light; then a margin of 48 pixels is laid over the other side and cut
+    // where it is seen least.
+    let even = Seamless::new(Method::Periodic).apply_color(&photo)?;
+    let cut = SoftCut {
+        margin: 48,
+        ..SoftCut::default()
+    };
+    let tile = Seamless::new(Method::SoftCut(cut)).apply_color(&even)?;
+
+    // Steps across the seam beside those inside, at four distances, and the detail that was kept.
+    let [before, after] = [&photo, &tile].map(|picture| picture.map(|color| color.luminance()));
+    let options = SeamOptions::default();
+    println!("before:\n{}\n", SeamReport::of(&before, &options)?);
+    println!("after:\n{}", SeamReport::beside(&before, &after, &options)?);
+
+    // Twice in each direction, so that the seams can be looked for.
+    for (name, picture) in [("before", &photo), ("after", &tile)] {
+        let path = out::path(&format!("07_make_a_photo_tile_{name}.png"))?;
+        write_color_png(&path, &picture.tile([2, 2])?, Depth::Eight)?;
+        out::wrote(&path);
+    }
+    Ok(())
+}
+
+fn photo() -> Result<Raster<LinearRgb>, Box<dyn std::error::Error>> {
+    let plan = Plan::new(&Recipe::builtin("flagstone")?, &Images::new(), 0.0)?;
+    let whole = plan.window([512, 512])?;
+    let colors = plan
+        .colors("albedo")
+        .ok_or("flagstone has a node with colors")?;
+    let paving = colors.to_raster(&whole.crop([40, 70], [320, 320])?)?;
+    let light = |x: u32| 1.0 - 0.2 * x as f32 / 320.0;
+    Ok(Raster::from_fn(paving.size(), |x, y| {
+        paving.row(y)[x as usize] * light(x)
+    })?)
+}

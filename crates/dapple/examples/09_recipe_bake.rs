@@ -1,0 +1,50 @@
+//! A material as a text, baked to maps: cobbles in sand, 512 × 512, with height, normals, occlusion,
+//! color and roughness.
+//!
+//! `Recipe::builtin("flagstone")` has one that is ready, and `Recipe::builtin_names()` says which others there are.
+//!
+//! ```sh
+//! cargo run -p dapple --example 09_recipe_bake
+//! ```
+
+mod out;
+
+use dapple::image::{Depth, write_color_png, write_gray_png, write_normal_png};
+use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
+
+/// The nodes by their names, and the material that is made of them. The format is in the README of `dapple-recipe`.
+const COBBLES: &str = include_str!("09_recipe_bake.toml");
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // Errors name the line, the node and the nearest valid word.
+    let recipe = Recipe::from_toml(COBBLES)?;
+    let plan = Plan::new(&recipe, &Images::new(), 0.0)?;
+
+    let maps = vec![
+        MapKind::Height,
+        MapKind::Normal,
+        MapKind::Occlusion,
+        MapKind::Albedo,
+        MapKind::Roughness,
+    ];
+    let options = BakeOptions {
+        size: [512, 512],
+        maps,
+        ..BakeOptions::default()
+    };
+
+    // A bake comes in bands of about a million pixels, so a picture of this size is a single one.
+    for band in Bake::new(&plan, &options)? {
+        for (kind, rows) in band?.maps {
+            let path = out::path(&format!("09_recipe_bake_{}.png", kind.name()))?;
+            match rows {
+                MapRows::Gray(rows) => write_gray_png(&path, &rows, Depth::Sixteen)?,
+                MapRows::Color(rows) => write_color_png(&path, &rows, Depth::Eight)?,
+                MapRows::Normal(rows) => write_normal_png(&path, &rows, Depth::Eight)?,
+                MapRows::Packed(_) => continue,
+            }
+            out::wrote(&path);
+        }
+    }
+    Ok(())
+}

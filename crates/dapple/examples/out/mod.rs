@@ -1,0 +1,20 @@
+//! Where the examples put what they make: a folder given as the first argument, or `target/examples-out`.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The path of a file in the folder, which is made where there is none.
+#[expect(clippy::disallowed_methods, reason = "an example writes files")]
+pub(crate) fn path(name: &str) -> io::Result<PathBuf> {
+    let folder = std::env::args_os()
+        .nth(1)
+        .map_or_else(|| PathBuf::from("target/examples-out"), PathBuf::from);
+    std::fs::create_dir_all(&folder)?;
+    Ok(folder.join(name))
+}
+
+/// Says what was written.
+#[expect(clippy::print_stdout, reason = "an example talks")]
+pub(crate) fn wrote(path: &Path) {
+    println!("wrote {}", path.display());
+}
