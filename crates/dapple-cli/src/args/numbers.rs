@@ -1,0 +1,40 @@
+//! Several numbers on the command line, with commas between them: `3,4`.
+
+use serde::{Serialize, Serializer};
+use std::str::FromStr;
+
+/// `N` numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Numbers<T, const N: usize>(pub(crate) [T; N]);
+
+impl<T: FromStr, const N: usize> FromStr for Numbers<T, N> {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Result<Vec<T>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+        let numbers: Option<[T; N]> = numbers.ok().and_then(|numbers| numbers.try_into().ok());
+        numbers
+            .map(Self)
+            .ok_or_else(|| format!("{text:?} is not {N} numbers with commas between them"))
+    }
+}
+
+impl<T: Serialize, const N: usize> Serialize for Numbers<T, N> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(&self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Numbers;
+
+    #[test]
+    fn numbers_are_as_many_as_are_needed() {
+        assert_eq!("3, 4".parse(), Ok(Numbers([3_u32, 4])));
+        assert_eq!("-1,2.5,0".parse(), Ok(Numbers([-1.0, 2.5, 0.0])));
+        for text in ["", "3", "3,4,5", "3,x", "3;4"] {
+            assert!(text.parse::<Numbers<f64, 2>>().is_err(), "{text:?}");
+        }
+    }
+}

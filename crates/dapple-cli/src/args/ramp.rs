@@ -1,0 +1,79 @@
+//! Color ramps on the command line: the name of a palette, or colors.
+
+use dapple::color::{ColorRamp, LinearRgb, Palette};
+use serde::{Serialize, Serializer};
+use std::str::FromStr;
+
+/// A ramp, and how the user wrote it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RampArg {
+    text: String,
+    /// The colors, from low to high: at least one.
+    pub(crate) colors: Vec<LinearRgb>,
+    /// A linear ramp through them.
+    pub(crate) ramp: ColorRamp,
+}
+
+impl FromStr for RampArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let is_palette = |palette: &&Palette| name(**palette).eq_ignore_ascii_case(text);
+        let colors = match Palette::ALL.iter().find(is_palette) {
+            Some(palette) => palette.colors(),
+            None => text.split(',').map(color).collect::<Result<_, _>>()?,
+        };
+        let ramp = ColorRamp::even(&colors).map_err(|error| error.to_string())?;
+        Ok(Self {
+            text: text.to_owned(),
+            colors,
+            ramp,
+        })
+    }
+}
+
+impl Serialize for RampArg {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.text.serialize(serializer)
+    }
+}
+
+/// The name of a palette in small letters.
+fn name(palette: Palette) -> String {
+    format!("{palette:?}").to_ascii_lowercase()
+}
+
+/// A color in hexadecimal, or black or white.
+fn color(text: &str) -> Result<LinearRgb, String> {
+    match text.trim() {
+        "black" => Ok(LinearRgb::BLACK),
+        "white" => Ok(LinearRgb::WHITE),
+        text => LinearRgb::from_hex(text).map_err(|_| {
+            let palettes: Vec<_> = Palette::ALL.iter().map(|&palette| name(palette)).collect();
+            let palettes = palettes.join(", ");
+            format!("{text:?} is no color such as #ff8000, and no palette: {palettes}")
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::RampArg;
+    use dapple::color::{LinearRgb, Palette};
+
+    #[test]
+    fn ramps_are_palettes_or_colors() {
+        let lagoon: RampArg = "Lagoon".parse().unwrap();
+        assert_eq!(lagoon.ramp, Palette::Lagoon.ramp());
+        let two: RampArg = "#000,white".parse().unwrap();
+        assert_eq!(two.colors, [LinearRgb::BLACK, LinearRgb::WHITE]);
+    }
+
+    #[test]
+    fn ramps_that_are_none_name_the_palettes() {
+        for text in ["", "lagon", "#12,#345", "#000,,#fff"] {
+            let error = text.parse::<RampArg>().unwrap_err();
+            assert!(error.contains("lagoon"), "{text:?}: {error}");
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! The subcommands, a file for each.
+
+mod bake;
+mod blend;
+mod blend_map;
+mod completions;
+mod info;
+mod man;
+mod points;
+mod pups;
+mod recipe;
+mod synth;
+mod tile;
+mod wavelet;
+mod worley;
+
+use crate::error::Exit;
+use crate::job::Context;
+use anyhow::Result;
+use clap::Subcommand;
+
+/// The subcommands, in the order of `--help`.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Bake(Box<bake::Args>),
+    Recipe(Box<recipe::Args>),
+    Worley(Box<worley::Args>),
+    Pups(Box<pups::Args>),
+    Wavelet(Box<wavelet::Args>),
+    Tile(Box<tile::Args>),
+    Blend(Box<blend::Args>),
+    BlendMap(Box<blend_map::Args>),
+    Synth(Box<synth::Args>),
+    Points(Box<points::Args>),
+    Info(info::Args),
+    Completions(completions::Args),
+    Man(man::Args),
+}
+
+/// Runs a subcommand.
+///
+/// # Errors
+///
+/// Whatever went wrong.
+pub(crate) fn run(command: &Command, context: &Context) -> Result<Exit> {
+    match command {
+        Command::Bake(args) => bake::run(args, context),
+        Command::Recipe(args) => recipe::run(args, context),
+        Command::Worley(args) => worley::run(args, context),
+        Command::Pups(args) => pups::run(args, context),
+        Command::Wavelet(args) => wavelet::run(args, context),
+        Command::Tile(args) => tile::run(args, context),
+        Command::Blend(args) => blend::run(args, context),
+        Command::BlendMap(args) => blend_map::run(args, context),
+        Command::Synth(args) => synth::run(args, context),
+        Command::Points(args) => points::run(args, context),
+        Command::Info(args) => info::run(args, context),
+        Command::Completions(args) => completions::run(args),
+        Command::Man(args) => man::run(args, context),
+    }
+}

@@ -1,0 +1,176 @@
+//! `dapple blend`: materials laid over each other by weights.
+
+mod layer;
+mod mixing;
+
+use crate::args::{ImageArgs, Size};
+use crate::encode::Format;
+use crate::error::{Exit, Hint, usage};
+use crate::input::{self, Kind};
+use crate::job::{Context, Job};
+use crate::output::{OutputIdx, Target};
+use crate::progress::Progress;
+use anyhow::{Context as _, Error, Result};
+use dapple::raster::Raster;
+use dapple::tile::{Layer, TileError, TileErrorKind, blend, blend_by_tile, rank_equalize};
+use layer::{LayerArg, Reader};
+use mixing::MixingArgs;
+use serde::Serialize;
+use serde_json::Value;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  dapple blend rock.png grass.png -o half.png
+  dapple blend rock.png grass.png,weight=mask.png -o painted.png
+  dapple blend rock.png,height=rock_height.png \\
+    grass.png,height=grass_height.png,weight=mask.png --depth 0.1 -o both.png
+  dapple blend rock.png grass.png,weight=0.3 --tile cracks.png --gain 8 -o cracked.png
+  dapple blend rock.png,normal=rock_normal.png \\
+    grass.png,normal=grass_normal.png,weight=mask.png -o material/
+  dapple blend rock.png grass.png,weight=mask.png --size 512 \\
+    --mixing keep-variance -o large.png
+
+Layers:
+  A layer is an image, and behind commas what belongs to it:
+    weight=0.3 or weight=mask.png   how much of it there is
+    height=FILE                     its height, from 0 to 1: what is higher shows
+    normal=FILE                     its normals
+    NAME=FILE                       another map, such as roughness=FILE
+  The layer without a weight is the ground: it gets what the others leave, 1 less their
+  weights. Without any weights all layers get the same.
+
+How the weights are used, unless --weighting says it:
+  mask    where there is a --tile: it is cut at thresholds, and the layers that are named
+          later lie where it is lower
+  height  where a layer has a height: what is higher shows
+  given   else, as they are: plain splatting";
+
+/// Blend textures by weights, by heights, or along the features of a blend tile.
+#[derive(clap::Args, Debug, Serialize)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// The layers, the ground first: an image, and what belongs to it.
+    #[arg(value_name = "IMAGE[,KEY=VALUE...]", required = true)]
+    layers: Vec<LayerArg>,
+
+    /// A blend tile, as of `dapple blend-map`; any gray image will do.
+    #[arg(long, value_name = "IMAGE")]
+    tile: Option<PathBuf>,
+
+    /// Use the values of the tile as they are, from 0 to 1. Else they are spread evenly, so that weights are areas.
+    #[arg(long, requires = "tile")]
+    plain_tile: bool,
+
+    #[command(flatten)]
+    mixing: MixingArgs,
+
+    /// How large the blend is, in pixels. Images that are smaller are repeated, larger ones cut. By default all images have
+    /// one size.
+    #[arg(long, value_name = "WxH")]
+    size: Option<Size>,
+
+    #[command(flatten)]
+    #[serde(skip)]
+    image: ImageArgs,
+}
+
+/// Runs it.
+///
+/// # Errors
+///
+/// Whatever went wrong.
+pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    let mut job = Job::new(context, "blend", &args.image.files);
+    let outputs = claim(args, &mut job)?;
+    job.claim_sidecar()?;
+    let mut reader = Reader::new(args.size);
+    let read = args.layers.iter().map(|layer| layer.read(&mut reader));
+    let mut materials = read.collect::<Result<Vec<_>>>()?;
+    reader.agree(&args.layers, &mut materials)?;
+    let tile = tile(args, &mut reader)?;
+    let weights = layer::weights(&materials, materials[0].maps[0].size())?;
+    let mut layers = Vec::new();
+    // The first layer of the library lies where the tile is lowest, and what is laid over the ground begins there.
+    for (material, weight) in materials.iter().zip(&weights).rev() {
+        layers.push(Layer {
+            maps: &material.maps,
+            weight,
+            height: material.height.as_ref(),
+        });
+    }
+    let has_heights = materials.iter().any(|material| material.height.is_some());
+    let how = args.mixing.blend(tile.is_some(), has_heights)?;
+    let progress = Progress::spinner("blending", context.quiet);
+    let maps = match &tile {
+        Some(tile) => blend_by_tile(&layers, tile, &how),
+        None => blend(&layers, &how),
+    };
+    let maps = maps.map_err(advise)?;
+    drop(progress);
+    let is_deep = materials.iter().any(|material| material.is_deep);
+    for (map, output) in maps.into_iter().zip(outputs) {
+        job.write_image(output, map, is_deep, &args.image)?;
+    }
+    job.finish(args, Value::Null)?;
+    Ok(Exit::Done)
+}
+
+/// Claims an output for the first map, or for each of them in a folder.
+fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
+    let names = args.layers[0].map_names();
+    for layer in &args.layers[1..] {
+        if layer.map_names() != names {
+            let message = format!(
+                "{} has the maps {}, but {} has {}",
+                args.layers[0].path().display(),
+                names.join(", "),
+                layer.path().display(),
+                layer.map_names().join(", ")
+            );
+            return Err(usage(message).hint("give all layers the same maps"));
+        }
+    }
+    let Some(folder) = args.image.files.folder() else {
+        let target = args.image.files.target()?;
+        if names.len() > 1 {
+            return Err(usage("several maps need a folder")
+                .hint("let -o end with a slash, as in -o material/"));
+        }
+        Format::choose(args.image.format, &target, Format::Png16)?;
+        return Ok(vec![job.claim(&target)?]);
+    };
+    job.make_folder(folder)?;
+    let ending = args.image.format.map_or("png", Format::ending);
+    let target = |name: &&str| Target::Path(folder.join(format!("{name}.{ending}")));
+    names.iter().map(|name| job.claim(&target(name))).collect()
+}
+
+/// The blend tile, in the size of the blend.
+fn tile(args: &Args, reader: &mut Reader) -> Result<Option<Raster<f32>>> {
+    let Some(path) = &args.tile else {
+        return Ok(None);
+    };
+    let values = layer::values(reader.read(path, Kind::ByChannels)?.0);
+    if args.plain_tile {
+        return Ok(Some(values));
+    }
+    let ranks = rank_equalize(&values);
+    Ok(Some(ranks.with_context(|| input::name(path))?))
+}
+
+/// Adds what to do about what is often refused.
+fn advise(error: TileError) -> Error {
+    let hint = match error.kind() {
+        TileErrorKind::Raster(_) => "--size WxH repeats what is smaller and cuts what is larger",
+        TileErrorKind::KindMismatch { .. } => {
+            "give gray images for a map in all layers, or in none"
+        }
+        TileErrorKind::Wavelet(_) => "take fewer --levels, or --borders mirror",
+        TileErrorKind::Count {
+            what: "heights", ..
+        } => "give every layer height=FILE, or a --tile",
+        _ => return error.into(),
+    };
+    Error::new(error).hint(hint)
+}

@@ -1,0 +1,337 @@
+//! A layer on the command line: `grass.png,weight=mask.png,height=grass_height.png,normal=grass_normal.png`.
+
+use crate::args::Size;
+use crate::error::Hint;
+use crate::input::{self, Kind};
+use anyhow::{Context as _, Result};
+use dapple::raster::Raster;
+use dapple::tile::{Map, TileError, repeat};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// The name of the first map of a layer.
+const BASE: &str = "base";
+
+/// What the user wrote of a layer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct LayerArg {
+    path: PathBuf,
+    weight: Option<Weight>,
+    /// The other maps by their names, in order; `height` and `normal` are special.
+    maps: Vec<(String, PathBuf)>,
+}
+
+/// How much there is of a layer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+enum Weight {
+    Number(f32),
+    Mask(PathBuf),
+}
+
+/// A layer that was read.
+#[derive(Debug)]
+pub(super) struct Material {
+    /// Its maps, in the order of their names.
+    pub(super) maps: Vec<Map>,
+    /// Its height, which is also among the maps.
+    pub(super) height: Option<Raster<f32>>,
+    /// Whether an image has more than 8 bits.
+    pub(super) is_deep: bool,
+    weight: Option<ReadWeight>,
+}
+
+#[derive(Debug)]
+enum ReadWeight {
+    Number(f32),
+    Mask(Raster<f32>),
+}
+
+impl FromStr for LayerArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (path, pairs) = split(text);
+        if path.is_empty() {
+            return Err(format!("{text:?} does not begin with an image"));
+        }
+        let mut layer = Self {
+            path: PathBuf::from(path),
+            weight: None,
+            maps: Vec::new(),
+        };
+        for (key, value) in pairs {
+            if value.is_empty() {
+                return Err(format!("nothing follows {key}= in {text:?}"));
+            }
+            let is_new = if key == "weight" {
+                layer.weight.replace(weight(&value)?).is_none()
+            } else {
+                let is_new = key != BASE && layer.maps.iter().all(|(other, _)| *other != key);
+                layer.maps.push((key.clone(), PathBuf::from(value)));
+                is_new
+            };
+            if !is_new {
+                return Err(format!("{key}= is there twice in {text:?}"));
+            }
+        }
+        layer.maps.sort();
+        Ok(layer)
+    }
+}
+
+impl LayerArg {
+    /// The file of its first map.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The names of the maps that a blend of it has. The height is one only beside others that need a folder anyway.
+    pub(super) fn map_names(&self) -> Vec<&str> {
+        let others = self.maps.iter().map(|(name, _)| name.as_str());
+        let others: Vec<_> = others.filter(|name| *name != "height").collect();
+        [BASE].into_iter().chain(others).collect()
+    }
+
+    /// Reads all its images.
+    ///
+    /// # Errors
+    ///
+    /// If one cannot be read.
+    pub(super) fn read(&self, reader: &mut Reader) -> Result<Material> {
+        let (base, mut is_deep) = reader.read(&self.path, Kind::ByChannels)?;
+        let (mut maps, mut height) = (vec![base], None);
+        for (name, path) in &self.maps {
+            let kind = match name.as_str() {
+                "normal" => Kind::Normals,
+                _ => Kind::ByChannels,
+            };
+            let (map, is_map_deep) = reader.read(path, kind)?;
+            if name == "height" {
+                height = Some(values(map));
+            } else {
+                maps.push(map);
+                is_deep |= is_map_deep;
+            }
+        }
+        let weight = match &self.weight {
+            None => None,
+            Some(Weight::Number(number)) => Some(ReadWeight::Number(*number)),
+            Some(Weight::Mask(path)) => {
+                let (mask, _) = reader.read(path, Kind::ByChannels)?;
+                Some(ReadWeight::Mask(values(mask)))
+            }
+        };
+        Ok(Material {
+            maps,
+            height,
+            is_deep,
+            weight,
+        })
+    }
+
+    /// The files of the maps that are blended, in the order of their names.
+    fn map_paths(&self) -> impl Iterator<Item = &Path> {
+        let others = self.maps.iter().filter(|(name, _)| name != "height");
+        let others = others.map(|(_, path)| path.as_path());
+        [self.path.as_path()].into_iter().chain(others)
+    }
+}
+
+/// Reads the images of all layers, which have one size in the end.
+#[derive(Debug)]
+pub(super) struct Reader {
+    /// The size that they are repeated or cut to.
+    size: Option<Size>,
+    /// The size of the first that was read.
+    first: Option<[u32; 2]>,
+}
+
+impl Reader {
+    /// For a blend of a size, or of that of the first image.
+    pub(super) fn new(size: Option<Size>) -> Self {
+        Self { size, first: None }
+    }
+
+    /// Reads an image, and says whether it has more than 8 bits.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be read, or has another size.
+    pub(super) fn read(&mut self, path: &Path, kind: Kind) -> Result<(Map, bool)> {
+        let loaded = input::map(path, kind, None)?;
+        let map = match self.size {
+            Some(size) => repeated(&loaded.map, size)?,
+            None => loaded.map,
+        };
+        let first = *self.first.get_or_insert(map.size());
+        input::check_size(path, map.size(), first)
+            .hint("--size WxH repeats what is smaller and cuts what is larger")?;
+        Ok((map, loaded.is_deep))
+    }
+
+    /// Reads gray maps once more as color where another layer has color.
+    ///
+    /// # Errors
+    ///
+    /// If one cannot be read.
+    pub(super) fn agree(&mut self, layers: &[LayerArg], materials: &mut [Material]) -> Result<()> {
+        for map in 0..materials[0].maps.len() {
+            let is_color = |material: &Material| matches!(material.maps[map], Map::Color(_));
+            if !materials.iter().any(is_color) {
+                continue;
+            }
+            for (layer, material) in layers.iter().zip(&mut *materials) {
+                if let (Map::Value(_), Some(path)) =
+                    (&material.maps[map], layer.map_paths().nth(map))
+                {
+                    material.maps[map] = self.read(path, Kind::Colors)?.0;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The weight of each layer at every pixel. Layers without one share what the others leave of 1.
+///
+/// # Errors
+///
+/// If a mask has another size.
+pub(super) fn weights(
+    materials: &[Material],
+    size: [u32; 2],
+) -> Result<Vec<Raster<f32>>, TileError> {
+    let given: Vec<Option<Raster<f32>>> = materials
+        .iter()
+        .map(|material| match &material.weight {
+            None => Ok(None),
+            Some(ReadWeight::Number(number)) => Raster::filled(size, *number).map(Some),
+            Some(ReadWeight::Mask(mask)) => Ok(Some(mask.clone())),
+        })
+        .collect::<Result<_, _>>()?;
+    let mut left = Raster::filled(size, 1.0_f32)?;
+    for weight in given.iter().flatten() {
+        left = left.zip_map(weight, |left, weight| left - weight)?;
+    }
+    let n_without = given.iter().filter(|weight| weight.is_none()).count();
+    let rest = left.map(|left| left.max(0.0) / n_without as f32);
+    Ok(given
+        .into_iter()
+        .map(|weight| weight.unwrap_or_else(|| rest.clone()))
+        .collect())
+}
+
+/// The numbers of a map; of color its luminance.
+pub(super) fn values(map: Map) -> Raster<f32> {
+    match map {
+        Map::Value(values) => values,
+        Map::Color(colors) => colors.map(|color| color.luminance()),
+        Map::Normal(normals) => normals.map(|normal| normal.z),
+    }
+}
+
+/// The image before the first `,key=`, and the keys with their values. Other commas belong to the names of files.
+fn split(text: &str) -> (String, Vec<(String, String)>) {
+    let mut parts = text.split(',');
+    let mut path = parts.next().unwrap_or_default().to_owned();
+    let mut pairs: Vec<(String, String)> = Vec::new();
+    for part in parts {
+        match part.split_once('=') {
+            Some((key, value)) if is_key(key) => pairs.push((key.to_owned(), value.to_owned())),
+            _ => {
+                let before = pairs.last_mut().map_or(&mut path, |(_, value)| value);
+                before.push(',');
+                before.push_str(part);
+            }
+        }
+    }
+    (path, pairs)
+}
+
+fn is_key(key: &str) -> bool {
+    !key.is_empty()
+        && key
+            .bytes()
+            .all(|byte| byte.is_ascii_lowercase() || byte == b'_')
+}
+
+/// A number, or the name of a mask.
+fn weight(text: &str) -> Result<Weight, String> {
+    match text.parse::<f32>() {
+        Ok(number) if number >= 0.0 && number.is_finite() => Ok(Weight::Number(number)),
+        Ok(number) => Err(format!("a weight is at least 0 and finite, not {number}")),
+        Err(_) => Ok(Weight::Mask(PathBuf::from(text))),
+    }
+}
+
+/// A map in another size: repeated, or cut.
+fn repeated(map: &Map, size: Size) -> Result<Map> {
+    let context = "the images cannot be repeated";
+    Ok(match map {
+        Map::Value(raster) => Map::Value(repeat(raster, size.0).context(context)?),
+        Map::Color(raster) => Map::Color(repeat(raster, size.0).context(context)?),
+        Map::Normal(raster) => Map::Normal(repeat(raster, size.0).context(context)?),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LayerArg, Material, ReadWeight, Weight, weights};
+    use dapple::raster::Raster;
+    use dapple::tile::Map;
+    use std::path::PathBuf;
+
+    #[test]
+    fn layers_are_an_image_with_keys() {
+        let layer: LayerArg = "a.png,weight=0.5,roughness=r.png,height=h.png"
+            .parse()
+            .unwrap();
+        assert_eq!(layer.weight, Some(Weight::Number(0.5)));
+        assert_eq!(layer.map_names(), ["base", "roughness"]);
+        let odd: LayerArg = "a,b.png,weight=c,d.png".parse().unwrap();
+        assert_eq!(odd.path, PathBuf::from("a,b.png"), "commas of the name");
+        assert_eq!(odd.weight, Some(Weight::Mask(PathBuf::from("c,d.png"))));
+    }
+
+    #[test]
+    fn layers_that_are_none_say_why() {
+        for text in [
+            "",
+            ",weight=1",
+            "a,weight=",
+            "a,weight=-1",
+            "a,weight=1,weight=2",
+            "a,base=b",
+        ] {
+            assert!(text.parse::<LayerArg>().is_err(), "{text:?} is no layer");
+        }
+    }
+
+    fn material(weight: Option<ReadWeight>) -> Material {
+        Material {
+            maps: vec![Map::Value(Raster::filled([2, 1], 0.0).unwrap())],
+            height: None,
+            is_deep: false,
+            weight,
+        }
+    }
+
+    #[test]
+    fn the_ground_gets_what_the_others_leave() {
+        let mask = Raster::from_vec([2, 1], vec![0.25, 2.0]).unwrap();
+        let layers = [material(None), material(Some(ReadWeight::Mask(mask)))];
+        let weights = weights(&layers, [2, 1]).unwrap();
+        assert_eq!(weights[0].pixels(), [0.75, 0.0]);
+        assert_eq!(weights[1].pixels(), [0.25, 2.0]);
+    }
+
+    #[test]
+    fn layers_without_weights_share_evenly() {
+        let layers = [material(None), material(None)];
+        let weights = weights(&layers, [2, 1]).unwrap();
+        assert_eq!(weights[0].pixels(), [0.5, 0.5]);
+        assert_eq!(weights[0], weights[1]);
+    }
+}

@@ -1,0 +1,159 @@
+//! How `dapple blend` uses weights, and how it mixes.
+
+use crate::error::{Hint, usage};
+use anyhow::Result;
+use clap::ValueEnum;
+use dapple::tile::{Blend, Mixing, Pyramid, Weighting};
+use dapple::wavelet::Border;
+use serde::Serialize;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum WeightingName {
+    /// As they are.
+    Given,
+    /// What is higher shows.
+    Height,
+    /// The tile is cut at thresholds.
+    Mask,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum MixingName {
+    /// The weighted mean.
+    Linear,
+    /// The contrast is kept; values may leave their range.
+    KeepVariance,
+    /// In bands, with sharper transitions where details are finer.
+    Pyramid,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum BorderName {
+    /// Mirrored.
+    Mirror,
+    /// The images are tiles.
+    Repeat,
+}
+
+/// The options of weighting and mixing.
+#[derive(clap::Args, Clone, Debug, Serialize)]
+#[command(next_help_heading = "Weighting and mixing")]
+pub(super) struct MixingArgs {
+    /// How weights are used; see below for what is the default.
+    #[arg(long, value_enum, value_name = "HOW")]
+    weighting: Option<WeightingName>,
+
+    /// height: the difference of heights over which layers mix, above 0: 0.1 is crisp, 0.3 soft; by default 0.2.
+    #[arg(long, value_name = "N")]
+    depth: Option<f64>,
+
+    /// mask: one over the width of transitions, in values of the tile, above 0 and at most 1e9: 1 is soft, 1e9 gives hard
+    /// edges; by default 8.
+    #[arg(long, value_name = "N")]
+    gain: Option<f64>,
+
+    /// How layers are mixed.
+    #[arg(long, value_enum, default_value_t = MixingName::Linear)]
+    mixing: MixingName,
+
+    /// pyramid: the number of bands, at most 30; by default 4.
+    #[arg(long, value_name = "N")]
+    levels: Option<u32>,
+
+    /// pyramid: how much sharper the transitions of the finest band are, at least 0; by default 8.
+    #[arg(long, value_name = "N")]
+    sharpness: Option<f64>,
+
+    /// pyramid: what lies past the edges; by default the mirror image.
+    #[arg(long, value_enum, value_name = "WHAT")]
+    borders: Option<BorderName>,
+}
+
+impl MixingArgs {
+    /// The blend, with the weighting that goes with what there is unless one was asked for.
+    ///
+    /// # Errors
+    ///
+    /// If an option was given that means nothing here.
+    pub(super) fn blend(&self, has_tile: bool, has_heights: bool) -> Result<Blend> {
+        let weighting = self.weighting.unwrap_or(match (has_tile, has_heights) {
+            (true, _) => WeightingName::Mask,
+            (false, true) => WeightingName::Height,
+            (false, false) => WeightingName::Given,
+        });
+        if weighting == WeightingName::Mask && !has_tile {
+            return Err(usage("--weighting mask needs a blend tile").hint("add --tile IMAGE"));
+        }
+        let is_pyramid = self.mixing == MixingName::Pyramid;
+        let is_height = weighting == WeightingName::Height;
+        for (option, is_given, is_used, hint) in [
+            (
+                "depth",
+                self.depth.is_some(),
+                is_height,
+                "--weighting height",
+            ),
+            (
+                "gain",
+                self.gain.is_some(),
+                weighting == WeightingName::Mask,
+                "--weighting mask",
+            ),
+            (
+                "levels",
+                self.levels.is_some(),
+                is_pyramid,
+                "--mixing pyramid",
+            ),
+            (
+                "sharpness",
+                self.sharpness.is_some(),
+                is_pyramid,
+                "--mixing pyramid",
+            ),
+            (
+                "borders",
+                self.borders.is_some(),
+                is_pyramid,
+                "--mixing pyramid",
+            ),
+        ] {
+            if is_given && !is_used {
+                let message = format!("--{option} means nothing to this blend");
+                return Err(usage(message).hint(format!("add {hint}")));
+            }
+        }
+        Ok(Blend::new(self.weighting_of(weighting), self.mixing()))
+    }
+
+    fn weighting_of(&self, name: WeightingName) -> Weighting {
+        match name {
+            WeightingName::Given => Weighting::Given,
+            WeightingName::Height => Weighting::Height {
+                depth: self.depth.unwrap_or(0.2),
+            },
+            WeightingName::Mask => Weighting::Mask {
+                gain: self.gain.unwrap_or(8.0),
+            },
+        }
+    }
+
+    fn mixing(&self) -> Mixing {
+        let default = Pyramid::default();
+        match self.mixing {
+            MixingName::Linear => Mixing::Linear,
+            MixingName::KeepVariance => Mixing::KeepVariance,
+            MixingName::Pyramid => Mixing::Pyramid(Pyramid {
+                levels: self.levels.unwrap_or(default.levels),
+                sharpness: self.sharpness.unwrap_or(default.sharpness),
+                borders: match self.borders {
+                    Some(BorderName::Repeat) => [Border::Periodic; 2],
+                    Some(BorderName::Mirror) | None => [Border::Mirror; 2],
+                },
+            }),
+        }
+    }
+}

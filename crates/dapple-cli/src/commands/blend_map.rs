@@ -1,0 +1,92 @@
+//! `dapple blend-map`: a blend tile from the features of a texture.
+
+use crate::args::{Axes, ImageArgs, Region};
+use crate::encode::Format;
+use crate::error::Exit;
+use crate::input::{self, Kind};
+use crate::job::{Context, Job};
+use crate::progress::Progress;
+use anyhow::{Result, anyhow};
+use dapple::raster::Wrap;
+use dapple::tile::{BlendMap, Map, rank_equalize};
+use serde::Serialize;
+use serde_json::Value;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  dapple blend-map stones.png -o cracks.png --feature-size 24
+  dapple blend-map height.png -o soft.png --contrast 0.5 --plain
+  dapple blend stones.png grass.png,weight=0.3 --tile cracks.png -o field.png
+
+The map is low in cracks and high on what stands out. As the --tile of `dapple blend`,
+it lets what is blended in begin in the cracks. Without --plain its values are spread
+evenly, so that a weight of 0.3 covers 0.3 of the area.";
+
+/// Make a blend tile from a texture: low in its cracks, high on what stands out.
+#[derive(clap::Args, Debug, Serialize)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// The texture, or its height. `-` is standard input.
+    #[arg(value_name = "IMAGE")]
+    image: PathBuf,
+
+    /// Use only this part of the image, in pixels.
+    #[arg(long, value_name = "X,Y,W,H")]
+    region: Option<Region>,
+
+    /// The size of the features, such as the diameter of the stones, in pixels, from 1 to 4096.
+    #[arg(long, value_name = "PX", default_value_t = 32.0)]
+    feature_size: f64,
+
+    /// How steep the map is around its median, at least 0; at 100 it is almost black and white.
+    #[arg(long, value_name = "N", default_value_t = 1.0)]
+    contrast: f64,
+
+    /// Along which axes the texture repeats, and its map with it. Along others it is mirrored at its edges.
+    #[arg(long, value_enum, default_value_t = Axes::Both)]
+    wrap: Axes,
+
+    /// Leave the values as they are; else each becomes its rank, from 0 to 1.
+    #[arg(long)]
+    plain: bool,
+
+    #[command(flatten)]
+    #[serde(skip)]
+    output: ImageArgs,
+}
+
+/// Runs it.
+///
+/// # Errors
+///
+/// Whatever went wrong.
+pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    let mut job = Job::new(context, "blend-map", &args.output.files);
+    let target = args.output.files.target()?;
+    Format::choose(args.output.format, &target, Format::Png16)?;
+    let output = job.claim(&target)?;
+    job.claim_sidecar()?;
+    let loaded = input::map(&args.image, Kind::ByChannels, args.region)?;
+    let wrap = |repeats| if repeats { Wrap::Repeat } else { Wrap::Mirror };
+    let options = BlendMap {
+        feature_size: args.feature_size,
+        contrast: args.contrast,
+        wrap: args.wrap.flags().map(wrap),
+    };
+    let progress = Progress::spinner("looking for features", context.quiet);
+    let map = match &loaded.map {
+        Map::Value(values) => options.apply(values)?,
+        Map::Color(colors) => options.apply_color(colors)?,
+        Map::Normal(_) => return Err(anyhow!("normals have no features of their own")),
+    };
+    let map = if args.plain {
+        map
+    } else {
+        rank_equalize(&map)?
+    };
+    drop(progress);
+    job.write_image(output, Map::Value(map), true, &args.output)?;
+    job.finish(args, Value::Null)?;
+    Ok(Exit::Done)
+}

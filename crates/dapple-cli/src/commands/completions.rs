@@ -1,0 +1,37 @@
+//! `dapple completions`: what a shell needs to complete the command line.
+
+use crate::cli::Cli;
+use crate::error::Exit;
+use crate::job::say;
+use anyhow::Result;
+use clap::CommandFactory;
+use clap_complete::Shell;
+
+const EXAMPLES: &str = "\
+Examples:
+  dapple completions bash > dapple.bash
+  dapple completions fish > dapple.fish
+
+For bash, put `source <(dapple completions bash)` into ~/.bashrc; for zsh, write the
+script as `_dapple` into a folder of $fpath.";
+
+/// Print what makes a shell complete this command.
+#[derive(clap::Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// The shell.
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+/// Runs it.
+///
+/// # Errors
+///
+/// If nobody listens.
+pub(crate) fn run(args: &Args) -> Result<Exit> {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "dapple", &mut script);
+    say(String::from_utf8_lossy(&script).trim_end())?;
+    Ok(Exit::Done)
+}

@@ -1,0 +1,176 @@
+//! `dapple info`: what is in an image or a mesh, in numbers.
+
+mod channels;
+mod mesh;
+
+use crate::args::{Axes, OutputArgs, Region, Size};
+use crate::error::Exit;
+use crate::input;
+use crate::job::{Context, Job, say};
+use crate::output::Target;
+use anyhow::{Context as _, Result};
+use channels::{Channel, channels, format};
+use dapple::raster::Raster;
+use dapple::tile::{Map, SeamOptions, SeamReport};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  dapple info photo.png
+  dapple info height.png albedo.png --json
+  dapple info grain.png --check --axes x
+  dapple info model.obj
+
+Numbers are those of the file: code / max in PNG, from 0 to 1, and as they are in EXR.
+A seam ratio near 1 says that the step across the wrap is like the steps inside: it is
+that of the luminance, at steps between means of 1, 2, 4 and 8 pixels.";
+
+/// Tell what is in images and meshes: size, range, histogram, how well they repeat, what is wrong.
+#[derive(clap::Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Images, or meshes (.obj, .ply, .glb, .gltf, .off). `-` is an image from standard input.
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+
+    /// Look only at this part of images, in pixels.
+    #[arg(long, value_name = "X,Y,W,H")]
+    region: Option<Region>,
+
+    /// Along which axes images are to repeat; `none` leaves out the seam report.
+    #[arg(long, value_enum, default_value_t = Axes::Both)]
+    axes: Axes,
+
+    /// Compare the seam only with every n-th boundary of pixels.
+    #[arg(long, value_name = "N[xN]", default_value_t = Size([1, 1]))]
+    lattice: Size,
+
+    /// Exit with 3 if an image does not repeat well, has pixels that are NaN or infinite, or a mesh needs repair.
+    #[arg(long)]
+    check: bool,
+
+    /// Print JSON, or write it to a file.
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
+    json: Option<Option<PathBuf>>,
+
+    /// Replace a JSON file that is there.
+    #[arg(long)]
+    force: bool,
+}
+
+/// What is found in a file.
+pub(super) struct Findings {
+    /// For people.
+    text: String,
+    /// For programs.
+    json: Value,
+    /// Whether `--check` is content.
+    is_good: bool,
+}
+
+/// Runs it.
+///
+/// # Errors
+///
+/// If a file cannot be read, or is neither an image nor a mesh.
+pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    let output = OutputArgs {
+        output: args.json.clone().flatten(),
+        force: args.force,
+        json: None,
+    };
+    let mut job = Job::new(context, "info", &output);
+    let file = match &output.output {
+        Some(path) => Some(job.claim_text(&Target::from(path.as_path()))?),
+        None => None,
+    };
+    let (mut reports, mut is_good) = (Vec::new(), true);
+    for path in &args.files {
+        let findings = if mesh::is_mesh(path) {
+            mesh::findings(path)?
+        } else {
+            image_findings(path, args)?
+        };
+        is_good &= findings.is_good;
+        if args.json.is_none() {
+            say(&findings.text)?;
+        }
+        reports.push(findings.json);
+    }
+    let text = serde_json::to_string_pretty(&reports)?;
+    match file {
+        Some(file) => job.write(file, format!("{text}\n").as_bytes())?,
+        None if args.json.is_some() => say(&text)?,
+        None => {}
+    }
+    job.finish(&Value::Null, Value::Null)?;
+    Ok(if args.check && !is_good {
+        Exit::Check
+    } else {
+        Exit::Done
+    })
+}
+
+/// The rasters of a map on which seams are measured, with what to add to its name.
+pub(super) fn measured(map: &Map) -> Vec<(&'static str, Raster<f32>)> {
+    match map {
+        Map::Value(values) => vec![("", values.clone())],
+        Map::Color(colors) => vec![(", luminance", colors.map(|color| color.luminance()))],
+        Map::Normal(normals) => vec![
+            (", x", normals.map(|normal| normal.x)),
+            (", y", normals.map(|normal| normal.y)),
+        ],
+    }
+}
+
+fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
+    let image = input::image(path)?;
+    let mut channels = channels(&image).with_context(|| input::name(path))?;
+    if let Some(Region { first, size }) = args.region {
+        for channel in &mut channels {
+            let part = channel.values.crop(first, size);
+            channel.values = part.with_context(|| input::name(path))?;
+        }
+    }
+    let n_not_finite: usize = channels.iter().map(Channel::n_not_finite).sum();
+    let seams = match args.axes {
+        Axes::None => None,
+        _ if n_not_finite > 0 => None,
+        axes => {
+            let options = SeamOptions {
+                axes: axes.flags(),
+                lattice: args.lattice.0,
+            };
+            let luminance = channels::luminance(&channels);
+            let report = luminance.map(|values| SeamReport::of(&values, &options));
+            report.transpose().with_context(|| input::name(path))?
+        }
+    };
+    let size = channels
+        .first()
+        .map_or([0; 2], |channel| channel.values.size());
+    let format = format(&image);
+    let mut text = format!(
+        "{}: {} × {} pixels, {format}",
+        input::name(path),
+        size[0],
+        size[1]
+    );
+    text += &channels::table(&channels);
+    match &seams {
+        Some(report) => text += &format!("\n{report}"),
+        None if n_not_finite > 0 => text += "\nno seam report: not all pixels are finite",
+        None => {}
+    }
+    let channels: Vec<_> = channels.iter().map(Channel::to_json).collect();
+    let json = json!({
+        "file": input::name(path), "kind": "image", "format": format, "size": size,
+        "channels": channels, "seams": seams,
+    });
+    Ok(Findings {
+        text: text + "\n",
+        json,
+        is_good: n_not_finite == 0 && seams.is_none_or(|report| report.passes()),
+    })
+}

@@ -1,0 +1,219 @@
+//! The channels of an image as the file has them, and their statistics.
+
+use anyhow::Result;
+use dapple::color::{Code, LinearRgb};
+use dapple::image::{Image, PngPixels, Transfer};
+use dapple::raster::Raster;
+use serde_json::{Value, json};
+
+/// How many parts a histogram has.
+const BINS: u32 = 24;
+/// From an empty part of a histogram to its fullest.
+const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+
+const GRAY: [&str; 1] = ["gray"];
+const GRAY_ALPHA: [&str; 2] = ["gray", "alpha"];
+const RGB: [&str; 3] = ["red", "green", "blue"];
+const RGBA: [&str; 4] = ["red", "green", "blue", "alpha"];
+
+/// A channel with its name.
+pub(super) struct Channel {
+    name: String,
+    pub(super) values: Raster<f32>,
+}
+
+impl Channel {
+    /// How many of its pixels are NaN or infinite.
+    pub(super) fn n_not_finite(&self) -> usize {
+        self.values.statistics().n_not_finite
+    }
+
+    /// Its statistics for programs. What is not finite becomes null.
+    pub(super) fn to_json(&self) -> Value {
+        let statistics = self.values.statistics();
+        json!({
+            "name": self.name, "min": statistics.min, "max": statistics.max, "mean": statistics.mean,
+            "deviation": statistics.deviation, "nan": self.n_nan(),
+            "infinite": statistics.n_not_finite - self.n_nan(), "histogram": self.histogram(),
+        })
+    }
+
+    fn n_nan(&self) -> usize {
+        self.values
+            .pixels()
+            .iter()
+            .filter(|value| value.is_nan())
+            .count()
+    }
+
+    /// How many pixels lie in each part of the range.
+    fn histogram(&self) -> Vec<usize> {
+        let statistics = self.values.statistics();
+        let finite = self.values.pixels().iter().copied();
+        let finite: Vec<_> = finite.filter(|value| value.is_finite()).collect();
+        let length = u32::try_from(finite.len()).unwrap_or(u32::MAX);
+        // Without a finite pixel there is no raster, and nothing to count.
+        Raster::from_vec([length, 1], finite).map_or_else(
+            |_| vec![0; BINS as usize],
+            |values| values.histogram(statistics.min, statistics.max, BINS),
+        )
+    }
+
+    /// The histogram as a line of bars.
+    fn bars(&self) -> String {
+        let counts = self.histogram();
+        let most = counts.iter().copied().max().unwrap_or(0).max(1);
+        let bar = |&count: &usize| {
+            // What is there at all is seen.
+            let height = (count * (BARS.len() - 1)).div_ceil(most);
+            BARS[height]
+        };
+        counts.iter().map(bar).collect()
+    }
+
+    fn line(&self) -> String {
+        let statistics = self.values.statistics();
+        let mut line = format!(
+            "\n  {:<12}{:>10.4}{:>10.4}{:>10.4}{:>10.4}  |{}|",
+            self.name,
+            statistics.min,
+            statistics.max,
+            statistics.mean,
+            statistics.deviation,
+            self.bars()
+        );
+        let n_nan = self.n_nan();
+        for (count, what) in [
+            (n_nan, "NaN"),
+            (statistics.n_not_finite - n_nan, "infinite"),
+        ] {
+            if count > 0 {
+                line += &format!("  {count} {what}");
+            }
+        }
+        line
+    }
+}
+
+/// The channels of an image, as the file has them.
+///
+/// # Errors
+///
+/// If the image has none that can be told apart.
+pub(super) fn channels(image: &Image) -> Result<Vec<Channel>> {
+    Ok(match image {
+        Image::Png(png) | Image::Jpeg(png) => match &png.pixels {
+            PngPixels::Gray8(raster) => split(&raster.map(|&code| [code]), GRAY),
+            PngPixels::Gray16(raster) => split(&raster.map(|&code| [code]), GRAY),
+            PngPixels::GrayAlpha8(raster) => split(raster, GRAY_ALPHA),
+            PngPixels::GrayAlpha16(raster) => split(raster, GRAY_ALPHA),
+            PngPixels::Rgb8(raster) => split(raster, RGB),
+            PngPixels::Rgb16(raster) => split(raster, RGB),
+            PngPixels::Rgba8(raster) => split(raster, RGBA),
+            PngPixels::Rgba16(raster) => split(raster, RGBA),
+        },
+        Image::Exr(exr) => {
+            let channel = |plane: &dapple::image::ExrPlane| Channel {
+                name: plane.name.clone(),
+                values: plane.values.clone(),
+            };
+            exr.planes.iter().map(channel).collect()
+        }
+        other => split(&other.color()?.map(|color| color.to_srgb::<u8>()), RGB),
+    })
+}
+
+/// What kind of image it is, in words.
+pub(super) fn format(image: &Image) -> String {
+    let (name, bits) = (image.format(), image.bits());
+    match image {
+        Image::Png(png) if png.transfer == Transfer::Srgb => {
+            format!("{name}, {bits} bits per channel, marked as sRGB")
+        }
+        Image::Exr(_) => format!("{name}, read as 32-bit floating point"),
+        _ => format!("{name}, {bits} bits per channel"),
+    }
+}
+
+/// The values on which seams are measured: the luminance of colors, or the first channel.
+pub(super) fn luminance(channels: &[Channel]) -> Option<Raster<f32>> {
+    let named = |names: [&str; 2]| {
+        let is_named = |channel: &&Channel| names.contains(&channel.name.as_str());
+        channels
+            .iter()
+            .find(is_named)
+            .map(|channel| &channel.values)
+    };
+    let colors = [
+        named(["red", "R"]),
+        named(["green", "G"]),
+        named(["blue", "B"]),
+    ];
+    let [Some(red), Some(green), Some(blue)] = colors else {
+        return channels.first().map(|channel| channel.values.clone());
+    };
+    let pairs = red.zip_map(green, |&r, &g| (r, g)).ok()?;
+    let luminance = pairs.zip_map(blue, |&(r, g), &b| LinearRgb::new(r, g, b).luminance());
+    luminance.ok()
+}
+
+/// A line for each channel, under a header; each begins a new line.
+pub(super) fn table(channels: &[Channel]) -> String {
+    let mut table = format!(
+        "\n  {:<12}{:>10}{:>10}{:>10}{:>10}  histogram from min to max",
+        "", "min", "max", "mean", "deviation"
+    );
+    for channel in channels {
+        table += &channel.line();
+    }
+    table
+}
+
+fn split<C: Code, const N: usize>(raster: &Raster<[C; N]>, names: [&str; N]) -> Vec<Channel> {
+    let channel = |(index, name): (usize, &str)| Channel {
+        name: name.to_owned(),
+        values: raster.map(|codes| codes[index].to_unit()),
+    };
+    names.into_iter().enumerate().map(channel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{BARS, BINS, Channel, luminance};
+    use dapple::raster::Raster;
+
+    fn channel(values: Vec<f32>) -> Channel {
+        let size = [values.len() as u32, 1];
+        Channel {
+            name: "R".to_owned(),
+            values: Raster::from_vec(size, values).unwrap(),
+        }
+    }
+
+    #[test]
+    fn histograms_count_what_is_finite() {
+        let channel = channel(vec![0.0, 0.5, 1.0, f32::NAN, f32::INFINITY]);
+        assert_eq!(channel.histogram().iter().sum::<usize>(), 3);
+        assert_eq!((channel.n_nan(), channel.n_not_finite()), (1, 2));
+        let bars = channel.bars();
+        assert_eq!(bars.chars().count(), BINS as usize, "{bars:?}");
+        assert_eq!(
+            bars.chars().filter(|&bar| bar == BARS[8]).count(),
+            3,
+            "{bars:?}"
+        );
+    }
+
+    #[test]
+    fn nothing_finite_makes_an_empty_histogram() {
+        let channel = channel(vec![f32::NAN; 4]);
+        assert_eq!(channel.histogram(), [0; BINS as usize]);
+        assert!(channel.to_json()["mean"].is_null(), "a mean of nothing");
+    }
+
+    #[test]
+    fn one_plane_is_its_own_luminance() {
+        let values = luminance(&[channel(vec![0.25; 4])]).unwrap();
+        assert_eq!(values.pixels(), [0.25; 4]);
+    }
+}

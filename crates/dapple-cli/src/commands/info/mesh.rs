@@ -1,0 +1,112 @@
+//! What is in a mesh, and what is wrong with it.
+
+use super::Findings;
+use crate::input;
+use anyhow::Result;
+use dapple::mesh::{MeshReport, Model, Surface};
+use dapple::points::glam::DVec3;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// The endings of the names of meshes.
+const ENDINGS: [&str; 5] = ["obj", "ply", "glb", "gltf", "off"];
+
+/// Whether a path has the name of a mesh.
+pub(super) fn is_mesh(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    ENDINGS.contains(&ending.to_ascii_lowercase().as_str())
+}
+
+/// What is in the mesh.
+///
+/// # Errors
+///
+/// If it cannot be read.
+pub(super) fn findings(path: &Path) -> Result<Findings> {
+    let model = input::model(path)?;
+    let report = model.mesh.report();
+    let surface = Surface::new(model.mesh.clone());
+    let counts = counts(&report);
+    let mut text = format!("{}:", path.display());
+    for (what, count) in counts.iter().filter(|(_, count)| *count > 0) {
+        text += &format!("\n  {count:>9} {what}");
+    }
+    if let Some([least, most]) = bounds(&model) {
+        text += &format!("\n  from {least:.4} to {most:.4}");
+    }
+    let columns = columns(&model);
+    if !columns.is_empty() {
+        text += &format!("\n  with {}", columns.join(", "));
+    }
+    let area = surface.as_ref().ok().map(Surface::area);
+    text += &match &surface {
+        Ok(surface) => format!("\n  an area of {:.6}; ready for a texture", surface.area()),
+        Err(error) => {
+            format!("\n  not ready for a texture as it is: {error}; dapple synth repairs it")
+        }
+    };
+    let counts = counts
+        .iter()
+        .map(|(what, count)| ((*what).to_owned(), json!(count)));
+    let json = json!({
+        "file": path.display().to_string(), "kind": "mesh", "counts": Value::Object(counts.collect()),
+        "bounds": bounds(&model).map(|ends| ends.map(|end| end.to_array())), "columns": columns,
+        "area": area, "is_surface": surface.is_ok(),
+    });
+    Ok(Findings {
+        text: text + "\n",
+        json,
+        is_good: surface.is_ok(),
+    })
+}
+
+fn counts(report: &MeshReport) -> [(&'static str, usize); 11] {
+    [
+        ("vertices", report.vertices),
+        ("faces", report.faces),
+        ("pieces", report.components),
+        ("edges at a border", report.boundary_edges),
+        ("edges of three or more faces", report.non_manifold_edges),
+        (
+            "vertices with several fans of faces",
+            report.non_manifold_vertices,
+        ),
+        (
+            "edges whose faces wind in different ways",
+            report.winding_edges,
+        ),
+        ("faces without an area", report.degenerate_faces),
+        ("faces that are there twice", report.duplicate_faces),
+        (
+            "vertices at the place of another",
+            report.duplicate_vertices,
+        ),
+        ("vertices without a face", report.unused_vertices),
+    ]
+}
+
+/// The corners of the box around it, if it has a vertex.
+fn bounds(model: &Model) -> Option<[DVec3; 2]> {
+    let positions = model.mesh.positions();
+    let (&first, rest) = positions.split_first()?;
+    let grow = |[least, most]: [DVec3; 2], at: &DVec3| [least.min(*at), most.max(*at)];
+    Some(rest.iter().fold([first; 2], grow))
+}
+
+/// What it has besides positions.
+fn columns(model: &Model) -> Vec<&'static str> {
+    let material = &model.material;
+    let all = [
+        ("colors", model.colors.is_some()),
+        ("texture coordinates", model.uvs.is_some()),
+        ("normals", model.normals.is_some()),
+        ("a texture of colors", material.base_color.is_some()),
+        ("a texture of normals", material.normal.is_some()),
+        (
+            "a texture of roughness",
+            material.metallic_roughness.is_some(),
+        ),
+    ];
+    let there = all.into_iter().filter(|(_, is_there)| *is_there);
+    there.map(|(what, _)| what).collect()
+}

@@ -1,0 +1,343 @@
+//! The kinds of point sets, and the options that each of them takes.
+
+use crate::args::{Axes, Extent, Size};
+use crate::error::{Hint, usage};
+use crate::input::{self, Kind as ImageKind};
+use anyhow::{Context as _, Error, Result};
+use clap::ValueEnum;
+use dapple::hash::Seed;
+use dapple::points::glam::DVec2;
+use dapple::points::raster::{Ramp, Varying, Wrap};
+use dapple::points::{
+    DiskRule, Domain, PointSet, PointsError, PointsErrorKind, VariablePoissonOptions,
+    gentle_radius_for_count, jittered_grid, nested_poisson_disk, poisson_disk, poisson_disk_radius,
+    radius_for_count, variable_poisson_disk, white_noise,
+};
+use dapple::tile::Map;
+use serde::Serialize;
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::sync::Arc;
+
+/// How many points there are if nobody says it.
+const COUNT: u32 = 1000;
+/// The most columns and rows at which the density of an image is read.
+const PLACES_MAX: u32 = 2048;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Kind {
+    Poisson,
+    Variable,
+    Nested,
+    Jittered,
+    White,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Rule {
+    /// The mean of the two radii.
+    Average,
+    /// The larger one.
+    Larger,
+    /// The smaller one.
+    Smaller,
+}
+
+/// What points there are to be.
+#[derive(clap::Args, Clone, Debug, Serialize)]
+#[command(next_help_heading = "Points")]
+pub(super) struct ScatterArgs {
+    /// The kind of points; see below.
+    #[arg(value_enum, default_value_t = Kind::Poisson, hide_possible_values = true, help_heading = None::<&str>)]
+    kind: Kind,
+
+    /// Where the randomness comes from: any whole number from 0 to 2^64 - 1.
+    #[arg(long, default_value_t = 0)]
+    pub(super) seed: u64,
+
+    /// About how many points, at least 1; 1000 if nothing else says it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    count: Option<u32>,
+
+    /// poisson: the least distance, in units of the domain, above 0.
+    #[arg(long, value_name = "R", conflicts_with = "count")]
+    radius: Option<f64>,
+
+    /// nested: the least distances of the levels, the coarsest first.
+    #[arg(
+        long,
+        value_name = "R,R,...",
+        value_delimiter = ',',
+        conflicts_with = "count"
+    )]
+    radii: Vec<f64>,
+
+    /// nested: how many levels, 1 to 16, each with about four times the points of the one before; by default 3.
+    #[arg(long, value_name = "N", conflicts_with = "radii", value_parser = clap::value_parser!(u32).range(1..=16))]
+    levels: Option<u32>,
+
+    /// variable: where points are dense: an image, whose bright parts are; or A:B, a ramp from left to right, which has
+    /// points in the ratio of A to B at its ends.
+    #[arg(long, value_name = "IMAGE|A:B")]
+    density: Option<Density>,
+
+    /// variable: let dark parts of the image be dense.
+    #[arg(long)]
+    invert: bool,
+
+    /// variable: how far apart points of different radius are; by default the mean of their radii.
+    #[arg(long, value_enum)]
+    rule: Option<Rule>,
+
+    /// jittered: columns and rows of the grid; by default square cells for the count.
+    #[arg(long, value_name = "NxM", conflicts_with = "count")]
+    cells: Option<Size>,
+
+    /// jittered: from 0, the center of the cell, to 1, anywhere in it; by default 1.
+    #[arg(long, value_name = "PART")]
+    jitter: Option<f64>,
+
+    /// Width and height of the domain.
+    #[arg(long, value_name = "WxH", default_value = "1", help_heading = "Domain")]
+    domain: Extent,
+
+    /// The corner of the domain with the smallest coordinates.
+    #[arg(
+        long,
+        value_name = "X,Y",
+        default_value = "0,0",
+        allow_hyphen_values = true,
+        help_heading = "Domain"
+    )]
+    origin: Position,
+
+    /// Along which axes the domain wraps: the points then repeat without a seam.
+    #[arg(long, value_enum, default_value_t = Axes::Both, help_heading = "Domain")]
+    wrap: Axes,
+}
+
+/// Points, and what is known of them.
+#[derive(Debug)]
+pub(super) struct Scattered {
+    pub(super) points: PointSet,
+    /// How many points are of each level and the ones before; a single number for points without levels.
+    pub(super) lengths: Vec<usize>,
+    /// The least distance, if there is one.
+    pub(super) radius: Option<f64>,
+}
+
+impl Scattered {
+    /// The level of a point, 0 the coarsest.
+    pub(super) fn level(&self, index: usize) -> usize {
+        self.lengths.partition_point(|&length| length <= index)
+    }
+}
+
+impl ScatterArgs {
+    /// Scatters the points.
+    ///
+    /// # Errors
+    ///
+    /// If an option was given that the kind does not have, and whatever the kind refuses.
+    pub(super) fn scatter(&self) -> Result<Scattered> {
+        self.check_used()?;
+        let Extent([width, height]) = self.domain;
+        let domain = Domain {
+            origin: DVec2::from(self.origin.0),
+            size: DVec2::new(width, height),
+            wrap: self.wrap.flags(),
+        };
+        let (count, seed) = (self.count.unwrap_or(COUNT), Seed(self.seed));
+        match self.kind {
+            Kind::Poisson => {
+                let radius = match self.radius {
+                    Some(radius) => radius,
+                    None => poisson_disk_radius(domain, count)?,
+                };
+                let points = poisson_disk(domain, radius, seed).map_err(advise)?;
+                Ok(flat(points, Some(radius)))
+            }
+            Kind::Nested => self.nested(domain, count, seed),
+            Kind::Variable => {
+                let radius = self.variable_radius(domain, count)?;
+                let options = VariablePoissonOptions {
+                    rule: match self.rule {
+                        Some(Rule::Larger) => DiskRule::Larger,
+                        Some(Rule::Smaller) => DiskRule::Smaller,
+                        Some(Rule::Average) | None => DiskRule::Average,
+                    },
+                    ..VariablePoissonOptions::default()
+                };
+                let points = variable_poisson_disk(domain, &radius, &options, seed);
+                Ok(flat(points.map_err(advise)?, None))
+            }
+            Kind::Jittered => {
+                let cells = self
+                    .cells
+                    .map_or_else(|| square_cells(domain, count), |cells| cells.0);
+                let points = jittered_grid(domain, cells, self.jitter.unwrap_or(1.0), seed)?;
+                Ok(flat(points, None))
+            }
+            Kind::White => Ok(flat(white_noise(domain, count, seed)?, None)),
+        }
+    }
+
+    fn nested(&self, domain: Domain, count: u32, seed: Seed) -> Result<Scattered> {
+        let radii = if self.radii.is_empty() {
+            let finest = poisson_disk_radius(domain, count)?;
+            let n_levels = self.levels.unwrap_or(3);
+            // Twice the radius for a quarter of the points.
+            let radius = |level| finest * f64::from(1_u32 << (n_levels - 1 - level));
+            (0..n_levels).map(radius).collect()
+        } else {
+            self.radii.clone()
+        };
+        let nested = nested_poisson_disk(domain, &radii, seed).map_err(advise)?;
+        Ok(Scattered {
+            lengths: nested.lengths().to_vec(),
+            points: nested.into_points(),
+            radius: radii.last().copied(),
+        })
+    }
+
+    /// The radius that follows the density.
+    fn variable_radius(&self, domain: Domain, count: u32) -> Result<Varying> {
+        let (from, end) = (domain.origin, domain.end());
+        let path = match &self.density {
+            None => {
+                return Err(
+                    usage("variable points need a density").hint("add --density IMAGE or A:B")
+                );
+            }
+            Some(Density::Ramp(ends)) => {
+                let density = Varying::Ramp(Ramp {
+                    from,
+                    to: DVec2::new(end.x, from.y),
+                    start: ends[0],
+                    end: ends[1],
+                });
+                return radius_for_count(domain, &density, count.into()).map_err(advise);
+            }
+            Some(Density::Image(path)) => path,
+        };
+        let values = match input::map(path, ImageKind::ByChannels, None)?.map {
+            Map::Value(values) => values,
+            Map::Color(colors) => colors.map(|color| color.luminance()),
+            Map::Normal(normals) => normals.map(|normal| normal.z),
+        };
+        let density = values.map(|value| {
+            let value = if self.invert { 1.0 - value } else { *value };
+            value.max(0.0)
+        });
+        let places = density.size().map(|side| side.min(PLACES_MAX));
+        let repeats = |wraps| if wraps { Wrap::Repeat } else { Wrap::Clamp };
+        let density = Varying::Raster {
+            raster: Arc::new(density),
+            origin: from,
+            extent: domain.size,
+            wrap: domain.wrap.map(repeats),
+        };
+        let radius = gentle_radius_for_count(domain, &density, count.into(), places);
+        radius.map_err(advise).with_context(|| input::name(path))
+    }
+
+    /// Refuses options of other kinds, which would have no effect.
+    fn check_used(&self) -> Result<()> {
+        let given = [
+            ("radius", self.radius.is_some(), Kind::Poisson),
+            ("radii", !self.radii.is_empty(), Kind::Nested),
+            ("levels", self.levels.is_some(), Kind::Nested),
+            ("density", self.density.is_some(), Kind::Variable),
+            ("invert", self.invert, Kind::Variable),
+            ("rule", self.rule.is_some(), Kind::Variable),
+            ("cells", self.cells.is_some(), Kind::Jittered),
+            ("jitter", self.jitter.is_some(), Kind::Jittered),
+        ];
+        for (option, is_given, kind) in given {
+            if is_given && kind != self.kind {
+                let name = kind.to_possible_value();
+                let name = name.map_or(String::new(), |name| name.get_name().to_owned());
+                let message = format!("--{option} means nothing to points of this kind");
+                return Err(usage(message).hint(format!("it is for dapple points {name}")));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// An image, or the values at the left and at the right.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+enum Density {
+    Ramp([f64; 2]),
+    Image(PathBuf),
+}
+
+impl FromStr for Density {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let ends = text
+            .split_once(':')
+            .map(|(a, b)| [a, b].map(str::parse::<f64>));
+        match ends {
+            Some([Ok(a), Ok(b)]) if a > 0.0 && b > 0.0 && a.is_finite() && b.is_finite() => {
+                Ok(Self::Ramp([a, b]))
+            }
+            Some([Ok(a), Ok(b)]) => Err(format!("densities are above 0 and finite, not {a}:{b}")),
+            _ => Ok(Self::Image(PathBuf::from(text))),
+        }
+    }
+}
+
+/// Two finite numbers, `x,y`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct Position([f64; 2]);
+
+impl FromStr for Position {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts: Vec<_> = text
+            .split(',')
+            .map(|part| part.trim().parse::<f64>())
+            .collect();
+        match parts.as_slice() {
+            [Ok(x), Ok(y)] if x.is_finite() && y.is_finite() => Ok(Self([*x, *y])),
+            _ => Err(format!("{text:?} is no position; one is x,y")),
+        }
+    }
+}
+
+fn flat(points: PointSet, radius: Option<f64>) -> Scattered {
+    Scattered {
+        lengths: vec![points.len()],
+        points,
+        radius,
+    }
+}
+
+/// Columns and rows of nearly square cells, about as many as points are wanted.
+fn square_cells(domain: Domain, count: u32) -> [u32; 2] {
+    let side = (domain.area() / f64::from(count)).sqrt();
+    let along = |length: f64| ((length / side + 0.5).floor().max(1.0)) as u32;
+    [along(domain.size.x), along(domain.size.y)]
+}
+
+/// Adds what to do about what is often refused.
+fn advise(error: PointsError) -> Error {
+    let hint = match error.kind() {
+        PointsErrorKind::PeriodTooShort { .. } => {
+            "take a smaller radius, more points, or --wrap none"
+        }
+        PointsErrorKind::TooSteep { .. } => {
+            "take more points, or ends of the ramp that differ less"
+        }
+        PointsErrorKind::TooMany { .. } => "take a larger radius or a smaller domain",
+        PointsErrorKind::NotDescending { .. } => "name the largest radius first",
+        _ => return error.into(),
+    };
+    Error::new(error).hint(hint)
+}

@@ -1,0 +1,90 @@
+//! Control points in files: CSV lines `x,y,value` or `x,y,value,ox,oy`, and JSON lists of objects.
+
+use crate::input;
+use anyhow::{Context as _, Result, bail};
+use dapple::recipe::ControlPoint;
+use std::path::Path;
+
+/// Reads control points; `-` is standard input. Text that begins with `[` is JSON.
+///
+/// # Errors
+///
+/// If there is no such file, or a line is no control point; the message names the line.
+pub(crate) fn read(path: &Path) -> Result<Vec<ControlPoint>> {
+    let text = input::text(path)?;
+    let points = if text.trim_start().starts_with('[') {
+        serde_json::from_str(&text).context("this is no list of control points in JSON")
+    } else {
+        csv(&text)
+    };
+    let points = points.with_context(|| input::name(path))?;
+    if points.is_empty() {
+        bail!("{} has no control points", input::name(path));
+    }
+    Ok(points)
+}
+
+/// The points of CSV; empty lines, lines that begin with `#`, and a first line of names are left out.
+fn csv(text: &str) -> Result<Vec<ControlPoint>> {
+    let mut points = Vec::new();
+    for (line, text) in (1..).zip(text.lines()) {
+        let text = text.trim();
+        let is_heading = points.is_empty() && text.starts_with(|c: char| c.is_ascii_alphabetic());
+        if text.is_empty()
+            || text.starts_with('#')
+            || (is_heading && !text.starts_with("nan") && !text.starts_with("inf"))
+        {
+            continue;
+        }
+        points.push(point(text).with_context(|| format!("line {line}"))?);
+    }
+    Ok(points)
+}
+
+fn point(text: &str) -> Result<ControlPoint> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|part| part.trim().parse())
+        .collect::<Result<_, _>>()
+        .with_context(|| format!("{text:?}"))?;
+    let (x, y, value, orientation) = match numbers[..] {
+        [x, y, value] => (x, y, value, None),
+        [x, y, value, ox, oy] => (x, y, value, Some([ox, oy])),
+        _ => bail!(
+            "{text:?} has {} numbers; a control point has x,y,value or x,y,value,ox,oy",
+            numbers.len()
+        ),
+    };
+    Ok(ControlPoint {
+        x,
+        y,
+        value: value as f32,
+        orientation,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::csv;
+
+    #[test]
+    fn control_points_have_three_or_five_numbers() {
+        let points = csv("x,y,value\n# a comment\n0.5,1,0.25\n\n1, 2, 3, 0, -1\n").unwrap();
+        assert_eq!(
+            (points[0].x, points[0].y, points[0].value),
+            (0.5, 1.0, 0.25)
+        );
+        assert_eq!(points[1].orientation, Some([0.0, -1.0]));
+    }
+
+    #[test]
+    fn a_line_that_is_no_control_point_is_named() {
+        for text in ["0,0,0\n1,2\n", "0,0,0\n1,2,x\n", "0,0,0\n1,2,3,4\n"] {
+            let error = csv(text).unwrap_err();
+            assert!(
+                format!("{error:#}").contains("line 2"),
+                "{text:?}: {error:#}"
+            );
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! `dapple recipe`: recipes listed, checked and printed.
+
+use crate::args::OutputArgs;
+use crate::baking::{advise, read_images, read_recipe};
+use crate::error::{Exit, Hint, usage};
+use crate::job::{Context, Job, say};
+use anyhow::Result;
+use dapple::hash::Seed;
+use dapple::recipe::{Plan, Recipe};
+use serde::Serialize;
+use serde_json::Value;
+
+const EXAMPLES: &str = "\
+Examples:
+  dapple recipe --list
+  dapple recipe giraffe
+  dapple recipe giraffe -o my-giraffe.toml
+  dapple recipe flagstone --rust
+  dapple recipe flagstone --as json -o flagstone.json
+
+A built-in recipe is printed as it was written, with its comments; change it and give the
+file to `dapple bake`. With --rust it becomes Rust code that needs the crate `dapple` and gives
+the same numbers.";
+
+/// List the built-in recipes; print a recipe as TOML, JSON or Rust; check one of your own.
+#[derive(clap::Args, Debug, Serialize)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// A built-in recipe, or a file in TOML or JSON; `-` is standard input.
+    #[arg(value_name = "RECIPE", required_unless_present = "list")]
+    recipe: Option<String>,
+
+    /// List the built-in recipes.
+    #[arg(long, conflicts_with = "recipe")]
+    list: bool,
+
+    /// Print Rust code that makes the material.
+    #[arg(long, conflicts_with = "to")]
+    rust: bool,
+
+    /// Rewrite the recipe in this format.
+    #[arg(long = "as", value_enum, value_name = "FORMAT")]
+    to: Option<Text>,
+
+    /// Another seed than that of the recipe.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+
+    /// Only say whether the recipe can be baked.
+    #[arg(long, conflicts_with_all = ["rust", "to", "output"])]
+    check: bool,
+
+    #[command(flatten)]
+    #[serde(skip)]
+    files: OutputArgs,
+}
+
+/// The formats of recipes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Text {
+    /// TOML.
+    Toml,
+    /// JSON.
+    Json,
+}
+
+/// Runs it.
+///
+/// # Errors
+///
+/// Whatever went wrong.
+pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    let Some(name) = args.recipe.as_deref() else {
+        return list();
+    };
+    let (mut recipe, folder) = read_recipe(name)?;
+    if args.check {
+        let images = read_images(&recipe, folder)?;
+        Plan::new(&recipe, &images, 0.0).map_err(advise)?;
+        say(&format!(
+            "{name} can be baked: {} nodes",
+            recipe.nodes.len()
+        ))?;
+        return Ok(Exit::Done);
+    }
+    let is_as_written = !args.rust && args.to.is_none() && args.seed.is_none();
+    if let Some(seed) = args.seed {
+        recipe.seed = Seed(seed);
+    }
+    let text = match (Recipe::builtin_text(name), args.to) {
+        (Ok(text), _) if is_as_written && folder.as_os_str().is_empty() => text.to_owned(),
+        _ if args.rust => recipe.to_rust().map_err(advise)?,
+        (_, Some(Text::Json)) => recipe.to_json().map_err(advise)? + "\n",
+        _ => recipe.to_toml().map_err(advise)?,
+    };
+    if args.files.output.is_none() {
+        if args.files.json.is_some() {
+            return Err(
+                usage("there is no output for the JSON file to lie beside").hint("add -o FILE")
+            );
+        }
+        say(text.trim_end())?;
+        return Ok(Exit::Done);
+    }
+    let mut job = Job::new(context, "recipe", &args.files);
+    let output = job.claim_text(&args.files.target()?)?;
+    job.claim_sidecar()?;
+    job.write(output, text.as_bytes())?;
+    job.finish(args, Value::Null)?;
+    Ok(Exit::Done)
+}
+
+/// The names of the built-in recipes, with a sentence each.
+fn list() -> Result<Exit> {
+    let mut lines = Vec::new();
+    for name in Recipe::builtin_names() {
+        let recipe = Recipe::builtin(name).map_err(advise)?;
+        lines.push(format!("{name:<16} {}", recipe.about));
+    }
+    say(&lines.join("\n"))?;
+    Ok(Exit::Done)
+}

@@ -1,0 +1,214 @@
+//! `dapple synth`: texture from an example, in the plane or on a mesh.
+
+mod options;
+mod plane;
+mod surface;
+
+use crate::args::{ImageArgs, Region};
+use crate::error::{Exit, Hint, usage};
+use crate::input::{self, Kind, Loaded};
+use crate::job::{Context, Job};
+use crate::output::{OutputIdx, Target};
+use crate::progress::Progress;
+use anyhow::{Error, Result, bail};
+use dapple::synth::{Exemplar, Progress as Steps, SynthError, SynthErrorKind};
+use dapple::tile::Map;
+use options::{MatchArgs, PlaneArgs, SurfaceArgs};
+use serde::Serialize;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+const EXAMPLES: &str = "\
+Examples:
+  dapple synth grass.png --size 256 --wrap both -o meadow.png
+  dapple synth grass.png --size 300x200 --map normal=grass_normal.png \\
+    --seed 7 -o meadow.png
+  dapple synth checker.png --mesh model.obj --edges wrap --sites 4000 \\
+    --texture-size 512 -o checkered.glb
+  dapple synth checker.png --mesh model.obj --sites 4000 \\
+    --directions directions.csv -o checkered.ply
+  dapple synth checker.png --mesh model.obj --sites 4000 \\
+    --texture-size 512 -o checkered.obj
+
+The example is best 64 to 256 pixels wide: its features should be a tenth of it or
+less. More sites make the features smaller on the mesh, and take longer.
+
+What the ending of the output gives for a mesh:
+  .glb         the mesh with its texture in one file
+  .obj         the mesh, with its material (.mtl) and texture (.png) beside it
+  .ply         the sites as a mesh, with a color for each and no texture
+  .png, .exr   the texture alone
+
+Directions are lines x,y,z,dx,dy,dz (CSV) or [{\"at\": [x,y,z], \"vector\": [dx,dy,dz]}]
+(JSON): at a place on the mesh, where the down of the example points. One or a few are
+enough; in between they are interpolated.";
+
+/// Grow a texture from an example: an image or a tile of any size, or one that covers a mesh (Turk 2001).
+#[derive(clap::Args, Debug, Serialize)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// The example. Color is matched in sRGB, gray as it is.
+    #[arg(value_name = "IMAGE")]
+    exemplar: PathBuf,
+
+    /// Another map of the example that follows it, such as normal=FILE or roughness=FILE; may be given several times. It is
+    /// written beside the output as `STEM-NAME`; in GLB and OBJ, normal goes into the material.
+    #[arg(long, value_name = "NAME=IMAGE")]
+    map: Vec<MapArg>,
+
+    /// Use only this part of the example, in pixels.
+    #[arg(long, value_name = "X,Y,W,H")]
+    region: Option<Region>,
+
+    #[command(flatten)]
+    plane: PlaneArgs,
+
+    #[command(flatten)]
+    surface: SurfaceArgs,
+
+    #[command(flatten)]
+    matching: MatchArgs,
+
+    #[command(flatten)]
+    #[serde(skip)]
+    image: ImageArgs,
+}
+
+/// A map with its name.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct MapArg {
+    name: String,
+    path: PathBuf,
+}
+
+impl FromStr for MapArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let is_name = |name: &str| {
+            let is_part = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
+            !name.is_empty() && name.bytes().all(is_part)
+        };
+        match text.split_once('=') {
+            Some((name, path)) if is_name(name) && !path.is_empty() => Ok(Self {
+                name: name.to_owned(),
+                path: PathBuf::from(path),
+            }),
+            _ => Err(format!("{text:?} is no map; one is such as normal=FILE")),
+        }
+    }
+}
+
+/// What goes into the synthesis: the example, and the maps that follow it.
+struct Input {
+    base: Loaded,
+    maps: Vec<(String, Loaded)>,
+    exemplar: Exemplar,
+}
+
+/// Runs it.
+///
+/// # Errors
+///
+/// Whatever went wrong.
+pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    args.check_used()?;
+    match &args.surface.mesh {
+        Some(mesh) => surface::run(args, mesh, context),
+        None => plane::run(args, context),
+    }
+}
+
+impl Args {
+    /// Refuses options of the other ground, which would have no effect.
+    fn check_used(&self) -> Result<()> {
+        let surface = self.surface.given();
+        match (&self.surface.mesh, self.plane.given(), surface) {
+            (Some(_), Some(option), _) => Err(usage(format!("--{option} means nothing on a mesh"))),
+            (None, _, Some(option)) => {
+                let error = usage(format!("--{option} means nothing without a mesh"));
+                Err(error.hint("add --mesh FILE"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Reads the example and its maps, which must have its size.
+    fn read(&self) -> Result<Input> {
+        let base = input::map(&self.exemplar, Kind::ByChannels, self.region)?;
+        let mut maps = Vec::new();
+        for MapArg { name, path } in &self.map {
+            let kind = match name.as_str() {
+                "normal" => Kind::Normals,
+                _ => Kind::ByChannels,
+            };
+            let map = input::map(path, kind, self.region)?;
+            input::check_size(path, map.map.size(), base.map.size())?;
+            maps.push((name.clone(), map));
+        }
+        let edges = self.matching.edges();
+        let exemplar = match &base.map {
+            Map::Color(colors) => Exemplar::new(colors, edges),
+            Map::Value(values) => Exemplar::from_planes(&[(values, 1.0)], edges),
+            Map::Normal(_) => bail!("normals are no example"),
+        };
+        let exemplar = exemplar.map_err(advise)?;
+        Ok(Input {
+            base,
+            maps,
+            exemplar,
+        })
+    }
+
+    /// Claims a file beside the output for each map: `STEM-NAME.ENDING`.
+    fn claim_maps(
+        &self,
+        target: &Target,
+        ending: &str,
+        job: &mut Job<'_>,
+    ) -> Result<Vec<OutputIdx>> {
+        let mut outputs = Vec::new();
+        for map in &self.map {
+            let Some(path) = target.path() else {
+                return Err(
+                    usage("maps lie beside the output, and standard output has no place")
+                        .hint("give a file with -o"),
+                );
+            };
+            let mut name = path.file_stem().unwrap_or_default().to_owned();
+            name.push(format!("-{}.{ending}", map.name));
+            outputs.push(job.claim(&Target::Path(path.with_file_name(name)))?);
+        }
+        Ok(outputs)
+    }
+}
+
+/// Shows the progress of a synthesis.
+fn shown(progress: &Progress) -> impl FnMut(Steps) -> ControlFlow<()> + '_ {
+    |steps: Steps| {
+        // Each pass is a part of the bar.
+        let part = steps.done as f64 / steps.n_sites.max(1) as f64;
+        let done = (steps.pass as f64 + part) / steps.n_passes.max(1) as f64;
+        progress.set((done * f64::from(STEPS)) as u64);
+        ControlFlow::Continue(())
+    }
+}
+
+/// The length of the progress bar.
+const STEPS: u32 = 1000;
+
+/// Adds what to do about what is often refused.
+fn advise(error: SynthError) -> Error {
+    let hint = match error.kind() {
+        SynthErrorKind::Exemplar { .. } => {
+            "take a larger example, fewer --levels, or --edges wrap if it repeats"
+        }
+        SynthErrorKind::Range { what, .. } if what.contains("side") => {
+            "take a larger --texture-size, a smaller --padding, or a mesh with fewer faces"
+        }
+        SynthErrorKind::Direction { .. } => "let directions lie along the surface",
+        _ => return error.into(),
+    };
+    Error::new(error).hint(hint)
+}

@@ -1,0 +1,208 @@
+//! The options of `dapple synth`.
+
+use crate::args::{Axes, Size};
+use clap::ValueEnum;
+use dapple::hash::Seed;
+use dapple::mesh::HierarchyOptions;
+use dapple::synth::{Axes as FieldAxes, Edges, Options, PADDING};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// What lies past the edges of the example.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum EdgesName {
+    /// Nothing.
+    Cut,
+    /// The same again: it is a tile.
+    Wrap,
+}
+
+/// Which way neighborhoods go on away from their site.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum AxesName {
+    /// As the field does.
+    Followed,
+    /// Straight on, as the paper has it.
+    Carried,
+}
+
+/// How a mesh is laid out in a texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum AtlasName {
+    /// Right triangles whose sizes follow the areas of the faces.
+    Area,
+    /// Right triangles of one size, as in the paper.
+    Uniform,
+    /// The mesh's own texture coordinates.
+    Uv,
+}
+
+/// Without a mesh.
+#[derive(clap::Args, Clone, Debug, Serialize)]
+#[command(next_help_heading = "In the plane")]
+pub(super) struct PlaneArgs {
+    /// How large the texture is, in pixels: at most 2^26 in all; by default 512.
+    #[arg(long, value_name = "WxH")]
+    pub(super) size: Option<Size>,
+
+    /// Which sides of the texture fit together: both makes a tile; by default none.
+    #[arg(long, value_enum)]
+    pub(super) wrap: Option<Axes>,
+}
+
+/// With a mesh.
+#[derive(clap::Args, Clone, Debug, Serialize)]
+#[command(next_help_heading = "On a mesh")]
+pub(super) struct SurfaceArgs {
+    /// The mesh to cover: .obj, .ply, .glb, .gltf or .off. What is wrong with it is repaired.
+    #[arg(long, value_name = "FILE")]
+    pub(super) mesh: Option<PathBuf>,
+
+    /// Which way the texture runs: a file of directions, .csv or .json. By default the down of the example points down.
+    #[arg(long, value_name = "FILE")]
+    pub(super) directions: Option<PathBuf>,
+
+    /// How many points of the surface get a color: as it were the pixels on the mesh, 1 to 2^28; by default 65536.
+    #[arg(long, value_name = "N")]
+    sites: Option<usize>,
+
+    /// The side of the square texture, in pixels, up to 16384; by default 1024.
+    #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..=16384))]
+    texture_size: Option<u32>,
+
+    /// How faces are laid out in the texture; by default by area.
+    #[arg(long, value_enum, value_name = "HOW")]
+    atlas: Option<AtlasName>,
+
+    /// Pixels around each piece of the texture that continue it, 1 to 1024: 2^k for k mipmap levels; by default 1.
+    #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    padding: Option<u32>,
+
+    /// Which way neighborhoods go on over the surface; by default followed.
+    #[arg(long, value_enum, value_name = "HOW")]
+    axes: Option<AxesName>,
+}
+
+/// How pixels of the example are found.
+#[derive(clap::Args, Clone, Debug, Serialize)]
+#[command(next_help_heading = "Matching")]
+pub(super) struct MatchArgs {
+    /// Where the randomness comes from: any whole number from 0 to 2^64 - 1.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+
+    /// What lies past the edges of the example.
+    #[arg(long, value_enum, default_value_t = EdgesName::Cut)]
+    edges: EdgesName,
+
+    /// How many levels there are, each with a quarter of the points of the finer one, 1 to 16: more for larger features.
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    levels: usize,
+
+    /// How much worse a match may be that continues what lies beside it, at least 0: higher copies larger pieces; by
+    /// default 2, or 0 with --paper.
+    #[arg(long, value_name = "N")]
+    coherence: Option<f32>,
+
+    /// How evenly the example is used, 0 to 1000; by default 1, or 0 with --paper.
+    #[arg(long, value_name = "N")]
+    evenness: Option<f32>,
+
+    /// Take every literal choice of Turk's paper.
+    #[arg(long)]
+    paper: bool,
+}
+
+impl PlaneArgs {
+    /// An option that was given.
+    pub(super) fn given(&self) -> Option<&'static str> {
+        let given = [("size", self.size.is_some()), ("wrap", self.wrap.is_some())];
+        given
+            .into_iter()
+            .find_map(|(name, is_given)| is_given.then_some(name))
+    }
+
+    /// Which sides wrap.
+    pub(super) fn edges(&self) -> [Edges; 2] {
+        let wrap = self.wrap.unwrap_or(Axes::None);
+        wrap.flags()
+            .map(|wraps| if wraps { Edges::Wrap } else { Edges::Cut })
+    }
+}
+
+impl SurfaceArgs {
+    /// An option that was given and needs a mesh.
+    pub(super) fn given(&self) -> Option<&'static str> {
+        let given = [
+            ("directions", self.directions.is_some()),
+            ("sites", self.sites.is_some()),
+            ("texture-size", self.texture_size.is_some()),
+            ("atlas", self.atlas.is_some()),
+            ("padding", self.padding.is_some()),
+            ("axes", self.axes.is_some()),
+        ];
+        given
+            .into_iter()
+            .find_map(|(name, is_given)| is_given.then_some(name))
+    }
+
+    /// The side of the texture, in pixels.
+    pub(super) fn side(&self) -> u32 {
+        self.texture_size.unwrap_or(1024)
+    }
+
+    pub(super) fn atlas(&self) -> AtlasName {
+        self.atlas.unwrap_or(AtlasName::Area)
+    }
+
+    pub(super) fn padding(&self) -> u32 {
+        self.padding.unwrap_or(PADDING)
+    }
+
+    /// The sites, in as many levels as are matched.
+    pub(super) fn sites(&self, matching: &MatchArgs) -> HierarchyOptions {
+        let default = HierarchyOptions::default();
+        HierarchyOptions {
+            n_sites: self.sites.unwrap_or(default.n_sites),
+            n_levels: matching.levels,
+            seed: Seed(matching.seed).child("sites", 0),
+            ..default
+        }
+    }
+}
+
+impl MatchArgs {
+    /// What lies past the edges of the example.
+    pub(super) fn edges(&self) -> Edges {
+        match self.edges {
+            EdgesName::Cut => Edges::Cut,
+            EdgesName::Wrap => Edges::Wrap,
+        }
+    }
+
+    /// The options of the library.
+    pub(super) fn options(&self, surface: &SurfaceArgs) -> Options {
+        let default = if self.paper {
+            Options::paper()
+        } else {
+            Options::default()
+        };
+        Options {
+            seed: Seed(self.seed),
+            n_levels: self.levels,
+            // Those of the paper, for as many levels as there are.
+            schedule: None,
+            coherence: self.coherence.unwrap_or(default.coherence),
+            evenness: self.evenness.unwrap_or(default.evenness),
+            axes: match surface.axes {
+                Some(AxesName::Followed) => FieldAxes::Followed,
+                Some(AxesName::Carried) => FieldAxes::Carried,
+                None => default.axes,
+            },
+            center: default.center,
+        }
+    }
+}

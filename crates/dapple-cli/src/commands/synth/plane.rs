@@ -1,0 +1,64 @@
+//! Synthesis of an image.
+
+use super::{Args, Input, STEPS, advise, shown};
+use crate::encode::Format;
+use crate::error::Exit;
+use crate::job::{Context, Job};
+use crate::progress::Progress;
+use anyhow::Result;
+use dapple::synth::{PlaneTexture, synthesize_plane_with};
+use dapple::tile::Map;
+use serde_json::Value;
+
+/// The size of a texture that nobody gave one.
+const SIZE: [u32; 2] = [512; 2];
+
+/// Makes the image, and the maps that follow it.
+pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    let mut job = Job::new(context, "synth", &args.image.files);
+    let target = args.image.files.target()?;
+    let format = Format::choose(args.image.format, &target, Format::Png16)?;
+    let output = job.claim(&target)?;
+    let map_outputs = args.claim_maps(&target, format.ending(), &mut job)?;
+    job.claim_sidecar()?;
+    let Input {
+        base,
+        maps,
+        exemplar,
+    } = args.read()?;
+    let progress = Progress::bar("synthesizing", STEPS.into(), context.quiet);
+    let texture = synthesize_plane_with(
+        &exemplar,
+        args.plane.size.map_or(SIZE, |size| size.0),
+        args.plane.edges(),
+        &args.matching.options(&args.surface),
+        shown(&progress),
+    );
+    let texture = texture.map_err(advise)?;
+    drop(progress);
+    job.write_image(
+        output,
+        follow(&texture, &base.map)?,
+        base.is_deep,
+        &args.image,
+    )?;
+    for (output, (_, map)) in map_outputs.into_iter().zip(maps) {
+        job.write_image(
+            output,
+            follow(&texture, &map.map)?,
+            map.is_deep,
+            &args.image,
+        )?;
+    }
+    job.finish(args, Value::Null)?;
+    Ok(Exit::Done)
+}
+
+/// What a map of the example becomes.
+fn follow(texture: &PlaneTexture, map: &Map) -> Result<Map> {
+    Ok(match map {
+        Map::Value(raster) => Map::Value(texture.transfer(raster)?),
+        Map::Color(raster) => Map::Color(texture.transfer(raster)?),
+        Map::Normal(raster) => Map::Normal(texture.transfer(raster)?),
+    })
+}

@@ -1,0 +1,327 @@
+//! Synthesis on a mesh, and the files that it gives.
+
+use super::options::AtlasName;
+use super::{Args, Input, STEPS, advise, shown};
+use crate::encode::{Format, default_format, encode, ramped};
+use crate::error::{Exit, Hint, usage};
+use crate::input;
+use crate::job::{Context, Job, eprintln_if_possible};
+use crate::output::{OutputIdx, Target};
+use crate::progress::Progress;
+use anyhow::{Context as _, Result, anyhow, bail};
+use dapple::color::{LinearRgb, LinearRgba, NormalY};
+use dapple::mesh::io::{gltf, obj, ply};
+use dapple::mesh::{EncodedImage, Mesh, Model, Repair, Surface};
+use dapple::points::glam::DVec2;
+use dapple::synth::{
+    Atlas, Direction, SurfaceTexture, Synthesizer, bake_colors, bake_normals, bake_values,
+    site_model, textured_model,
+};
+use dapple::tile::Map;
+use serde_json::json;
+use std::path::Path;
+
+/// What is written of a textured mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Product {
+    Glb,
+    Obj,
+    Ply,
+    Texture,
+}
+
+/// The outputs that were claimed.
+struct Claimed {
+    product: Product,
+    main: OutputIdx,
+    /// The other files of an OBJ: material and textures, with their names.
+    beside: Vec<(String, OutputIdx)>,
+    maps: Vec<OutputIdx>,
+    /// The format of textures that are files of their own.
+    format: Format,
+}
+
+/// Covers the mesh.
+pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
+    let mut job = Job::new(context, "synth", &args.image.files);
+    let claimed = claim(args, &mut job)?;
+    job.claim_sidecar()?;
+    let input = args.read()?;
+    let model = input::model(mesh)?;
+    let (repaired, repair) = model.mesh.repair();
+    if !context.quiet && repair.before != repair.after {
+        eprintln_if_possible(&format!("{}: repaired; see dapple info", mesh.display()));
+    }
+    let surface = Surface::new(repaired).with_context(|| mesh.display().to_string())?;
+    let atlas = match claimed.product {
+        Product::Ply => None,
+        _ => Some(atlas(args, &surface, &model, &repair)?),
+    };
+    let spinner = Progress::spinner("scattering sites", context.quiet);
+    let sites = args.surface.sites(&args.matching);
+    let synthesizer = Synthesizer::new(surface, &directions(args)?, &sites).map_err(advise)?;
+    drop(spinner);
+    let progress = Progress::bar("synthesizing", STEPS.into(), context.quiet);
+    let options = args.matching.options(&args.surface);
+    let texture = synthesizer.synthesize_with(&input.exemplar, &options, shown(&progress));
+    let texture = texture.map_err(advise)?;
+    drop(progress);
+    let spinner = Progress::spinner("baking", context.quiet);
+    write(
+        args,
+        &claimed,
+        &Covered {
+            synthesizer,
+            texture,
+            atlas,
+            input,
+        },
+        &mut job,
+    )?;
+    drop(spinner);
+    let repaired = repair.before != repair.after;
+    job.finish(args, json!({ "repaired": repaired }))?;
+    Ok(Exit::Done)
+}
+
+/// A mesh with its texture, not baked yet.
+struct Covered {
+    synthesizer: Synthesizer,
+    texture: SurfaceTexture,
+    atlas: Option<Atlas>,
+    input: Input,
+}
+
+impl Covered {
+    /// A map of the example, as a texture of the mesh.
+    fn bake(&self, map: &Map) -> Result<Map> {
+        let Some(atlas) = &self.atlas else {
+            bail!("a mesh of sites has no texture");
+        };
+        let (synthesizer, texture) = (&self.synthesizer, &self.texture);
+        Ok(match map {
+            Map::Value(raster) => {
+                Map::Value(bake_values(synthesizer, &texture.transfer(raster)?, atlas)?)
+            }
+            Map::Color(raster) => {
+                Map::Color(bake_colors(synthesizer, &texture.transfer(raster)?, atlas)?)
+            }
+            Map::Normal(raster) => {
+                let normals = texture.transfer(raster)?;
+                Map::Normal(bake_normals(synthesizer, &normals, NormalY::OpenGl, atlas)?)
+            }
+        })
+    }
+
+    /// The colors of the sites.
+    fn site_colors(&self, args: &Args) -> Result<Vec<LinearRgba>> {
+        let map = ramped(self.input.base.map.clone(), args.image.ramp.as_ref());
+        let colors = match &map {
+            Map::Color(raster) => self.texture.transfer(raster)?,
+            Map::Value(raster) => {
+                let values = self.texture.transfer(raster)?;
+                values.into_iter().map(LinearRgb::gray).collect()
+            }
+            Map::Normal(_) => bail!("normals are no colors"),
+        };
+        Ok(colors.into_iter().map(LinearRgba::opaque).collect())
+    }
+}
+
+/// Claims the output, what belongs to it, and the maps.
+fn claim(args: &Args, job: &mut Job<'_>) -> Result<Claimed> {
+    let target = args.image.files.target()?;
+    let product = match target.ending().as_str() {
+        "glb" => Product::Glb,
+        "obj" => Product::Obj,
+        "ply" => Product::Ply,
+        "png" | "exr" => Product::Texture,
+        "" if target == Target::Stdout => Product::Glb,
+        ending => {
+            let error = usage(format!("{target}: nothing is written as {ending:?}"));
+            return Err(error.hint("let the name end in .glb, .obj, .ply, .png or .exr"));
+        }
+    };
+    let format = match product {
+        Product::Texture => Format::choose(args.image.format, &target, Format::Png16)?,
+        _ => args.image.format.unwrap_or(Format::Png8),
+    };
+    if format == Format::Exr && product != Product::Texture {
+        return Err(usage("textures of models are PNG").hint("add --format png8 or png16"));
+    }
+    if product == Product::Ply && !args.map.is_empty() {
+        return Err(
+            usage("a mesh of sites has colors and no further maps").hint("write .glb or .obj")
+        );
+    }
+    let main = job.claim(&target)?;
+    let mut beside = Vec::new();
+    if let (Product::Obj, Some(path)) = (product, target.path()) {
+        // What the writer will name is known before: its files have the stem of the model.
+        for name in obj_files(path, args)? {
+            let output = job.claim(&Target::Path(path.with_file_name(&name)))?;
+            beside.push((name, output));
+        }
+    }
+    // Those that go into the model are files of their own as well, for other programs.
+    let maps = args.claim_maps(&target, format.ending(), job)?;
+    Ok(Claimed {
+        product,
+        main,
+        beside,
+        maps,
+        format,
+    })
+}
+
+/// The names of the files beside an OBJ file.
+fn obj_files(path: &Path, args: &Args) -> Result<Vec<String>> {
+    let mut model = Model::from(Mesh::default());
+    let pixel = encode(
+        &Map::Value(dapple::raster::Raster::filled([1, 1], 0.0)?),
+        Format::Png8,
+    )?;
+    let image = EncodedImage::new(pixel)?;
+    model.material.base_color = Some(image.clone());
+    if args.map.iter().any(|map| map.name == "normal") {
+        model.material.normal = Some(image);
+    }
+    let stem = stem(path);
+    let files = obj::write_files(&model, &stem)?;
+    let names = files.into_iter().map(|file| file.name);
+    Ok(names
+        .filter(|name| *name != format!("{stem}.obj"))
+        .collect())
+}
+
+/// Bakes and writes everything.
+fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -> Result<()> {
+    if claimed.product == Product::Ply {
+        let model = site_model(&covered.synthesizer, covered.site_colors(args)?)?;
+        return job.write(claimed.main, &ply::write(&model)?);
+    }
+    let is_deep = covered.input.base.is_deep;
+    let base = ramped(
+        covered.bake(&covered.input.base.map)?,
+        args.image.ramp.as_ref(),
+    );
+    if claimed.product == Product::Texture {
+        job.write_image(claimed.main, base, is_deep, &args.image)?;
+    } else {
+        let mut model = model(args, covered, &base)?;
+        for (name, loaded) in &covered.input.maps {
+            if name == "normal" {
+                let normals = covered.bake(&loaded.map)?;
+                model.material.normal = Some(EncodedImage::new(encode(&normals, claimed.format)?)?);
+            }
+        }
+        write_model(claimed, &model, args, job)?;
+    }
+    for (output, (_, loaded)) in claimed.maps.iter().zip(&covered.input.maps) {
+        job.write_image(
+            *output,
+            covered.bake(&loaded.map)?,
+            loaded.is_deep,
+            &args.image,
+        )?;
+    }
+    Ok(())
+}
+
+/// The input mesh with its texture. A gray one becomes a color, which is what models have.
+fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
+    let base = match base {
+        Map::Value(values) => Map::Color(values.map(|&value| LinearRgb::gray(value))),
+        other => other.clone(),
+    };
+    let default = default_format(&base, covered.input.base.is_deep);
+    let png = encode(&base, args.image.format.unwrap_or(default))?;
+    let Some(atlas) = &covered.atlas else {
+        bail!("a mesh of sites has no texture");
+    };
+    Ok(textured_model(
+        covered.synthesizer.surface(),
+        atlas,
+        EncodedImage::new(png)?,
+    )?)
+}
+
+fn write_model(claimed: &Claimed, model: &Model, args: &Args, job: &Job<'_>) -> Result<()> {
+    if claimed.product == Product::Glb {
+        return job.write(claimed.main, &gltf::write(model)?);
+    }
+    let target = args.image.files.target()?;
+    let stem = target.path().map(stem).unwrap_or_default();
+    for file in obj::write_files(model, &stem)? {
+        let beside = claimed.beside.iter().find(|(name, _)| *name == file.name);
+        let output = beside.map_or(claimed.main, |(_, output)| *output);
+        job.write(output, &file.bytes)?;
+    }
+    Ok(())
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
+}
+
+/// The layout of the texture.
+fn atlas(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Result<Atlas> {
+    let (side, padding) = (args.surface.side(), args.surface.padding());
+    let atlas = match args.surface.atlas() {
+        AtlasName::Area => Atlas::by_area_padded(surface, side, padding),
+        AtlasName::Uniform => Atlas::uniform_padded(surface, side, padding),
+        AtlasName::Uv => {
+            let uvs = own_uvs(surface, model, repair)?;
+            Atlas::from_uvs(surface, &uvs, [side; 2], padding)
+        }
+    };
+    atlas.map_err(advise)
+}
+
+/// The mesh's own texture coordinates, for the faces that repair has left.
+fn own_uvs(surface: &Surface, model: &Model, repair: &Repair) -> Result<Vec<[DVec2; 3]>> {
+    let Some(uvs) = &model.uvs else {
+        return Err(anyhow!("the mesh has no texture coordinates").hint("take --atlas area"));
+    };
+    let mesh = surface.mesh();
+    let mut own = Vec::with_capacity(mesh.faces().len());
+    for (face, &before) in mesh.faces().iter().zip(&repair.face_before) {
+        let corners_before = model.mesh.corners(before);
+        // Repair may have turned the face, or joined its vertices with others at the same places.
+        let uv = |vertex: dapple::mesh::VertexIdx| {
+            let at = mesh.positions()[vertex.index()];
+            let corner = corners_before.iter().position(|&other| other == at);
+            corner.map(|corner| uvs[before.index()][corner])
+        };
+        let [Some(a), Some(b), Some(c)] = face.map(uv) else {
+            return Err(
+                anyhow!("a face was cut in repair, and its texture coordinates are gone")
+                    .hint("take --atlas area, or repair the mesh before"),
+            );
+        };
+        own.push([a, b, c]);
+    }
+    Ok(own)
+}
+
+/// The directions that the user gave.
+fn directions(args: &Args) -> Result<Vec<Direction>> {
+    let Some(path) = &args.surface.directions else {
+        return Ok(Vec::new());
+    };
+    let text = input::text(path)?;
+    let is_json = text.trim_start().starts_with(['[', '{']);
+    let directions = if is_json {
+        Direction::parse_json(&text)
+    } else {
+        Direction::parse_csv(&text)
+    };
+    let directions = directions.with_context(|| path.display().to_string())?;
+    if directions.is_empty() {
+        bail!("{} has no directions", path.display());
+    }
+    Ok(directions)
+}

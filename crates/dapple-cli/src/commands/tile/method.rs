@@ -1,0 +1,212 @@
+//! The methods of `dapple tile`, and the options that each of them takes.
+
+use crate::error::{Hint, usage};
+use anyhow::Result;
+use clap::ValueEnum;
+use dapple::tile::{
+    Basis, Crossfade, Feather, Method, Pixels, SoftCut, SplineProject, WrapGradient,
+};
+use dapple::wavelet::{Degree, Phase};
+use serde::Serialize;
+
+/// How an image is made to repeat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Name {
+    Periodic,
+    Poisson,
+    SoftCut,
+    Spline,
+    PeriodicSpline,
+    Feather,
+    Mirror,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum CrossfadeName {
+    KeepVariance,
+    Linear,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum GradientName {
+    Zero,
+    Extrapolate,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum BasisName {
+    Constant,
+    Linear,
+    Quadratic,
+    Cubic,
+    Sines,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum PhaseName {
+    Centered,
+    CookDerose,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum PixelsName {
+    Coefficients,
+    Samples,
+}
+
+/// The method and its options.
+#[derive(clap::Args, Clone, Debug, Serialize)]
+#[command(next_help_heading = "Method")]
+pub(super) struct MethodArgs {
+    /// How.
+    #[arg(long, value_enum, default_value_t = Name::Periodic)]
+    method: Name,
+
+    /// soft-cut, feather: how wide the two sides lie over each other, in pixels, from 1 to half of the side. By default 32
+    /// for soft-cut; without it, feather mixes the image with itself moved by half.
+    #[arg(long, value_name = "PX")]
+    margin: Option<u32>,
+
+    /// soft-cut: half of the width over which the cut is softened, in pixels, from 0 to half of the margin; by default 4,
+    /// or half of the margin if that is less.
+    #[arg(long, value_name = "PX")]
+    half_width: Option<f32>,
+
+    /// soft-cut, feather with a margin: how the sides are mixed; by default the variance is kept.
+    #[arg(long, value_enum, value_name = "HOW")]
+    crossfade: Option<CrossfadeName>,
+
+    /// poisson: the gradient across the wrap; by default zero.
+    #[arg(long, value_enum, value_name = "WHICH")]
+    wrap_gradient: Option<GradientName>,
+
+    /// spline, periodic-spline: how often the image is halved and doubled, from 0 to 32; by default 1.
+    #[arg(long, value_name = "N")]
+    levels: Option<u32>,
+
+    /// spline, periodic-spline: what the tile is made of; by default quadratic splines.
+    #[arg(long, value_enum, value_name = "WHAT")]
+    basis: Option<BasisName>,
+
+    /// spline, periodic-spline: where coarse coefficients lie; by default centered.
+    #[arg(long, value_enum, value_name = "WHERE")]
+    phase: Option<PhaseName>,
+
+    /// spline, periodic-spline: what pixels are to the spline; by default its coefficients, as in the paper.
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pixels: Option<PixelsName>,
+}
+
+impl MethodArgs {
+    /// The method with its options.
+    ///
+    /// # Errors
+    ///
+    /// If an option was given that the method does not have.
+    pub(super) fn method(&self) -> Result<Method> {
+        self.check_used()?;
+        Ok(match self.method {
+            Name::Periodic => Method::Periodic,
+            Name::Poisson => Method::Poisson(match self.wrap_gradient {
+                Some(GradientName::Extrapolate) => WrapGradient::Extrapolate,
+                Some(GradientName::Zero) | None => WrapGradient::Zero,
+            }),
+            Name::SoftCut => Method::SoftCut(self.soft_cut()),
+            Name::Spline => Method::SplineProject(self.project()),
+            Name::PeriodicSpline => Method::PeriodicThenProject(self.project()),
+            Name::Feather => Method::Feather(match self.margin {
+                None => Feather::HalfShift,
+                Some(margin) => Feather::Margin {
+                    margin,
+                    crossfade: self.crossfade(),
+                },
+            }),
+            Name::Mirror => Method::Mirror,
+        })
+    }
+
+    /// Which boundaries of the tile are like its wrap.
+    pub(super) fn lattice(&self) -> [u32; 2] {
+        match self.method {
+            Name::Spline | Name::PeriodicSpline => {
+                [1_u32.checked_shl(self.levels.unwrap_or(1)).unwrap_or(1); 2]
+            }
+            _ => [1; 2],
+        }
+    }
+
+    fn soft_cut(&self) -> SoftCut {
+        let default = SoftCut::default();
+        let margin = self.margin.unwrap_or(default.margin);
+        let most = margin as f32 / 2.0;
+        SoftCut {
+            margin,
+            half_width: self.half_width.unwrap_or(default.half_width.min(most)),
+            crossfade: self.crossfade(),
+        }
+    }
+
+    fn crossfade(&self) -> Crossfade {
+        match self.crossfade {
+            Some(CrossfadeName::Linear) => Crossfade::Linear,
+            Some(CrossfadeName::KeepVariance) | None => Crossfade::KeepVariance,
+        }
+    }
+
+    fn project(&self) -> SplineProject {
+        let default = SplineProject::default();
+        SplineProject {
+            levels: self.levels.unwrap_or(default.levels),
+            phase: match self.phase {
+                Some(PhaseName::CookDerose) => Phase::CookDeRose,
+                Some(PhaseName::Centered) | None => Phase::Centered,
+            },
+            basis: match self.basis {
+                Some(BasisName::Constant) => Basis::Spline(Degree::Constant),
+                Some(BasisName::Linear) => Basis::Spline(Degree::Linear),
+                Some(BasisName::Quadratic) | None => Basis::Spline(Degree::Quadratic),
+                Some(BasisName::Cubic) => Basis::Spline(Degree::Cubic),
+                Some(BasisName::Sines) => Basis::Sines,
+            },
+            pixels: match self.pixels {
+                Some(PixelsName::Samples) => Pixels::Samples,
+                Some(PixelsName::Coefficients) | None => Pixels::Coefficients,
+            },
+        }
+    }
+
+    /// Refuses options of other methods, which would have no effect.
+    fn check_used(&self) -> Result<()> {
+        use Name::{Feather, PeriodicSpline, Poisson, SoftCut, Spline};
+        let splines = &[Spline, PeriodicSpline][..];
+        let given = [
+            ("margin", self.margin.is_some(), &[SoftCut, Feather][..]),
+            ("half-width", self.half_width.is_some(), &[SoftCut]),
+            ("crossfade", self.crossfade.is_some(), &[SoftCut, Feather]),
+            ("wrap-gradient", self.wrap_gradient.is_some(), &[Poisson]),
+            ("levels", self.levels.is_some(), splines),
+            ("basis", self.basis.is_some(), splines),
+            ("phase", self.phase.is_some(), splines),
+            ("pixels", self.pixels.is_some(), splines),
+        ];
+        for (option, is_given, methods) in given {
+            if is_given && !methods.contains(&self.method) {
+                let name = |method: &Name| method.to_possible_value();
+                let names: Vec<_> = methods.iter().filter_map(name).collect();
+                let names: Vec<_> = names.iter().map(|name| name.get_name()).collect();
+                let message = format!("--{option} means nothing to this method");
+                return Err(usage(message).hint(format!("add --method {}", names.join(" or "))));
+            }
+        }
+        if self.method == Feather && self.crossfade.is_some() && self.margin.is_none() {
+            return Err(usage("--crossfade means nothing without a margin").hint("add --margin PX"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,233 @@
+//! `dapple worley`: Worley's cellular basis.
+
+use crate::args::{Extent, ImageArgs, Numbers};
+use crate::error::{Exit, Hint, usage};
+use crate::field::{Field, FieldArgs, draw, extent_of};
+use crate::job::Context;
+use anyhow::Result;
+use clap::ValueEnum;
+use dapple::hash::Seed;
+use dapple::recipe::{Images, Motion, Node, WorleyNode, WorleyValue};
+use dapple::worley::{Combination, Metric, OctaveSeeds, Octaves, Scatter, Worley2};
+use serde::Serialize;
+
+const EXAMPLES: &str = "\
+Examples:
+  dapple worley -o cells.png
+  dapple worley --value f2_minus_f1 --cells 12 --size 1024 --seed 3 -o cracks.png
+  dapple worley --metric manhattan --ramp ember --size 1024x512 -o hull.png
+  dapple worley --octaves 6 --value f1 -o crumpled.exr
+  dapple worley --coefficients=-1,-1,2,0 -o odd.png
+  dapple worley --frames 24 --loop-cells 2 --size 96 -o sea.png
+  dapple worley --size 8192 --region 0,0,256,256 -o corner.png
+
+Values are distances in cells. In PNG the range that 998 of 1000 places have becomes black to
+white, measured over the texture and not over the picture; --range says otherwise.";
+
+/// What `--value` takes.
+const VALUE: &str = "\
+What is shown: f1, f2, f3, f4, f2_minus_f1, f1_plus_f2, f3_minus_f1, f3_minus_f2, f4_minus_f1, f4_minus_f3, \
+2f3_minus_f2_minus_f1, cell_value (a random gray for each cell), or edge_distance";
+
+/// Draw Worley's cellular basis: distances to the nearest of scattered feature points.
+#[derive(clap::Args, Debug, Serialize)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    // Written out, since documentation would need marks about the names.
+    #[arg(long, value_name = "VALUE", default_value = "f1",
+        help = VALUE, value_parser = value, help_heading = "Texture")]
+    value: WorleyValue,
+
+    /// The coefficients of F1 to F4, instead of --value.
+    #[arg(
+        long,
+        value_name = "C1,C2,C3,C4",
+        allow_hyphen_values = true,
+        conflicts_with = "value",
+        help_heading = "Texture"
+    )]
+    coefficients: Option<Numbers<f32, 4>>,
+
+    /// Cells across the shorter side of the picture.
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 8.0,
+        conflicts_with = "period",
+        help_heading = "Texture"
+    )]
+    cells: f64,
+
+    /// Cells across the picture, after which it repeats, such as 8 or 12x6; instead of --cells.
+    #[arg(long, value_name = "N[xM]", help_heading = "Texture")]
+    period: Option<Extent>,
+
+    /// How distances are measured.
+    #[arg(long, value_enum, default_value_t = MetricArg::Euclidean, help_heading = "Texture")]
+    metric: MetricArg,
+
+    /// The exponent of the Minkowski metric, from 1 to 10; takes the place of --metric.
+    #[arg(
+        long,
+        value_name = "P",
+        conflicts_with = "metric",
+        help_heading = "Texture"
+    )]
+    minkowski: Option<f32>,
+
+    /// Feature points per cell on average, from 1/64 to 64.
+    #[arg(long, value_name = "N", default_value_t = Scatter::DENSITY, help_heading = "Texture")]
+    density: f64,
+
+    /// One point in each cell, this far from its middle: 0, a grid, to 1, anywhere. Takes the place of --density.
+    #[arg(
+        long,
+        value_name = "PART",
+        conflicts_with = "density",
+        help_heading = "Texture"
+    )]
+    jitter: Option<f64>,
+
+    /// Sum so many octaves, from 1 to 32, each twice as fine.
+    #[arg(long, value_name = "N", help_heading = "Texture")]
+    octaves: Option<u32>,
+
+    /// How high an octave is beside the one before.
+    #[arg(
+        long,
+        value_name = "PART",
+        default_value_t = 0.5,
+        requires = "octaves",
+        help_heading = "Texture"
+    )]
+    gain: f64,
+
+    /// Draw a loop of so many pictures, as a slice through cells of four dimensions.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Loop")]
+    frames: Option<u32>,
+
+    /// How many cells a loop goes: more is faster.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..), requires = "frames", help_heading = "Loop")]
+    loop_cells: u32,
+
+    #[command(flatten)]
+    field: FieldArgs,
+
+    #[command(flatten)]
+    #[serde(skip)]
+    image: ImageArgs,
+}
+
+/// How distances are measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum MetricArg {
+    /// The straight line.
+    Euclidean,
+    /// Along the axes.
+    Manhattan,
+    /// The longer of the two.
+    Chebyshev,
+}
+
+/// Runs it.
+///
+/// # Errors
+///
+/// Whatever went wrong.
+pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    let node = args.node()?;
+    let extent = match args.period {
+        Some(period) => period.0,
+        None => extent_of(args.field.size, args.cells),
+    };
+    let cells = extent.iter().zip(args.field.axes.flags());
+    if let Some((cells, _)) = cells
+        .clone()
+        .find(|(cells, repeats)| *repeats && cells.fract() != 0.0)
+    {
+        return Err(usage(format!("{cells} cells along a side cannot repeat"))
+            .hint("take a whole number of cells along each side with --period, or --axes none"));
+    }
+    let field = Field {
+        command: "worley",
+        range: args.range(&node)?,
+        node: Node::Worley(node),
+        is_color: false,
+        extent,
+        frames: args.frames,
+        images: Images::new(),
+    };
+    draw(&field, &args.field, &args.image, args, context)
+}
+
+impl Args {
+    fn node(&self) -> Result<WorleyNode> {
+        let metric = match (self.minkowski, self.metric) {
+            (Some(exponent), _) => Metric::Minkowski(exponent),
+            (None, MetricArg::Euclidean) => Metric::Euclidean,
+            (None, MetricArg::Manhattan) => Metric::Manhattan,
+            (None, MetricArg::Chebyshev) => Metric::Chebyshev,
+        };
+        let scatter = match self.jitter {
+            Some(jitter) => Scatter::Jittered { jitter },
+            None => Scatter::Poisson {
+                density: self.density,
+            },
+        };
+        let octaves = self.octaves.map(|count| Octaves {
+            count,
+            gain: self.gain,
+            seeds: OctaveSeeds::Own,
+            ..Octaves::default()
+        });
+        let value = match self.coefficients {
+            Some(Numbers(coefficients)) => WorleyValue::Combination(Combination::new(coefficients)),
+            None => self.value,
+        };
+        let motion = self.frames.map(|_| Motion {
+            cells: self.loop_cells,
+            z: 0.0,
+        });
+        Ok(WorleyNode {
+            value,
+            metric,
+            scatter,
+            octaves,
+            motion,
+            ..WorleyNode::default()
+        })
+    }
+
+    /// The range that becomes black to white: of a texture like this one over very many cells.
+    fn range(&self, node: &WorleyNode) -> Result<[f32; 2]> {
+        /// Positions at which values are measured.
+        const N: u32 = 20_000;
+        let WorleyValue::Combination(combination) = node.value else {
+            return Ok([0.0, 1.0]);
+        };
+        let seed = Seed(0);
+        let worley = Worley2::new(seed)
+            .with_metric(node.metric)?
+            .with_scatter(node.scatter)?;
+        let cellular = worley.combine(combination);
+        let range = match node.octaves {
+            None => cellular.measure_range(seed, N)?,
+            Some(octaves) => cellular.fractal(octaves)?.measure_range(seed, N)?,
+        };
+        Ok(if range[0] < range[1] {
+            range
+        } else {
+            [range[0], range[0] + 1.0]
+        })
+    }
+}
+
+fn value(text: &str) -> Result<WorleyValue, String> {
+    WorleyValue::from_name(text).ok_or_else(|| {
+        format!(
+            "{text:?} is no value; there are {}",
+            WorleyValue::names().join(", ")
+        )
+    })
+}

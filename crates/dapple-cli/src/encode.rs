@@ -1,0 +1,208 @@
+//! From maps to the bytes of image files.
+
+use crate::args::RampArg;
+use crate::error::{Hint, usage};
+use crate::output::Target;
+use anyhow::Result;
+use clap::ValueEnum;
+use dapple::color::{Interpolation, Outside};
+use dapple::image::{Content, Depth, Encoding, RowWriter};
+use dapple::recipe::{Input, Node, Ramped};
+use dapple::tile::Map;
+use serde::Serialize;
+use std::io::Cursor;
+
+/// The formats of images.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Format {
+    /// PNG with 8 bits per channel.
+    Png8,
+    /// PNG with 16 bits per channel.
+    Png16,
+    /// OpenEXR with 32-bit floating point.
+    Exr,
+}
+
+impl Format {
+    /// The format for a target: as asked for, or by its ending.
+    ///
+    /// # Errors
+    ///
+    /// If the ending is that of no image, or of another format than what was asked for.
+    pub(crate) fn choose(asked: Option<Self>, target: &Target, default: Self) -> Result<Self> {
+        let by_ending = match (target, target.ending().as_str()) {
+            (Target::Stdout, _) => return Ok(asked.unwrap_or(default)),
+            (_, "png") => [Self::Png8, Self::Png16]
+                .contains(&default)
+                .then_some(default),
+            (_, "exr") => Some(Self::Exr),
+            // A device has no ending.
+            (Target::Path(path), "") if path.exists() && !path.is_file() => {
+                return Ok(asked.unwrap_or(default));
+            }
+            (_, ending) => {
+                let error = usage(format!("{target}: there is no image format {ending:?}"));
+                return Err(error.hint("let the name end in .png or .exr"));
+            }
+        };
+        let format = asked.or(by_ending).unwrap_or(Self::Png16);
+        if target.ending() == format.ending() {
+            return Ok(format);
+        }
+        let error = usage(format!(
+            "{target} is not a name for {}",
+            format.ending().to_ascii_uppercase()
+        ));
+        Err(error.hint(format!("let it end in .{}", format.ending())))
+    }
+
+    /// How the numbers of such a file are written.
+    pub(crate) fn encoding(self) -> Encoding {
+        match self {
+            Self::Png8 => Encoding::Png(Depth::Eight),
+            Self::Png16 => Encoding::Png(Depth::Sixteen),
+            Self::Exr => Encoding::Exr,
+        }
+    }
+
+    /// The ending of the names of such files, without its dot.
+    pub(crate) fn ending(self) -> &'static str {
+        match self {
+            Self::Png8 | Self::Png16 => "png",
+            Self::Exr => "exr",
+        }
+    }
+}
+
+/// The format of a map if nobody says one: PNG with 8 bits for color that is not deeper, with 16 for everything else.
+pub(crate) fn default_format(map: &Map, is_deep: bool) -> Format {
+    match map {
+        Map::Color(_) if !is_deep => Format::Png8,
+        _ => Format::Png16,
+    }
+}
+
+/// A map with its values turned to colors, if there is a ramp and they are values.
+pub(crate) fn ramped(map: Map, ramp: Option<&RampArg>) -> Map {
+    match (map, ramp) {
+        (Map::Value(values), Some(ramp)) => Map::Color(ramp.ramp.apply(&values)),
+        (map, _) => map,
+    }
+}
+
+/// The node of a ramp over an input of a recipe.
+pub(crate) fn ramped_recipe(ramp: &RampArg, input: &Input) -> Node {
+    Node::Ramp(Ramped {
+        input: input.clone(),
+        palette: None,
+        colors: ramp.colors.clone(),
+        positions: Vec::new(),
+        interpolation: Interpolation::Linear,
+        outside: Outside::Clamp,
+    })
+}
+
+/// The bytes of a file with a map.
+///
+/// Values are `round(value * max)` in PNG and as they are in EXR, color is sRGB in PNG and linear in EXR, and normals are
+/// `(part + 1) / 2` in both.
+pub(crate) fn encode(map: &Map, format: Format) -> Result<Vec<u8>> {
+    let (sink, encoding) = (Cursor::new(Vec::new()), format.encoding());
+    let sink = match map {
+        Map::Value(values) => {
+            let mut rows = RowWriter::new(sink, values.size(), Content::Gray, encoding)?;
+            rows.write_gray(values.view())?;
+            rows.finish()?
+        }
+        Map::Color(colors) => {
+            let mut rows = RowWriter::new(sink, colors.size(), Content::Color, encoding)?;
+            rows.write_color(colors.view())?;
+            rows.finish()?
+        }
+        Map::Normal(normals) => {
+            let mut rows = RowWriter::new(sink, normals.size(), Content::Normal, encoding)?;
+            rows.write_normals(normals.view())?;
+            rows.finish()?
+        }
+    };
+    Ok(sink.into_inner())
+}
+
+/// The smallest and the largest number of a map that are finite, over all channels; normals are from -1 to 1.
+pub(crate) fn range(map: &Map) -> [f32; 2] {
+    let fold = |range: [f32; 2], value: f32| {
+        if value.is_finite() {
+            [range[0].min(value), range[1].max(value)]
+        } else {
+            range
+        }
+    };
+    let none = [f32::INFINITY, f32::NEG_INFINITY];
+    match map {
+        Map::Value(raster) => raster.pixels().iter().copied().fold(none, fold),
+        Map::Color(raster) => {
+            let parts = raster.pixels().iter().flat_map(|color| color.to_array());
+            parts.fold(none, fold)
+        }
+        Map::Normal(raster) => {
+            let parts = raster.pixels().iter().flat_map(|normal| normal.to_array());
+            parts.fold(none, fold)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Format, default_format, encode, range};
+    use crate::output::Target;
+    use dapple::color::{LinearRgb, Normal};
+    use dapple::image::{Limits, decode_image};
+    use dapple::raster::Raster;
+    use dapple::tile::Map;
+    use std::path::PathBuf;
+
+    fn choose(asked: Option<Format>, name: &str) -> Option<Format> {
+        let target = Target::Path(PathBuf::from(name));
+        Format::choose(asked, &target, Format::Png8).ok()
+    }
+
+    #[test]
+    fn the_ending_chooses_the_format_and_must_fit_what_was_asked() {
+        assert_eq!(choose(None, "a.png"), Some(Format::Png8));
+        assert_eq!(choose(None, "a.EXR"), Some(Format::Exr));
+        assert_eq!(choose(Some(Format::Png16), "a.png"), Some(Format::Png16));
+        assert_eq!(choose(Some(Format::Exr), "a.png"), None);
+        assert_eq!(choose(None, "a.tiff"), None);
+        assert_eq!(choose(None, "a"), None);
+    }
+
+    #[test]
+    fn maps_come_back_from_every_format() {
+        let maps = [
+            Map::Value(Raster::filled([3, 2], 0.5).unwrap()),
+            Map::Color(Raster::filled([3, 2], LinearRgb::WHITE).unwrap()),
+            Map::Normal(Raster::filled([3, 2], Normal::FLAT).unwrap()),
+        ];
+        for map in &maps {
+            for format in [Format::Png8, Format::Png16, Format::Exr] {
+                let bytes = encode(map, format).unwrap();
+                let image = decode_image(&bytes, &Limits::default()).unwrap();
+                assert_eq!(image.size(), [3, 2], "{format:?} of {map:?}");
+                let is_gray = matches!(map, Map::Value(_));
+                assert_eq!(image.gray().is_ok(), is_gray, "{format:?} of {map:?}");
+            }
+        }
+        assert_eq!(
+            maps.map(|map| default_format(&map, false)),
+            [Format::Png16, Format::Png8, Format::Png16]
+        );
+    }
+
+    #[test]
+    fn ranges_leave_out_what_is_not_finite() {
+        let values = vec![0.25, f32::NAN, -3.0, f32::INFINITY];
+        let map = Map::Value(Raster::from_vec([2, 2], values).unwrap());
+        assert_eq!(range(&map), [-3.0, 0.25]);
+    }
+}

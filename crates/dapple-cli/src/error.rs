@@ -1,0 +1,186 @@
+//! What went wrong, for people: a message, its causes, a hint what to do about it, and the exit code.
+
+use anyhow::Error;
+use std::fmt;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// How the command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Exit {
+    /// All was done.
+    Done = 0,
+    /// Something was refused or failed; nothing was written.
+    Failed = 1,
+    /// The command line was wrong; clap exits with the same code.
+    Usage = 2,
+    /// All was done, but what `--check` asks for does not hold.
+    Check = 3,
+    /// The user stopped it: 128 and the number of SIGINT.
+    Interrupted = 130,
+}
+
+/// What `--help` and the manual pages say of the exit codes.
+pub(crate) const EXIT_CODES: &str = "\
+Exit codes:
+  0    done
+  1    refused or failed: nothing was written
+  2    wrong usage
+  3    done, but a quality that --check asks for is not there
+  130  interrupted: nothing was written";
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}
+
+/// An error with a hint, or with an exit code of its own.
+#[derive(Debug)]
+struct Refusal {
+    error: Error,
+    hint: Option<String>,
+    exit: Exit,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.error.fmt(f)
+    }
+}
+
+impl std::error::Error for Refusal {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.error.source()
+    }
+}
+
+/// A command line that clap cannot tell to be wrong.
+pub(crate) fn usage(message: impl Into<String>) -> Error {
+    Error::new(Refusal {
+        error: Error::msg(message.into()),
+        hint: None,
+        exit: Exit::Usage,
+    })
+}
+
+/// Adds a hint to an error.
+pub(crate) trait Hint {
+    /// What it becomes.
+    type Hinted;
+
+    /// The same with a hint: an imperative sentence without a full stop.
+    fn hint(self, hint: impl Into<String>) -> Self::Hinted;
+}
+
+impl Hint for Error {
+    type Hinted = Self;
+
+    fn hint(self, hint: impl Into<String>) -> Self {
+        let hint = Some(hint.into());
+        match self.downcast::<Refusal>() {
+            Ok(refusal) => Self::new(Refusal { hint, ..refusal }),
+            Err(error) => Self::new(Refusal {
+                error,
+                hint,
+                exit: Exit::Failed,
+            }),
+        }
+    }
+}
+
+impl<T, E: Into<Error>> Hint for Result<T, E> {
+    type Hinted = Result<T, Error>;
+
+    fn hint(self, hint: impl Into<String>) -> Result<T, Error> {
+        self.map_err(|error| error.into().hint(hint))
+    }
+}
+
+/// Tells the user of an error and says how to exit.
+pub(crate) fn report(error: &Error) -> Exit {
+    let exit = exit(error);
+    if exit != Exit::Done {
+        // Where even this cannot be written, the exit code has to do.
+        let _ = io::stderr().lock().write_all(text(error).as_bytes());
+    }
+    exit
+}
+
+/// How to exit after an error.
+fn exit(error: &Error) -> Exit {
+    if is_broken_pipe(error) {
+        // Whoever read the other end has seen enough.
+        return Exit::Done;
+    }
+    let refusals = error.chain().filter_map(|cause| cause.downcast_ref());
+    refusals
+        .map(|refusal: &Refusal| refusal.exit)
+        .find(|&exit| exit != Exit::Failed)
+        .unwrap_or(Exit::Failed)
+}
+
+/// The message, the causes that say more, and the hint.
+fn text(error: &Error) -> String {
+    let mut said = error.to_string();
+    let mut text = format!("error: {said}\n");
+    for cause in error.chain().skip(1) {
+        let cause = cause.to_string();
+        // Many errors repeat their cause in their own message.
+        if !said.contains(&cause) {
+            text += &format!("  because: {cause}\n");
+            said = cause;
+        }
+    }
+    let hint = error
+        .chain()
+        .filter_map(|cause| cause.downcast_ref::<Refusal>())
+        .find_map(|refusal| refusal.hint.as_ref());
+    if let Some(hint) = hint {
+        text += &format!("hint: {hint}\n");
+    }
+    text
+}
+
+fn is_broken_pipe(error: &Error) -> bool {
+    let io_errors = error
+        .chain()
+        .filter_map(|cause| cause.downcast_ref::<io::Error>());
+    io_errors
+        .into_iter()
+        .any(|error| error.kind() == io::ErrorKind::BrokenPipe)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Exit, Hint, exit, text, usage};
+    use anyhow::{Context, anyhow};
+    use std::io;
+
+    #[test]
+    fn a_message_has_its_causes_once_and_the_hint_last() {
+        let error = anyhow!("no room")
+            .context("the plate: no room")
+            .context("cannot cook")
+            .hint("buy plates");
+        assert_eq!(
+            text(&error),
+            "error: cannot cook\n  because: the plate: no room\nhint: buy plates\n"
+        );
+    }
+
+    #[test]
+    fn hints_and_exit_codes_survive_what_is_put_around_them() {
+        let error = usage("no such thing").hint("try another");
+        let error = Err::<(), _>(error).context("reading").unwrap_err();
+        assert!(text(&error).ends_with("hint: try another\n"), "{error:?}");
+        assert_eq!(exit(&error), Exit::Usage);
+        assert_eq!(exit(&anyhow!("else")), Exit::Failed);
+    }
+
+    #[test]
+    fn a_reader_that_went_away_is_no_failure() {
+        let error = anyhow::Error::from(io::Error::from(io::ErrorKind::BrokenPipe));
+        assert_eq!(exit(&error.context("standard output")), Exit::Done);
+    }
+}

@@ -1,0 +1,265 @@
+//! A single field drawn: what `worley`, `pups` and `wavelet` share. Each makes a recipe of one node and bakes it.
+
+use crate::args::{Axes, ImageArgs, Region, Size};
+use crate::baking::{self, MapFile, advise};
+use crate::encode::{Format, ramped_recipe};
+use crate::error::{Exit, Hint, usage};
+use crate::job::{Context, Job, say};
+use crate::output::Target;
+use anyhow::Result;
+use dapple::hash::Seed;
+use dapple::recipe::{
+    BakeMemory, BakeOptions, Images, Input, Levels, LevelsCurve, MapKind, Node, Plan, Recipe,
+};
+use serde::Serialize;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// What commands that draw a field take.
+#[derive(clap::Args, Clone, Debug, Serialize)]
+pub(crate) struct FieldArgs {
+    /// What all chance comes from.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+
+    /// Columns and rows, in pixels.
+    #[arg(long, value_name = "WxH", default_value = "512")]
+    pub(crate) size: Size,
+
+    /// Along which axes the picture repeats.
+    #[arg(long, value_enum, default_value_t = Axes::Both)]
+    pub(crate) axes: Axes,
+
+    /// Make only this part of the picture, in pixels: bit for bit the crop of the whole.
+    #[arg(long, value_name = "X,Y,W,H")]
+    pub(crate) region: Option<Region>,
+
+    /// Which values become black and white: `LO,HI`, or `raw` for the values as they are. By default what the subcommand
+    /// says for PNG, and `raw` for EXR.
+    #[arg(long, value_name = "LO,HI|raw", allow_hyphen_values = true)]
+    pub(crate) range: Option<RangeArg>,
+
+    /// Print the recipe of the picture as TOML, for `dapple bake`, and draw nothing.
+    #[arg(long)]
+    pub(crate) recipe: bool,
+}
+
+/// A range of values on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum RangeArg {
+    /// The values as they are.
+    Raw,
+    /// What becomes 0 and 1.
+    Ends([f32; 2]),
+}
+
+impl std::str::FromStr for RangeArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "raw" {
+            return Ok(Self::Raw);
+        }
+        let ends: Result<Vec<f32>, _> = text.split(',').map(|end| end.trim().parse()).collect();
+        match ends.as_deref() {
+            Ok(&[low, high]) if low.is_finite() && high.is_finite() && low != high => {
+                Ok(Self::Ends([low, high]))
+            }
+            _ => Err(format!(
+                "{text:?} is no range; one is such as 0,1 or -3,3 or raw"
+            )),
+        }
+    }
+}
+
+/// A field that a command draws.
+#[derive(Clone, Debug)]
+pub(crate) struct Field {
+    /// The name of the subcommand.
+    pub(crate) command: &'static str,
+    /// What makes it.
+    pub(crate) node: Node,
+    /// Whether it makes colors.
+    pub(crate) is_color: bool,
+    /// The width and height of the picture in units of the plane.
+    pub(crate) extent: [f64; 2],
+    /// The values that become black and white in files with whole numbers.
+    pub(crate) range: [f32; 2],
+    /// How many pictures of a loop there are, if it moves.
+    pub(crate) frames: Option<u32>,
+    /// The images that it follows.
+    pub(crate) images: Images,
+}
+
+/// Draws a field.
+///
+/// # Errors
+///
+/// Whatever went wrong.
+pub(crate) fn draw(
+    field: &Field,
+    args: &FieldArgs,
+    image: &ImageArgs,
+    options: &impl Serialize,
+    context: &Context,
+) -> Result<Exit> {
+    if args.recipe {
+        let format = image.format.unwrap_or(Format::Png16);
+        let text = recipe(field, args, image, format)?
+            .to_toml()
+            .map_err(advise)?;
+        say(text.trim_end())?;
+        return Ok(Exit::Done);
+    }
+    let mut job = Job::new(context, field.command, &image.files);
+    let target = image.files.target()?;
+    let is_ramped = image.ramp.is_some();
+    let is_color = field.is_color || is_ramped;
+    let default = if is_ramped {
+        Format::Png8
+    } else {
+        Format::Png16
+    };
+    let format = Format::choose(image.format, &target, default)?;
+    let recipe = recipe(field, args, image, format)?;
+    let kind = if is_color {
+        MapKind::Albedo
+    } else {
+        MapKind::Height
+    };
+    let mut files = Vec::new();
+    for target in targets(&target, field.frames)? {
+        files.push(MapFile {
+            kind,
+            output: job.claim(&target)?,
+            format,
+        });
+    }
+    job.claim_sidecar()?;
+    let bake = BakeOptions {
+        size: args.size.0,
+        region: args.region.map(Region::of_recipe),
+        maps: vec![kind],
+        memory: BakeMemory::Banded,
+    };
+    for (index, file) in (0_u32..).zip(&files) {
+        let time = f64::from(index) / files.len() as f64;
+        let plan = Plan::new(&recipe, &field.images, time).map_err(advise)?;
+        baking::bake(&mut job, &plan, &bake, std::slice::from_ref(file))?;
+    }
+    let told = Told {
+        options,
+        recipe: &recipe,
+    };
+    job.finish(&told, Value::Null)?;
+    Ok(Exit::Done)
+}
+
+/// The options and the recipe, for the JSON file.
+#[derive(Serialize)]
+struct Told<'a, T> {
+    #[serde(flatten)]
+    options: &'a T,
+    #[serde(rename = "baked")]
+    recipe: &'a Recipe,
+}
+
+/// The recipe of a picture of a field.
+fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) -> Result<Recipe> {
+    let mut recipe = Recipe::of_node(field.command, field.node.clone(), Seed(args.seed));
+    recipe.extent = field.extent;
+    recipe.wrap = args.axes.flags();
+    let range = match args.range {
+        Some(RangeArg::Raw) => None,
+        Some(RangeArg::Ends(ends)) => Some(ends),
+        // A ramp goes from 0 to 1.
+        None if format == Format::Exr && image.ramp.is_none() => None,
+        None => Some(field.range),
+    };
+    if field.is_color {
+        if image.ramp.is_some() || args.range.is_some() {
+            return Err(usage("colors take neither a ramp nor a range"));
+        }
+        recipe.material.height = Input::Number(0.5);
+        recipe.material.albedo = Some(Input::from(field.command));
+        return Ok(recipe);
+    }
+    if let Some(from) = range.filter(|&range| range != [0.0, 1.0]) {
+        let levels = Levels {
+            input: Input::from(field.command),
+            from,
+            to: [0.0, 1.0],
+            curve: LevelsCurve::Unclamped,
+        };
+        recipe
+            .nodes
+            .insert("levels".to_owned(), Node::Levels(levels));
+        recipe.material.height = Input::from("levels");
+    }
+    if let Some(ramp) = &image.ramp {
+        recipe.nodes.insert(
+            "colors".to_owned(),
+            ramped_recipe(ramp, &recipe.material.height),
+        );
+        recipe.material.albedo = Some(Input::from("colors"));
+    }
+    Ok(recipe)
+}
+
+/// The file of each picture: `NAME-001.png` and so on for a loop.
+fn targets(target: &Target, frames: Option<u32>) -> Result<Vec<Target>> {
+    let Some(frames) = frames else {
+        return Ok(vec![target.clone()]);
+    };
+    let Target::Path(path) = target else {
+        return Err(
+            usage("a loop has many pictures, and standard output takes one")
+                .hint("give a file with -o"),
+        );
+    };
+    let digits = frames.to_string().len().max(3);
+    let name = |frame: u32| Target::Path(numbered(path, frame, digits));
+    Ok((1..=frames).map(name).collect())
+}
+
+fn numbered(path: &Path, frame: u32, digits: usize) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("-{frame:0digits$}"));
+    if let Some(ending) = path.extension() {
+        name.push(".");
+        name.push(ending);
+    }
+    path.with_file_name(name)
+}
+
+/// The width and height of a picture that is `shorter` units along its shorter side and has square pixels.
+pub(crate) fn extent_of(size: Size, shorter: f64) -> [f64; 2] {
+    let [width, height] = size.0.map(f64::from);
+    let pixel = shorter / width.min(height);
+    [width * pixel, height * pixel]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{RangeArg, numbered};
+    use std::path::Path;
+
+    #[test]
+    fn ranges_are_two_ends_or_raw() {
+        assert_eq!("raw".parse(), Ok(RangeArg::Raw));
+        assert_eq!("-3, 3".parse(), Ok(RangeArg::Ends([-3.0, 3.0])));
+        for text in ["", "1", "1,1", "0,nan", "0,1,2", "low,high"] {
+            assert!(text.parse::<RangeArg>().is_err(), "{text:?} is no range");
+        }
+    }
+
+    #[test]
+    fn pictures_of_a_loop_are_numbered_before_the_ending() {
+        assert_eq!(
+            numbered(Path::new("a/sea.png"), 7, 3),
+            Path::new("a/sea-007.png")
+        );
+        assert_eq!(numbered(Path::new("sea"), 12, 4), Path::new("sea-0012"));
+    }
+}

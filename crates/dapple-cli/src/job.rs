@@ -1,0 +1,306 @@
+//! A run of a subcommand: its files, what it says, and the JSON file beside the output.
+
+use crate::args::{ImageArgs, OutputArgs};
+use crate::encode::{Format, default_format, encode, ramped, range};
+use crate::error::{Hint, usage};
+use crate::output::{OutputIdx, Outputs, Target};
+use anyhow::{Context as _, Result};
+use dapple::tile::Map;
+use serde::Serialize;
+use serde_json::Value;
+use std::fs::File;
+use std::io::{self, BufWriter, IsTerminal, Write};
+use std::path::PathBuf;
+
+/// What holds for the whole process.
+#[derive(Clone, Debug)]
+pub(crate) struct Context {
+    /// Whether nothing is said that was not asked for.
+    pub(crate) quiet: bool,
+    /// The command line, as it was given.
+    pub(crate) arguments: Vec<String>,
+}
+
+/// A run of a subcommand.
+#[derive(Debug)]
+pub(crate) struct Job<'a> {
+    context: &'a Context,
+    /// The name of the subcommand.
+    command: &'static str,
+    args: &'a OutputArgs,
+    outputs: Outputs,
+    files: Vec<(OutputIdx, FileRecord)>,
+    sidecar: Option<OutputIdx>,
+}
+
+/// What the JSON file says of an output.
+#[derive(Clone, Debug, Default, Serialize)]
+struct FileRecord {
+    file: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    format: Option<Format>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    size: Option<[u32; 2]>,
+    /// The smallest and the largest number, before they were clamped and rounded for the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    range: Option<[f32; 2]>,
+    bytes: u64,
+    sha256: String,
+}
+
+/// The JSON file beside the output.
+#[derive(Serialize)]
+struct Sidecar<'a> {
+    dapple: &'static str,
+    command: &'static str,
+    arguments: &'a [String],
+    options: Value,
+    #[serde(skip_serializing_if = "Value::is_null")]
+    report: Value,
+    outputs: Vec<&'a FileRecord>,
+}
+
+impl<'a> Job<'a> {
+    /// Begins.
+    pub(crate) fn new(context: &'a Context, command: &'static str, args: &'a OutputArgs) -> Self {
+        Self {
+            context,
+            command,
+            args,
+            outputs: Outputs::new(args.force),
+            files: Vec::new(),
+            sidecar: None,
+        }
+    }
+
+    /// Whether nothing is said that was not asked for.
+    pub(crate) fn is_quiet(&self) -> bool {
+        self.context.quiet
+    }
+
+    /// Claims a file that is no text.
+    ///
+    /// # Errors
+    ///
+    /// As [`Outputs::claim`], and if it would go to a terminal.
+    pub(crate) fn claim(&mut self, target: &Target) -> Result<OutputIdx> {
+        if *target == Target::Stdout && io::stdout().is_terminal() {
+            let error = usage("standard output is a terminal, which shows no such files");
+            return Err(error.hint("give a file with -o, or lead it on with a pipe"));
+        }
+        self.claim_text(target)
+    }
+
+    /// Claims a file of text.
+    ///
+    /// # Errors
+    ///
+    /// As [`Outputs::claim`].
+    pub(crate) fn claim_text(&mut self, target: &Target) -> Result<OutputIdx> {
+        let output = self.outputs.claim(target)?;
+        let record = FileRecord {
+            file: target.to_string(),
+            ..FileRecord::default()
+        };
+        self.files.push((output, record));
+        Ok(output)
+    }
+
+    /// Makes a folder for outputs, if it is not there.
+    ///
+    /// # Errors
+    ///
+    /// As [`Outputs::make_folder`].
+    pub(crate) fn make_folder(&mut self, folder: &std::path::Path) -> Result<()> {
+        self.outputs.make_folder(folder)
+    }
+
+    /// Claims the JSON file, if one was asked for. The outputs have to be claimed before.
+    ///
+    /// # Errors
+    ///
+    /// As [`Outputs::claim`], and if there is no name for it.
+    pub(crate) fn claim_sidecar(&mut self) -> Result<()> {
+        self.claim_sidecar_or(None)
+    }
+
+    /// The same with a name of its own where the command line gives none.
+    ///
+    /// # Errors
+    ///
+    /// As [`claim_sidecar`](Self::claim_sidecar).
+    pub(crate) fn claim_sidecar_or(&mut self, name: Option<PathBuf>) -> Result<()> {
+        let path = match (&self.args.json, name) {
+            (None, _) => return Ok(()),
+            (Some(Some(path)), _) => path.clone(),
+            (Some(None), Some(name)) => name,
+            (Some(None), None) => self.sidecar_path()?,
+        };
+        let target = Target::from(path.as_path());
+        self.sidecar = Some(self.outputs.claim(&target)?);
+        Ok(())
+    }
+
+    /// Writes all bytes of a file.
+    ///
+    /// # Errors
+    ///
+    /// As [`Outputs::write`].
+    pub(crate) fn write(&self, output: OutputIdx, bytes: &[u8]) -> Result<()> {
+        self.outputs.write(output, bytes)
+    }
+
+    /// Writes a map as an image of a format that was chosen before, and notes its size and range.
+    ///
+    /// # Errors
+    ///
+    /// As [`encode`] and [`Outputs::write`].
+    pub(crate) fn write_map(&mut self, output: OutputIdx, map: &Map, format: Format) -> Result<()> {
+        self.write(output, &encode(map, format)?)?;
+        self.note(output, format, map.size(), range(map));
+        Ok(())
+    }
+
+    /// What writes a file that was claimed, from its start. It has to be flushed before the job is finished.
+    ///
+    /// # Errors
+    ///
+    /// As [`Outputs::writer`].
+    pub(crate) fn writer(&self, output: OutputIdx) -> Result<BufWriter<File>> {
+        self.outputs.writer(output)
+    }
+
+    /// Notes the format, the size and the range of an image that was written.
+    pub(crate) fn note(
+        &mut self,
+        output: OutputIdx,
+        format: Format,
+        size: [u32; 2],
+        range: [f32; 2],
+    ) {
+        for (_, record) in self.files.iter_mut().filter(|(at, _)| *at == output) {
+            record.format = Some(format);
+            record.size = Some(size);
+            record.range = Some(range);
+        }
+    }
+
+    /// Chooses the format of a map, turns values to colors if there is a ramp, and writes it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Format::choose`] and [`write_map`](Self::write_map).
+    pub(crate) fn write_image(
+        &mut self,
+        output: OutputIdx,
+        map: Map,
+        is_deep: bool,
+        args: &ImageArgs,
+    ) -> Result<()> {
+        let map = ramped(map, args.ramp.as_ref());
+        let default = default_format(&map, is_deep);
+        let format = Format::choose(args.format, self.outputs.target(output), default)?;
+        self.write_map(output, &map, format)
+    }
+
+    /// Says what was asked for, on standard output unless that is taken.
+    ///
+    /// # Errors
+    ///
+    /// If nobody listens.
+    pub(crate) fn say(&self, text: &str) -> Result<()> {
+        let is_taken =
+            |(output, _): &(OutputIdx, FileRecord)| *self.outputs.target(*output) == Target::Stdout;
+        if self.files.iter().any(is_taken) {
+            eprintln_if_possible(text);
+            return Ok(());
+        }
+        say(text)
+    }
+
+    /// Puts all files in their places and says so.
+    ///
+    /// # Errors
+    ///
+    /// As [`Outputs::commit`].
+    pub(crate) fn finish(mut self, options: &impl Serialize, report: Value) -> Result<()> {
+        if let Some(sidecar) = self.sidecar {
+            for (output, record) in &mut self.files {
+                let content = self.outputs.content(*output)?;
+                (record.bytes, record.sha256) = (content.bytes, content.sha256);
+            }
+            let options = serde_json::to_value(options).context("the JSON file")?;
+            let sidecar_content = Sidecar {
+                dapple: env!("CARGO_PKG_VERSION"),
+                command: self.command,
+                arguments: &self.context.arguments,
+                options,
+                report,
+                outputs: self.files.iter().map(|(_, record)| record).collect(),
+            };
+            let mut text = serde_json::to_string_pretty(&sidecar_content)?;
+            text.push('\n');
+            self.outputs.write(sidecar, text.as_bytes())?;
+        }
+        let is_file = |output| self.outputs.target(output) != &Target::Stdout;
+        let files = self.files.iter().filter(|(output, _)| is_file(*output));
+        let written: Vec<_> = files.map(|(_, record)| told(record)).collect();
+        self.outputs.commit()?;
+        for line in written.iter().filter(|_| !self.context.quiet) {
+            eprintln_if_possible(line);
+        }
+        Ok(())
+    }
+
+    /// The name of the JSON file where none was given: that of the first output, with the ending `.json`.
+    fn sidecar_path(&self) -> Result<PathBuf> {
+        let first = self.files.first();
+        let path = first.and_then(|(output, _)| self.outputs.target(*output).path());
+        let Some(path) = path else {
+            return Err(usage("there is no output for the JSON file to lie beside")
+                .hint("name it: --json=FILE"));
+        };
+        let path = path.with_extension("json");
+        if first.is_some_and(|(_, record)| path.as_os_str() == record.file.as_str()) {
+            return Err(
+                usage("the output is a JSON file itself").hint("name the other: --json=FILE")
+            );
+        }
+        Ok(path)
+    }
+}
+
+/// Prints to standard output.
+///
+/// # Errors
+///
+/// If nobody listens.
+pub(crate) fn say(text: &str) -> Result<()> {
+    let mut stdout = io::stdout().lock();
+    stdout.write_all(text.as_bytes())?;
+    stdout.write_all(b"\n")?;
+    Ok(stdout.flush()?)
+}
+
+/// Prints to standard error. If nobody listens there, nobody is missed.
+pub(crate) fn eprintln_if_possible(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// What is said of a file.
+fn told(record: &FileRecord) -> String {
+    let FileRecord {
+        file, size, format, ..
+    } = record;
+    match (size, format) {
+        (Some([width, height]), Some(format)) => {
+            let depth = match format {
+                Format::Png8 => "8 bits",
+                Format::Png16 => "16 bits",
+                Format::Exr => "32-bit floating point",
+            };
+            format!("wrote {file}: {width} × {height} pixels, {depth}")
+        }
+        _ => format!("wrote {file}"),
+    }
+}

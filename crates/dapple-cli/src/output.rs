@@ -1,0 +1,360 @@
+//! The files of a run: claimed before the work starts, written aside, and all put in their places at the end.
+//!
+//! Each file is written under a temporary name in the folder where it will lie. When all of them are whole they are
+//! renamed, one right after the other, so that whoever looks finds the old file or the whole new one, however the command
+//! ends. Nothing that is there is replaced without `--force`: this is looked at when a file is claimed, before hours of work,
+//! and holds again when it is put in its place.
+//!
+//! Standard output, devices and pipes get their bytes at the end, in one go.
+
+#![expect(
+    clippy::disallowed_methods,
+    reason = "this module is where the command writes files"
+)]
+
+mod registry;
+mod temporary;
+
+pub(crate) use registry::exit_without_rubbish;
+use temporary::Temporary;
+
+use crate::error::Hint;
+use anyhow::{Context, Error, Result, anyhow, bail};
+use sha2::{Digest, Sha256};
+use std::fmt;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// Where something is to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// Standard output, `-` on the command line.
+    Stdout,
+    /// A file.
+    Path(PathBuf),
+}
+
+/// A file that was claimed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct OutputIdx(usize);
+
+/// What is known of the content of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Content {
+    /// How many bytes it has.
+    pub(crate) bytes: u64,
+    /// Their SHA-256, in hexadecimal, as `sha256sum` prints it.
+    pub(crate) sha256: String,
+}
+
+/// The files of a run. What was not committed is taken away when this goes.
+#[derive(Debug)]
+pub(crate) struct Outputs {
+    force: bool,
+    files: Vec<Pending>,
+    /// Folders that were made, the outermost first.
+    folders: Vec<PathBuf>,
+}
+
+#[derive(Debug)]
+struct Pending {
+    target: Target,
+    place: Place,
+    temporary: Temporary,
+}
+
+/// Where the bytes go at the end.
+#[derive(Debug, PartialEq, Eq)]
+enum Place {
+    Stdout,
+    /// A device or a named pipe, which is written to and not replaced.
+    Device(PathBuf),
+    /// A file, with links resolved if it is there.
+    File(PathBuf),
+}
+
+impl Target {
+    /// The path, or nothing for standard output.
+    pub(crate) fn path(&self) -> Option<&Path> {
+        match self {
+            Self::Stdout => None,
+            Self::Path(path) => Some(path),
+        }
+    }
+
+    /// The ending in small letters, without its dot; empty where there is none.
+    pub(crate) fn ending(&self) -> String {
+        let ending = self.path().and_then(Path::extension);
+        ending
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_ascii_lowercase()
+    }
+}
+
+impl From<&Path> for Target {
+    fn from(path: &Path) -> Self {
+        if path == Path::new("-") {
+            Self::Stdout
+        } else {
+            Self::Path(path.to_owned())
+        }
+    }
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stdout => f.write_str("standard output"),
+            Self::Path(path) => path.display().fmt(f),
+        }
+    }
+}
+
+impl Outputs {
+    /// No file yet. With `force`, files that are there are replaced.
+    pub(crate) fn new(force: bool) -> Self {
+        Self {
+            force,
+            files: Vec::new(),
+            folders: Vec::new(),
+        }
+    }
+
+    /// Makes a folder, and those around it, if it is not there.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be made, as where a file has its name.
+    pub(crate) fn make_folder(&mut self, folder: &Path) -> Result<()> {
+        let missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+        let missing: Vec<_> = folder.ancestors().take_while(missing).collect();
+        for folder in missing.into_iter().rev() {
+            registry::make_folder(folder)
+                .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
+            self.folders.push(folder.to_owned());
+        }
+        if folder.is_dir() {
+            return Ok(());
+        }
+        Err(anyhow!("{} is a file, and not a folder", folder.display()))
+    }
+
+    /// Makes room for a file, under its temporary name.
+    ///
+    /// # Errors
+    ///
+    /// If the file is there and may not be replaced, is a folder, was claimed before, or cannot be written.
+    pub(crate) fn claim(&mut self, target: &Target) -> Result<OutputIdx> {
+        let place = place(target)?;
+        if self.files.iter().any(|file| file.place == place) {
+            bail!("{target} would be written twice");
+        }
+        let temporary = match &place {
+            Place::File(path) => {
+                temporary::remove_left_behind(path);
+                if !self.force && path.symlink_metadata().is_ok() {
+                    return Err(exists(target));
+                }
+                Temporary::beside(path).map_err(|error| no_room(path, error))?
+            }
+            // There is no place beside it, and its bytes are copied anyway.
+            Place::Stdout | Place::Device(_) => {
+                let path = std::env::temp_dir().join("dapple");
+                temporary::remove_left_behind(&path);
+                Temporary::beside(&path).map_err(|error| no_room(&path, error))?
+            }
+        };
+        self.files.push(Pending {
+            target: target.clone(),
+            place,
+            temporary,
+        });
+        Ok(OutputIdx(self.files.len() - 1))
+    }
+
+    /// What writes a file that was claimed, from its start. It has to be flushed before [`commit`](Self::commit).
+    ///
+    /// # Errors
+    ///
+    /// If the operating system has no further handle.
+    pub(crate) fn writer(&self, output: OutputIdx) -> Result<BufWriter<File>> {
+        let Pending {
+            target, temporary, ..
+        } = &self.files[output.0];
+        let file = temporary.file().try_clone();
+        let file = file.with_context(|| format!("{target} cannot be written"))?;
+        Ok(BufWriter::with_capacity(1 << 18, file))
+    }
+
+    /// Writes all of a file that was claimed.
+    ///
+    /// # Errors
+    ///
+    /// If the operating system refuses, as where the disk is full.
+    pub(crate) fn write(&self, output: OutputIdx, bytes: &[u8]) -> Result<()> {
+        let mut writer = self.writer(output)?;
+        let written = writer.write_all(bytes).and_then(|()| writer.flush());
+        written.with_context(|| format!("{} cannot be written", self.target(output)))
+    }
+
+    /// The target of a file that was claimed.
+    pub(crate) fn target(&self, output: OutputIdx) -> &Target {
+        &self.files[output.0].target
+    }
+
+    /// What is in a file that was written, and flushed.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be read back.
+    pub(crate) fn content(&self, output: OutputIdx) -> Result<Content> {
+        let Pending {
+            target, temporary, ..
+        } = &self.files[output.0];
+        read_back(temporary.file()).with_context(|| format!("{target} cannot be read back"))
+    }
+
+    /// Puts all files in their places.
+    ///
+    /// # Errors
+    ///
+    /// If a file is there by now that may not be replaced, or the operating system refuses; the message says which files are
+    /// in their places all the same.
+    pub(crate) fn commit(mut self) -> Result<()> {
+        for file in &self.files {
+            file.copy_if_stream()
+                .with_context(|| format!("{} cannot be written", file.target))?;
+        }
+        let mut held = registry::hold();
+        let mut placed: Vec<Target> = Vec::new();
+        // What is not taken out by then goes with `self` if there is an error.
+        while !self.files.is_empty() {
+            let file = self.files.remove(0);
+            let Place::File(path) = &file.place else {
+                file.temporary.remove(&mut held);
+                continue;
+            };
+            if let Err(error) = file.temporary.put(&mut held, path, self.force) {
+                return Err(not_placed(&file.target, error, &placed));
+            }
+            placed.push(file.target);
+        }
+        for folder in core::mem::take(&mut self.folders) {
+            registry::forget(&mut held, &folder);
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Outputs {
+    fn drop(&mut self) {
+        let mut held = registry::hold();
+        for file in self.files.drain(..) {
+            file.temporary.remove(&mut held);
+        }
+        for folder in self.folders.drain(..).rev() {
+            // One that somebody put a file into stays.
+            let _ = fs::remove_dir(&folder);
+            registry::forget(&mut held, &folder);
+        }
+    }
+}
+
+impl Pending {
+    /// Copies the bytes to where they are not renamed to.
+    fn copy_if_stream(&self) -> io::Result<()> {
+        let mut from = self.temporary.file();
+        from.seek(SeekFrom::Start(0))?;
+        match &self.place {
+            Place::File(_) => Ok(()),
+            Place::Stdout => {
+                let mut to = io::stdout().lock();
+                io::copy(&mut from, &mut to)?;
+                to.flush()
+            }
+            Place::Device(path) => {
+                io::copy(&mut from, &mut File::options().write(true).open(path)?)?;
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Where the bytes of a target go, as far as can be seen now.
+fn place(target: &Target) -> Result<Place> {
+    let Target::Path(path) = target else {
+        return Ok(Place::Stdout);
+    };
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => {
+            let error = anyhow!("{} is a folder, and not a file", path.display());
+            Err(error.hint("name a file in it"))
+        }
+        Ok(found) if !found.is_file() => Ok(Place::Device(path.clone())),
+        Ok(_) => {
+            // What a link leads to is replaced, and the link stays.
+            let path = fs::canonicalize(path);
+            Ok(Place::File(
+                path.with_context(|| format!("{target} cannot be written"))?,
+            ))
+        }
+        Err(_) if path.file_name().is_none() => {
+            Err(anyhow!("{:?} is not the name of a file", path.display()))
+        }
+        Err(_) => Ok(Place::File(path.clone())),
+    }
+}
+
+fn exists(target: &Target) -> Error {
+    let error = anyhow!("{target} exists already");
+    error.hint("give another name, or --force to replace it")
+}
+
+fn no_room(path: &Path, error: io::Error) -> Error {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let is_missing = error.kind() == io::ErrorKind::NotFound;
+    let error = Error::new(error).context(format!("{} cannot be written", path.display()));
+    if is_missing && !folder.as_os_str().is_empty() {
+        return error.hint(format!("make the folder {} first", folder.display()));
+    }
+    error
+}
+
+fn not_placed(target: &Target, error: io::Error, placed: &[Target]) -> Error {
+    let error = if error.kind() == io::ErrorKind::AlreadyExists {
+        exists(target)
+    } else {
+        Error::new(error).context(format!("{target} cannot be written"))
+    };
+    if placed.is_empty() {
+        return error;
+    }
+    let placed: Vec<_> = placed.iter().map(Target::to_string).collect();
+    error.context(format!(
+        "only a part of the files was written: {}",
+        placed.join(", ")
+    ))
+}
+
+fn read_back(mut file: &File) -> io::Result<Content> {
+    file.seek(SeekFrom::Start(0))?;
+    let mut hash = Sha256::new();
+    let mut block = vec![0; 1 << 18];
+    let mut bytes = 0;
+    loop {
+        let n_read = file.read(&mut block)?;
+        if n_read == 0 {
+            break;
+        }
+        hash.update(&block[..n_read]);
+        bytes += n_read as u64;
+    }
+    let digits = hash.finalize();
+    let sha256 = digits.iter().map(|byte| format!("{byte:02x}")).collect();
+    Ok(Content { bytes, sha256 })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,53 @@
+//! What this process would leave behind if it ended now: temporary files and new folders.
+//!
+//! The handler of Ctrl-C takes all of it away. Whatever makes such a file, or puts it in its place, holds the registry
+//! meanwhile, so that an interrupt comes before or after it.
+
+#![expect(
+    clippy::disallowed_methods,
+    reason = "this module takes files away again"
+)]
+
+use crate::error::Exit;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+static PATHS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// The registry, for oneself.
+pub(super) type Held = MutexGuard<'static, Vec<PathBuf>>;
+
+/// Waits for the registry.
+pub(super) fn hold() -> Held {
+    // A list of paths is whole whatever happened to the thread that had it.
+    PATHS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Makes a folder that goes again if it is not forgotten.
+pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
+    let mut held = hold();
+    fs::create_dir(folder)?;
+    held.push(folder.to_owned());
+    Ok(())
+}
+
+/// Takes a path off the list.
+pub(super) fn forget(held: &mut Held, path: &Path) {
+    held.retain(|other| other != path);
+}
+
+/// Takes everything away that is on the list, and ends the process.
+pub(crate) fn exit_without_rubbish(exit: Exit) -> ! {
+    let held = hold();
+    for path in held.iter().rev() {
+        // A folder that somebody put a file into stays, and there is nobody left to tell of an error.
+        let _ = if path.is_dir() {
+            fs::remove_dir(path)
+        } else {
+            fs::remove_file(path)
+        };
+    }
+    std::process::exit(exit as i32)
+}

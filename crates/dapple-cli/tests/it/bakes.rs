@@ -1,0 +1,247 @@
+//! Recipes and single fields: files, crops, threads, and being killed.
+
+use crate::support::{Folder, ROCK, assert_done, assert_refused, stdout};
+use dapple::image::{Image, Limits, decode_image, read_image};
+use std::fs;
+use std::time::{Duration, Instant};
+
+fn read(folder: &Folder, name: &str) -> Image {
+    read_image(folder.path(name), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn a_bake_writes_a_file_for_each_map() {
+    let folder = Folder::new("maps");
+    let maps = [
+        "height",
+        "normal",
+        "ao",
+        "curvature",
+        "albedo",
+        "roughness",
+        "metallic",
+        "orm",
+    ];
+    let asked = maps.join(",");
+    let run = folder.run(&[
+        "bake",
+        "flagstone",
+        "-o",
+        "out/",
+        "--size",
+        "48x32",
+        "--maps",
+        &asked,
+        "--json",
+    ]);
+    assert_done(&run, "bake");
+    for map in maps {
+        let image = read(&folder, &format!("out/flagstone_{map}.png"));
+        assert_eq!((image.size(), image.bits()), ([48, 32], 16), "{map}");
+        let is_gray = !["normal", "albedo", "orm"].contains(&map);
+        assert_eq!(image.gray().is_ok(), is_gray, "{map}");
+    }
+    let json = fs::read_to_string(folder.path("out/flagstone.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["report"]["name"], "flagstone", "the recipe");
+    assert!(json["options"]["baked"]["nodes"].is_object(), "all of it");
+    let heights = &json["outputs"][0]["range"];
+    assert!(
+        heights[0].as_f64() >= Some(0.0) && heights[1].as_f64() <= Some(1.0),
+        "{heights}"
+    );
+}
+
+#[test]
+fn all_built_in_recipes_bake() {
+    let folder = Folder::new("builtin");
+    let list = stdout(&folder.run(&["recipe", "--list"]));
+    let names: Vec<_> = list
+        .lines()
+        .filter_map(|line| line.split_whitespace().next())
+        .collect();
+    assert!(names.len() >= 20, "all that the papers name: {names:?}");
+    for name in names {
+        let run = folder.run(&["bake", name, "-o", &format!("{name}/"), "--size", "64"]);
+        assert_done(&run, name);
+        let height = read(&folder, &format!("{name}/{name}_height.png"))
+            .gray()
+            .unwrap();
+        let statistics = height.statistics();
+        assert!(
+            statistics.max - statistics.min > 0.1,
+            "{name} has a relief: {statistics:?}"
+        );
+    }
+}
+
+#[test]
+fn a_region_is_a_crop_and_threads_do_not_matter() {
+    let folder = Folder::new("region");
+    let bake = |output: &str, more: &[&str]| {
+        let run = [
+            "bake", "ice", "--size", "96", "--maps", "albedo", "--format", "exr", "-o", output,
+        ];
+        assert_done(&folder.run(&[&run[..], more].concat()), output);
+        read(&folder, output).color().unwrap()
+    };
+    let whole = bake("whole.exr", &["--threads", "1"]);
+    let part = bake("part.exr", &["--region", "17,30,50,41", "--threads", "3"]);
+    assert_eq!(whole.crop([17, 30], [50, 41]).unwrap(), part, "bit for bit");
+    let other = bake("other.exr", &["--seed", "9"]);
+    assert_ne!(whole, other, "another seed");
+}
+
+#[test]
+fn banded_and_whole_bakes_have_the_same_bytes() {
+    let folder = Folder::new("banded");
+    for (output, banded) in [("a.exr", None), ("b.exr", Some("--banded"))] {
+        let run = [
+            "bake", "craters", "--size", "1500x900", "--maps", "normal", "-o", output,
+        ];
+        assert_done(&folder.run(&[&run[..], banded.as_slice()].concat()), output);
+    }
+    assert_eq!(
+        fs::read(folder.path("a.exr")).unwrap(),
+        fs::read(folder.path("b.exr")).unwrap()
+    );
+}
+
+#[test]
+fn a_mistake_in_a_recipe_is_told_with_its_line() {
+    let folder = Folder::with_inputs("mistake");
+    let bake = |text: String| {
+        fs::write(folder.path("bad.toml"), text).unwrap();
+        folder.run(&["bake", "bad.toml", "-o", "out/", "--size", "8"])
+    };
+    let run = bake(ROCK.replace("value =", "valeu ="));
+    assert_refused(&run, 1, "line 7", "a field");
+    assert_refused(&run, 1, "did you mean `value`", "a field");
+    assert_refused(
+        &bake(ROCK.replace("\"cells\"", "\"cell\"")),
+        1,
+        "did you mean `cells`",
+        "a node",
+    );
+    assert_refused(
+        &bake(ROCK.replace("photo.png", "foto.png")),
+        1,
+        "foto.png",
+        "an image",
+    );
+    assert!(!folder.path("out").exists(), "nothing is left");
+}
+
+#[test]
+fn what_a_field_prints_as_its_recipe_bakes_to_the_same_bits() {
+    let folder = Folder::new("same");
+    for command in [
+        "worley --value f2_minus_f1 --seed 4",
+        "pups turbulence --seed 4",
+        "wavelet --cells 8 --seed 4",
+    ] {
+        let run = |more: &[&str]| {
+            let words: Vec<_> = command
+                .split(' ')
+                .chain(["--size", "40"])
+                .chain(more.iter().copied())
+                .collect();
+            let output = folder.run(&words);
+            assert_done(&output, command);
+            output
+        };
+        fs::write(folder.path("field.toml"), stdout(&run(&["--recipe"]))).unwrap();
+        let drawn = run(&["-o", "-"]).stdout;
+        let bake = [
+            "bake",
+            "field.toml",
+            "--size",
+            "40",
+            "--maps",
+            "height",
+            "-o",
+            "-",
+        ];
+        assert_eq!(drawn, folder.run(&bake).stdout, "{command}");
+    }
+}
+
+#[test]
+fn the_pictures_of_a_loop_differ_and_are_numbered() {
+    let folder = Folder::new("loop");
+    let run = [
+        "worley", "--frames", "3", "--cells", "2", "--size", "24", "-o", "sea.png",
+    ];
+    assert_done(&folder.run(&run), "a loop");
+    assert_eq!(
+        folder.names(),
+        ["sea-001.png", "sea-002.png", "sea-003.png"]
+    );
+    let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
+    assert_ne!(bytes("sea-001.png"), bytes("sea-002.png"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_bake_that_is_killed_at_any_moment_leaves_old_files_or_whole_new_ones() {
+    let folder = Folder::new("killed");
+    let bake = |seed: &str| {
+        let run = [
+            "bake",
+            "flagstone",
+            "--size",
+            "256",
+            "--maps",
+            "height,normal",
+            "--seed",
+            seed,
+            "--force",
+            "-o",
+            "out/",
+        ];
+        folder.command(&run)
+    };
+    let names = ["out/flagstone_height.png", "out/flagstone_normal.png"];
+    let bytes = || names.map(|name| fs::read(folder.path(name)).unwrap());
+    let begun = Instant::now();
+    assert!(
+        bake("2").output().unwrap().status.success(),
+        "the new files"
+    );
+    let whole_run = begun.elapsed();
+    let new = bytes();
+    assert!(
+        bake("1").output().unwrap().status.success(),
+        "the old files"
+    );
+    let old = bytes();
+    // From before the first byte to after the last, at moments that spread evenly, as the golden ratio does.
+    for round in 0..16 {
+        let part = (f64::from(round) * 0.618_033_988_75).fract();
+        let mut child = bake("2")
+            .stdout(std::process::Stdio::null())
+            .stderr(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_secs_f64(
+            whole_run.as_secs_f64() * 1.2 * part,
+        ));
+        // A child that has ended cannot be killed, and is fine.
+        let _ = child.kill();
+        child.wait().unwrap();
+        for ((found, old), new) in bytes().iter().zip(&old).zip(&new) {
+            assert!(
+                found == old || found == new,
+                "round {round}: a file is neither the old nor the new one"
+            );
+            assert!(
+                decode_image(found, &Limits::default()).is_ok(),
+                "round {round}: a whole image"
+            );
+        }
+    }
+    assert!(bake("2").output().unwrap().status.success(), "the next run");
+    assert_eq!(bytes(), new, "after all");
+    let rubbish = fs::read_dir(folder.path("out")).unwrap().count();
+    assert_eq!(rubbish, 2, "the next run takes away what was left");
+}

@@ -1,0 +1,134 @@
+//! The examples of the help work as they stand.
+
+#![cfg(unix)]
+
+use crate::support::{Folder, assert_done, stdout};
+use std::fs;
+
+const SUBCOMMANDS: [&str; 13] = [
+    "bake",
+    "recipe",
+    "worley",
+    "pups",
+    "wavelet",
+    "tile",
+    "blend",
+    "blend-map",
+    "synth",
+    "points",
+    "info",
+    "completions",
+    "man",
+];
+
+/// The lines of a help that are commands; one that ends with a backslash goes on.
+fn examples(help: &str) -> Vec<String> {
+    let help = help.replace("\\\n", " ");
+    let lines = help.lines().map(str::trim);
+    lines
+        .filter(|line| line.starts_with("dapple ") && !line.starts_with("dapple help"))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// The help of a subcommand, wide enough for every example to be one line.
+fn help(folder: &Folder, subcommand: &[&str]) -> String {
+    let arguments = [subcommand, &["--help"]].concat();
+    let output = folder.run(&arguments);
+    assert_done(&output, "help");
+    stdout(&output)
+}
+
+/// Runs each example of a help in a folder of its own.
+fn run_examples(subcommand: &[&str]) {
+    let name = subcommand.first().copied().unwrap_or("dapple");
+    let folder = Folder::new(&format!("help-{name}"));
+    let examples = examples(&help(&folder, subcommand));
+    assert!(!examples.is_empty(), "{name} has examples");
+    for (index, example) in examples.iter().enumerate() {
+        let folder = Folder::with_inputs(&format!("example-{name}-{index}"));
+        // What an example makes may be what another reads.
+        let output = example.split_once(" -o ").map_or("", |(_, rest)| rest);
+        let output = output.split_whitespace().next().unwrap_or("none");
+        let _ = fs::remove_file(folder.path(output));
+        assert_done(&folder.shell(example), example);
+    }
+}
+
+#[test]
+fn examples_of_the_help_run() {
+    run_examples(&[]);
+}
+
+#[test]
+fn examples_of_bake_and_recipe_run() {
+    run_examples(&["bake"]);
+    run_examples(&["recipe"]);
+}
+
+#[test]
+fn examples_of_fields_run() {
+    run_examples(&["worley"]);
+    run_examples(&["pups"]);
+    run_examples(&["wavelet"]);
+}
+
+#[test]
+fn examples_of_tile_run() {
+    run_examples(&["tile"]);
+}
+
+#[test]
+fn examples_of_blend_run() {
+    run_examples(&["blend"]);
+    run_examples(&["blend-map"]);
+}
+
+#[test]
+fn examples_of_synth_run() {
+    run_examples(&["synth"]);
+}
+
+#[test]
+fn examples_of_points_run() {
+    run_examples(&["points"]);
+}
+
+#[test]
+fn examples_of_info_completions_and_man_run() {
+    run_examples(&["info"]);
+    run_examples(&["completions"]);
+    run_examples(&["man"]);
+}
+
+#[test]
+fn every_subcommand_is_in_the_help_and_has_a_page() {
+    let folder = Folder::new("all");
+    let text = help(&folder, &[]);
+    let listed = text.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let listed = listed.take_while(|line| !line.is_empty());
+    // Lines that go on are set further to the right.
+    let listed = listed.filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    let names = listed.filter_map(|line| line.split_whitespace().next());
+    let names: Vec<_> = names.filter(|name| *name != "help").collect();
+    assert_eq!(names, SUBCOMMANDS, "the tests know them all");
+    assert_done(&folder.run(&["man", "-o", "pages/"]), "man");
+    for name in names {
+        let page = fs::read_to_string(folder.path(&format!("pages/dapple-{name}.1"))).unwrap();
+        assert!(page.contains("Exit codes"), "{name}");
+        assert!(
+            page.contains("dapple\\-") || page.contains("dapple "),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn every_shell_gets_completions() {
+    let folder = Folder::new("shells");
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let output = folder.run(&["completions", shell]);
+        assert_done(&output, shell);
+        assert!(stdout(&output).contains("blend-map"), "{shell}");
+    }
+}

@@ -1,0 +1,14 @@
+//! The command as its users meet it: run as a program, in folders of their own.
+
+#![expect(
+    clippy::disallowed_methods,
+    reason = "tests look at the files that the command reads and writes"
+)]
+
+mod bakes;
+mod examples;
+mod files;
+mod interrupt;
+mod refusals;
+mod results;
+mod support;

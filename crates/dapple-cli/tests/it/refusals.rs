@@ -1,0 +1,183 @@
+//! Inputs that are missing, empty, folders, unreadable or of another kind; and outputs that cannot be.
+
+use crate::support::{Folder, assert_refused, stderr};
+use std::fs;
+
+/// Each subcommand that reads something, with `INPUT` for the file that is tried. Every other input is there.
+const READERS: [&str; 17] = [
+    "bake INPUT -o out/ --size 8",
+    "pups control --points INPUT --size 8 -o out.png",
+    "pups reference --reference INPUT --size 8 -o out.png",
+    "tile INPUT -o out.png",
+    "tile photo.png --normal INPUT -o out/",
+    "tile INPUT --report",
+    "blend INPUT grass.png -o out.png",
+    "blend rock.png grass.png,weight=INPUT -o out.png",
+    "blend rock.png,height=INPUT grass.png,height=height.png -o out.png",
+    "blend rock.png grass.png --tile INPUT -o out.png",
+    "blend-map INPUT -o out.png",
+    "synth INPUT --size 16 -o out.png",
+    "synth checker.png --map roughness=INPUT --size 16 -o out.png",
+    "synth checker.png --mesh INPUT --sites 500 -o out.glb",
+    "synth checker.png --mesh model.obj --directions INPUT --sites 500 -o out.glb",
+    "points variable --density INPUT --count 50 -o out.csv",
+    "info INPUT",
+];
+
+/// Command lines that clap cannot tell to be wrong.
+const WRONG: [&str; 24] = [
+    "bake flagstone -o out.png",
+    "bake flagstone",
+    "bake flagstone --maps height,height -o out/",
+    "worley --size 100x64 -o out.png",
+    "worley --frames 3 -o -",
+    "pups noise --octaves 3 -o out.png",
+    "pups color-noise --ramp ember -o out.png",
+    "tile photo.png",
+    "tile -o out.png",
+    "tile photo.png -o out.jpg",
+    "tile photo.png -o out.png --format exr",
+    "tile photo.png -o out.png --levels 2",
+    "tile photo.png -o out.png --axes none",
+    "tile photo.png height.png -o out.png",
+    "tile photo.png --sheet -o -",
+    "tile photo.png --json -o -",
+    "blend rock.png grass.png,normal=normal.png -o out/",
+    "blend rock.png grass.png --weighting mask -o out.png",
+    "blend rock.png grass.png --sharpness 2 -o out.png",
+    "synth checker.png --sites 100 -o out.png",
+    "synth checker.png --mesh model.obj --size 64 -o out.glb",
+    "synth checker.png --mesh model.obj -o out.stl",
+    "points white --radius 0.1",
+    "points --count 5 -o out.svg",
+];
+
+/// Command lines that a library refuses, and what the answer holds.
+const LIMITS: [(&str, &str); 16] = [
+    ("bake flagston -o out/", "flagstone"),
+    (
+        "bake flagstone --region 60,0,8,8 --size 64 -o out/",
+        "region",
+    ),
+    ("bake stone-and-grass --banded --size 64 -o out/", "whole"),
+    ("worley --density 1000 -o out.png", "density"),
+    ("pups noise --spacing 0 -o out.png", "radius"),
+    ("wavelet --cells 5 -o out.png", "5"),
+    (
+        "tile photo.png --method soft-cut --margin 40 -o out.png",
+        "margin",
+    ),
+    ("tile photo.png --region 60,0,8,8 -o out.png", "photo.png"),
+    (
+        "tile photo.png --method spline --levels 9 -o out.png",
+        "--levels",
+    ),
+    ("tile photo.png checker.png -o out/", "size"),
+    ("blend photo.png checker.png -o out.png", "--size"),
+    (
+        "blend photo.png grass.png --mixing pyramid --levels 20 -o out.png",
+        "--levels",
+    ),
+    ("blend-map photo.png --feature-size 0 -o out.png", "feature"),
+    ("synth checker.png --levels 6 -o out.png", "--levels"),
+    ("points --radius 3", "--wrap none"),
+    ("points nested --radii 0.1,0.2", "radius"),
+];
+
+/// The words of a line.
+fn words(line: &str) -> Vec<&str> {
+    line.split(' ').collect()
+}
+
+/// Tries an input with every subcommand that reads one, and looks at what is said and at what is left.
+fn try_all(name: &str, input: &str, part: &str) {
+    let folder = Folder::with_inputs(name);
+    fs::write(folder.path("empty.png"), b"").unwrap();
+    fs::create_dir(folder.path("folder.png")).unwrap();
+    fs::write(folder.path("text.png"), b"neither an image nor a mesh").unwrap();
+    fs::write(folder.path("broken.obj"), b"v 0 0\nf 1 2 3\n").unwrap();
+    let before = folder.names();
+    for line in READERS {
+        let line = line.replace("INPUT", input);
+        assert_refused(&folder.run(&words(&line)), 1, part, &line);
+        assert_eq!(folder.names(), before, "{line} leaves nothing");
+    }
+}
+
+#[test]
+fn missing_inputs_are_named() {
+    try_all("missing", "none.png", "none.png: there is no such file");
+}
+
+#[test]
+fn empty_inputs_are_named() {
+    try_all("empty", "empty.png", "empty.png is empty");
+}
+
+#[test]
+fn folders_as_inputs_are_named() {
+    try_all("folders", "folder.png", "folder.png is a folder");
+}
+
+#[test]
+fn inputs_of_another_kind_are_named() {
+    try_all("kinds", "text.png", "text.png");
+    try_all("meshes", "broken.obj", "broken.obj");
+}
+
+#[cfg(unix)]
+#[test]
+fn unreadable_inputs_are_named() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::with_inputs("unreadable");
+    let path = folder.path("closed.png");
+    fs::copy(folder.path("photo.png"), &path).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o0)).unwrap();
+    if fs::File::open(&path).is_ok() {
+        eprintln!("skipped: this user may read everything");
+        return;
+    }
+    for line in READERS {
+        let line = line.replace("INPUT", "closed.png");
+        assert_refused(&folder.run(&words(&line)), 1, "closed.png", &line);
+    }
+}
+
+#[test]
+fn a_slip_in_a_name_is_answered_with_the_name() {
+    let folder = Folder::with_inputs("slip");
+    let output = folder.run(&["info", "phoot.png"]);
+    assert_refused(&output, 1, "hint: there is photo.png", "a slip");
+}
+
+#[test]
+fn wrong_usage_exits_with_2() {
+    let folder = Folder::with_inputs("usage");
+    let before = folder.names();
+    for line in WRONG {
+        assert_refused(&folder.run(&words(line)), 2, "", line);
+        assert_eq!(folder.names(), before, "{line} leaves nothing");
+    }
+    for arguments in [
+        &["tile", "--size"][..],
+        &["nothing"],
+        &["points", "--seed", "-1"],
+        &[],
+    ] {
+        let output = folder.run(arguments);
+        assert_eq!(
+            output.status.code(),
+            Some(2),
+            "{arguments:?}: {}",
+            stderr(&output)
+        );
+    }
+}
+
+#[test]
+fn limits_of_the_library_are_told_with_exit_code_1() {
+    let folder = Folder::with_inputs("limits");
+    for (line, part) in LIMITS {
+        assert_refused(&folder.run(&words(line)), 1, part, line);
+    }
+}

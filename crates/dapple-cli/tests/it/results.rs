@@ -1,0 +1,307 @@
+//! What comes out is what the libraries make.
+
+use crate::support::{Folder, assert_done, stderr, stdout};
+use dapple::image::{Limits, read_image};
+use dapple::mesh::io::read_model;
+use dapple::raster::Raster;
+use dapple::tile::{Method, Seamless, SoftCut};
+use std::fs;
+
+fn gray(folder: &Folder, name: &str) -> Raster<f32> {
+    let image = read_image(folder.path(name), &Limits::default());
+    image.unwrap().gray().unwrap()
+}
+
+#[test]
+fn tile_is_what_the_library_makes() {
+    let folder = Folder::with_inputs("tile");
+    let arguments = [
+        "tile",
+        "height.exr",
+        "--method",
+        "soft-cut",
+        "--margin",
+        "16",
+        "-o",
+        "out.exr",
+    ];
+    assert_done(&folder.run(&arguments), "tile");
+    let cut = SoftCut {
+        margin: 16,
+        ..SoftCut::default()
+    };
+    let source = gray(&folder, "height.exr");
+    let expected = Seamless::new(Method::SoftCut(cut)).apply(&source).unwrap();
+    assert_eq!(gray(&folder, "out.exr"), expected);
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let folder = Folder::with_inputs("threads");
+    let runs: [&[&str]; 4] = [
+        &["tile", "photo.png", "-o", "-"],
+        &[
+            "blend",
+            "rock.png",
+            "grass.png,weight=mask.png",
+            "--mixing",
+            "pyramid",
+            "-o",
+            "-",
+        ],
+        &["synth", "checker.png", "--size", "24", "-o", "-"],
+        &["points", "--count", "300"],
+    ];
+    for arguments in runs {
+        let run = |threads| {
+            folder
+                .run(&[arguments, &["--threads", threads]].concat())
+                .stdout
+        };
+        let one = run("1");
+        assert!(!one.is_empty(), "{arguments:?} gives something");
+        assert_eq!(run("2"), one, "{arguments:?}");
+        assert_eq!(run("7"), one, "{arguments:?}");
+    }
+}
+
+#[test]
+fn maps_are_cut_together_into_a_folder_that_is_made() {
+    let folder = Folder::with_inputs("maps");
+    let arguments = [
+        "tile",
+        "albedo.png",
+        "height.png",
+        "--normal",
+        "normal.png",
+        "--method",
+        "soft-cut",
+        "--margin",
+        "8",
+        "--sheet",
+        "--json",
+        "-o",
+        "new/tiles/",
+    ];
+    assert_done(&folder.run(&arguments), "tile");
+    let read = |name: &str| {
+        read_image(folder.path(name), &Limits::default())
+            .unwrap()
+            .size()
+    };
+    for name in ["albedo", "height", "normal"] {
+        assert_eq!(read(&format!("new/tiles/{name}.png")), [56, 56], "{name}");
+        assert_eq!(
+            read(&format!("new/tiles/{name}-2x2.png")),
+            [112, 112],
+            "{name}"
+        );
+    }
+    assert!(
+        folder.path("new/tiles/albedo.json").is_file(),
+        "the sidecar"
+    );
+}
+
+#[test]
+fn a_region_is_what_is_tiled() {
+    let folder = Folder::with_inputs("region");
+    let arguments = [
+        "tile",
+        "photo.png",
+        "--region",
+        "8,16,32,24",
+        "-o",
+        "out.png",
+    ];
+    assert_done(&folder.run(&arguments), "tile");
+    let size = read_image(folder.path("out.png"), &Limits::default())
+        .unwrap()
+        .size();
+    assert_eq!(size, [32, 24]);
+}
+
+#[test]
+fn check_exits_with_3_for_a_seam() {
+    let folder = Folder::with_inputs("check");
+    assert_done(&folder.run(&["info", "grain.png", "--check"]), "noise");
+    let output = folder.run(&["info", "photo.png", "--check"]);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert!(
+        stdout(&output).contains("does not pass"),
+        "{}",
+        stdout(&output)
+    );
+}
+
+#[test]
+fn weights_are_shares_and_the_ground_gets_the_rest() {
+    let folder = Folder::with_inputs("weights");
+    let arguments = [
+        "blend",
+        "height.exr",
+        "grain.png,weight=0.25",
+        "-o",
+        "out.exr",
+    ];
+    assert_done(&folder.run(&arguments), "blend");
+    let [ground, over] = ["height.exr", "grain.png"].map(|name| gray(&folder, name));
+    let blended = gray(&folder, "out.exr");
+    for at in [0, 100, 4000] {
+        let [ground, over] = [&ground, &over].map(|raster| raster.pixels()[at]);
+        let expected = 0.75 * ground + 0.25 * over;
+        // A few roundings of f32 near 1.
+        assert!((blended.pixels()[at] - expected).abs() < 1e-6, "pixel {at}");
+    }
+}
+
+#[test]
+fn gray_layers_become_color_where_others_are() {
+    let folder = Folder::with_inputs("gray");
+    assert_done(
+        &folder.run(&["blend", "height.png", "photo.png", "-o", "out.png"]),
+        "blend",
+    );
+    let image = read_image(folder.path("out.png"), &Limits::default()).unwrap();
+    assert!(
+        image.gray().is_err() && image.color().is_ok(),
+        "it is color"
+    );
+}
+
+#[test]
+fn a_layer_over_the_ground_begins_where_the_tile_is_low() {
+    let folder = Folder::with_inputs("cracks");
+    let arguments = [
+        "blend",
+        "height.exr",
+        "grain.png,weight=0.25",
+        "--tile",
+        "cracks.png",
+        "--gain",
+        "1e9",
+        "-o",
+        "out.exr",
+    ];
+    assert_done(&folder.run(&arguments), "blend");
+    let [over, blended, tile] =
+        ["grain.png", "out.exr", "cracks.png"].map(|name| gray(&folder, name));
+    let is_over: Vec<_> = over
+        .pixels()
+        .iter()
+        .zip(blended.pixels())
+        .map(|(a, b)| a == b)
+        .collect();
+    let share = is_over.iter().filter(|&&is_over| is_over).count() as f64 / is_over.len() as f64;
+    // A pixel more or less, and noise that happens to equal the ground.
+    assert!(
+        (share - 0.25).abs() < 0.01,
+        "a quarter is covered, not {share}"
+    );
+    let lowest = tile.statistics().min;
+    let at = tile
+        .pixels()
+        .iter()
+        .position(|&value| value == lowest)
+        .unwrap();
+    assert!(is_over[at], "the lowest place is covered");
+}
+
+#[test]
+fn points_are_in_the_domain_and_read_back() {
+    let folder = Folder::with_inputs("points");
+    let arguments = [
+        "points", "nested", "--count", "200", "--levels", "2", "--domain", "2x1", "--origin",
+        "-1,3",
+    ];
+    let output = folder.run(&arguments);
+    assert_done(&output, "points");
+    let text = stdout(&output);
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("x,y,level"));
+    let rows = lines.map(|line| line.split(',').map(|part| part.parse::<f64>().unwrap()));
+    let rows: Vec<Vec<f64>> = rows.map(Iterator::collect).collect();
+    assert!((180..220).contains(&rows.len()), "{} points", rows.len());
+    let inside = |row: &Vec<f64>| (-1.0..1.0).contains(&row[0]) && (3.0..4.0).contains(&row[1]);
+    assert!(rows.iter().all(inside), "all in the domain");
+    assert!(
+        rows.is_sorted_by_key(|row| row[2]),
+        "the coarse level first"
+    );
+    assert_eq!(rows.last().map(|row| row[2]), Some(1.0), "two levels");
+}
+
+#[test]
+fn a_covered_mesh_reads_back_with_its_texture() {
+    let folder = Folder::with_inputs("mesh");
+    let common = [
+        "synth",
+        "checker.png",
+        "--mesh",
+        "model.obj",
+        "--sites",
+        "600",
+        "--edges",
+        "wrap",
+    ];
+    let texture = ["--texture-size", "256"];
+    for (name, extra) in [
+        ("out.glb", &["--map", "normal=checker.png"][..]),
+        ("two.obj", &[]),
+        ("three.ply", &[]),
+    ] {
+        let extra = match name {
+            "three.ply" => vec!["-o", name],
+            _ => [&texture[..], extra, &["-o", name]].concat(),
+        };
+        let output = folder.run(&[&common[..], &extra].concat());
+        assert_done(&output, name);
+        let model = read_model(folder.path(name)).unwrap();
+        let is_ply = name == "three.ply";
+        assert_eq!(
+            model.material.base_color.is_none(),
+            is_ply,
+            "{name} has a texture"
+        );
+        assert_eq!(model.colors.is_some(), is_ply, "{name} has colors");
+        assert_eq!(
+            model.material.normal.is_some(),
+            name == "out.glb",
+            "{name} has normals"
+        );
+    }
+    let info = stdout(&folder.run(&["info", "out.glb", "--json"]));
+    assert!(info.contains("a texture of normals"), "{info}");
+}
+
+#[test]
+fn infos_of_many_files_are_one_json() {
+    let folder = Folder::with_inputs("infos");
+    let output = folder.run(&["info", "photo.png", "height.exr", "model.obj", "--json"]);
+    assert_done(&output, "info");
+    let infos: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let kinds: Vec<_> = infos
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|info| &info["kind"])
+        .collect();
+    assert_eq!(kinds, ["image", "image", "mesh"]);
+    let names: Vec<_> = infos[0]["channels"].as_array().unwrap().iter().collect();
+    assert_eq!(names.len(), 3, "red, green and blue");
+}
+
+#[test]
+fn quiet_runs_say_nothing() {
+    let folder = Folder::with_inputs("quiet");
+    let output = folder.run(&["tile", "photo.png", "-q", "-o", "out.png"]);
+    assert_done(&output, "tile");
+    assert_eq!(
+        (stdout(&output), stderr(&output)),
+        (String::new(), String::new())
+    );
+    assert!(
+        fs::metadata(folder.path("out.png")).is_ok(),
+        "the tile is there"
+    );
+}

@@ -1,0 +1,189 @@
+//! Folders with inputs, and running the command in them.
+
+use dapple::color::{LinearRgb, Normal};
+use dapple::image::{Depth, write_color_png, write_gray_exr, write_gray_png, write_normal_png};
+use dapple::mesh::{Model, io::write_model, models};
+use dapple::raster::Raster;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
+
+/// The side of the test images, in pixels.
+const SIDE: u32 = 64;
+
+/// A recipe with an image.
+pub(crate) const ROCK: &str = r#"
+dapple = 1
+seed = 3
+extent = [4.0, 4.0]
+
+[nodes.cells.worley]
+value = "f2_minus_f1"
+
+[nodes.lichen.image]
+file = "photo.png"
+
+[material]
+height = "cells"
+albedo = "lichen"
+"#;
+
+/// A folder of its own for a test, which goes with it.
+pub(crate) struct Folder(PathBuf);
+
+impl Folder {
+    /// An empty one. Names differ between tests.
+    pub(crate) fn new(name: &str) -> Self {
+        let name = format!("dapple-command-{}-{name}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+
+    /// One with every input that the examples of the help name.
+    pub(crate) fn with_inputs(name: &str) -> Self {
+        let folder = Self::new(name);
+        for name in ["photo", "albedo", "rock", "grass", "sand", "stones"] {
+            write_color_png(folder.path(&format!("{name}.png")), &color(), Depth::Eight).unwrap();
+        }
+        for name in ["height", "mask", "cracks", "rock_height", "grass_height"] {
+            write_gray_png(folder.path(&format!("{name}.png")), &gray(), Depth::Sixteen).unwrap();
+        }
+        for name in ["normal", "rock_normal", "grass_normal"] {
+            let flat = Raster::filled([SIDE; 2], Normal::FLAT).unwrap();
+            write_normal_png(folder.path(&format!("{name}.png")), &flat, Depth::Eight).unwrap();
+        }
+        write_gray_exr(folder.path("height.exr"), &gray()).unwrap();
+        // Noise without any structure repeats without a seam.
+        write_gray_png(folder.path("grain.png"), &noise(), Depth::Eight).unwrap();
+        let checker = checker();
+        write_color_png(folder.path("checker.png"), &checker, Depth::Eight).unwrap();
+        write_model(folder.path("model.obj"), model()).unwrap();
+        let directions = "x,y,z,dx,dy,dz\n0,0,0,0,0,-1\n";
+        fs::write(folder.path("directions.csv"), directions).unwrap();
+        let control = "x,y,value\n0.5,0.5,0\n1.5,0.6,1\n1,1.5,0.5\n0.2,1.7,0.9\n";
+        fs::write(folder.path("control.csv"), control).unwrap();
+        fs::write(folder.path("my-rock.toml"), ROCK).unwrap();
+        folder
+    }
+
+    /// The path of a file in it.
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    /// The names of everything in it, sorted.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(&self.0).unwrap();
+        let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name();
+        let mut names: Vec<_> = entries.map(name).collect();
+        names.sort();
+        names
+            .into_iter()
+            .map(|name| name.into_string().unwrap())
+            .collect()
+    }
+
+    /// The command with arguments, in this folder.
+    pub(crate) fn command<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_dapple"));
+        command
+            .args(arguments)
+            .current_dir(&self.0)
+            .stdin(Stdio::null());
+        command
+    }
+
+    /// Runs it to its end.
+    pub(crate) fn run<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    /// Runs a line of a shell, in which `dapple` is the command.
+    #[cfg(unix)]
+    pub(crate) fn shell(&self, line: &str) -> Output {
+        let program = Path::new(env!("CARGO_BIN_EXE_dapple"));
+        let folders = std::env::var_os("PATH").unwrap_or_default();
+        let folders = std::env::split_paths(&folders);
+        let own = program.parent().unwrap().to_owned();
+        let path = std::env::join_paths([own].into_iter().chain(folders)).unwrap();
+        Command::new("sh")
+            .args(["-c", line])
+            .env("PATH", path)
+            .current_dir(&self.0)
+            .stdin(Stdio::null())
+            .output()
+            .unwrap()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// What a run has written to standard error.
+pub(crate) fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// What a run has written to standard output.
+pub(crate) fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// Fails unless the run is done.
+pub(crate) fn assert_done(output: &Output, what: &str) {
+    assert_eq!(output.status.code(), Some(0), "{what}: {}", stderr(output));
+}
+
+/// Fails unless the run was refused with a message that holds `part`, and without a panic.
+pub(crate) fn assert_refused(output: &Output, code: i32, part: &str, what: &str) {
+    let message = stderr(output);
+    assert_eq!(output.status.code(), Some(code), "{what}: {message}");
+    assert!(message.starts_with("error: "), "{what}: {message}");
+    assert!(message.contains(part), "{what} names {part:?}: {message}");
+    assert!(!message.contains("panicked"), "{what}: {message}");
+}
+
+/// A small model; it takes a while to make, so it is made once.
+fn model() -> &'static Model {
+    static MODEL: OnceLock<Model> = OnceLock::new();
+    MODEL.get_or_init(|| models::ray(300).unwrap().into())
+}
+
+/// Colors of a smooth hill.
+fn color() -> Raster<LinearRgb> {
+    gray().map(|&value| LinearRgb::new(value, 0.5 * value + 0.2, 1.0 - value))
+}
+
+/// A smooth hill on a slope, from 0.2 to 0.8.
+fn gray() -> Raster<f32> {
+    let half = SIDE as f32 / 2.0;
+    Raster::from_fn([SIDE; 2], |column, row| {
+        let [x, y] = [column, row].map(|at| (at as f32 - half) / half);
+        0.5 + 0.2 * (1.0 - x * x) * (1.0 - y * y) + 0.1 * x
+    })
+    .unwrap()
+}
+
+fn noise() -> Raster<f32> {
+    let mut state = 1_u32;
+    Raster::from_fn([SIDE; 2], |_, _| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 24) as f32
+    })
+    .unwrap()
+}
+
+fn checker() -> Raster<LinearRgb> {
+    Raster::from_fn([32; 2], |x, y| match (x / 8 + y / 8) % 2 {
+        0 => LinearRgb::new(0.8, 0.6, 0.2),
+        _ => LinearRgb::new(0.1, 0.1, 0.3),
+    })
+    .unwrap()
+}
