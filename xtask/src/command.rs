@@ -18,7 +18,7 @@ Usage: cargo xtask <command>
       --check             compare with crates/dapple-gallery/figures.lock instead
       --bless             accept the figures as they are now into figures.lock
       --list              print the names of the figures
-      --docs              rewrite the pictures in the documentation, crates/*/docs/*.md
+  docs-images [--check] rewrite the pictures in the documentation and the READMEs, crates/*/docs/*, or compare them
   bench [filter...]     measure beside the peers, and print a table
       --json FILE         write the rows to a file, too
       --check             fail when a row misses its bar
@@ -31,6 +31,11 @@ Usage: cargo xtask <command>
 pub(crate) enum Command {
     /// Render figures; the arguments are those of the binary `dapple-gallery`.
     Gallery(Vec<OsString>),
+    /// Rewrite or compare the pictures in the documentation.
+    DocsImages {
+        /// Compare them.
+        check: bool,
+    },
     /// Measure; the arguments are those of the binary `dapple-bench`.
     Bench(Vec<OsString>),
     /// Compare or rewrite the golden images.
@@ -56,28 +61,34 @@ pub(crate) fn parse(mut parser: Parser) -> anyhow::Result<Command> {
     match name.as_str() {
         "gallery" => Ok(Command::Gallery(parser.raw_args()?.collect())),
         "bench" => Ok(Command::Bench(parser.raw_args()?.collect())),
-        "golden" => golden(parser),
+        "docs-images" => Ok(Command::DocsImages {
+            check: flag(parser, &name, "check")?,
+        }),
+        "golden" => Ok(Command::Golden {
+            bless: flag(parser, &name, "bless")?,
+        }),
         "tidy" => nothing_more(parser, Command::Tidy),
         "ci" => ci(parser),
         "help" => nothing_more(parser, Command::Help),
         _ => bail!(
-            "there is no command `{name}`; there are gallery, bench, golden, tidy, ci and help"
+            "there is no command `{name}`; there are gallery, docs-images, bench, golden, tidy, ci and help"
         ),
     }
 }
 
-fn golden(mut parser: Parser) -> anyhow::Result<Command> {
-    let mut bless = false;
+/// Whether the only option of a command is there.
+fn flag(mut parser: Parser, command: &str, option: &str) -> anyhow::Result<bool> {
+    let mut is_there = false;
     while let Some(argument) = parser.next()? {
         match argument {
-            Arg::Long("bless") => bless = true,
+            Arg::Long(long) if long == option => is_there = true,
             other => bail!(
-                "{}; `golden` takes `--bless` and nothing else",
+                "{}; `{command}` takes `--{option}` and nothing else",
                 other.unexpected()
             ),
         }
     }
-    Ok(Command::Golden { bless })
+    Ok(is_there)
 }
 
 fn ci(mut parser: Parser) -> anyhow::Result<Command> {
@@ -126,6 +137,10 @@ mod tests {
         );
         assert_eq!(command(&["golden"]), Ok(Command::Golden { bless: false }));
         assert_eq!(
+            command(&["docs-images", "--check"]),
+            Ok(Command::DocsImages { check: true })
+        );
+        assert_eq!(
             command(&["ci", "fmt", "tidy"]),
             Ok(Command::Ci(vec![Step::Fmt, Step::Tidy]))
         );
@@ -138,9 +153,10 @@ mod tests {
     #[test]
     fn unknown_words_are_answered_with_what_there_is() {
         for (arguments, hint) in [
-            (&["galery"][..], "there are gallery, bench"),
+            (&["galery"][..], "there are gallery, docs-images"),
             (&["--chek"], "cargo xtask help"),
             (&["golden", "--check"], "takes `--bless`"),
+            (&["docs-images", "pups"], "takes `--check`"),
             (&["tidy", "now"], "takes no arguments"),
             (&["ci", "lint"], "clippy"),
         ] {

@@ -1,4 +1,4 @@
-//! The chores of the workspace: `cargo xtask gallery`, `bench`, `golden`, `tidy` and `ci`.
+//! The chores of the workspace: `cargo xtask gallery`, `docs-images`, `bench`, `golden`, `tidy` and `ci`.
 //!
 //! It depends on no crate of ours, so that it starts at once; what needs them runs through `cargo run --release`.
 
@@ -29,6 +29,7 @@ fn perform(command: &Command) -> anyhow::Result<()> {
     shell.change_dir(root());
     match command {
         Command::Gallery(arguments) => run::gallery(&shell, arguments),
+        Command::DocsImages { check } => run::docs_images(&shell, *check),
         Command::Bench(arguments) => run::bench(&shell, arguments),
         Command::Golden { bless } => run::golden(&shell, *bless),
         Command::Tidy => tidy::tidy(&shell),

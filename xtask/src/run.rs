@@ -12,6 +12,13 @@ pub(crate) fn gallery(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<(
     Ok(run.quiet().run()?)
 }
 
+/// Rewrites or compares the pictures in the documentation.
+pub(crate) fn docs_images(shell: &Shell, check: bool) -> anyhow::Result<()> {
+    let mut arguments = vec![OsString::from("--docs")];
+    arguments.extend(check.then(|| "--check".into()));
+    gallery(shell, &arguments)
+}
+
 /// Measures beside the peers.
 pub(crate) fn bench(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()> {
     let run = cmd!(

@@ -1,29 +1,45 @@
 //! The pictures in the documentation of the crates: small Markdown files that hold their pictures as data URIs.
 //!
 //! A [`Strip`] is a row of pictures for one option, such as a metric in all its kinds, with the same seed and the same
-//! place, so that only the option differs. `cargo xtask gallery --docs` writes each as `docs/<name>.md` into the folder of
+//! place, so that only the option differs. `cargo xtask docs-images` writes each as `docs/<name>.md` into the folder of
 //! its crate, where the source includes it as a part of a doc comment. So the pictures are there without a network, and
-//! part of the published package. A test compares the files with the strips, pixel by pixel.
+//! part of the published package. READMEs cannot hold data URIs: their picture is the file `docs/gallery.png` beside them.
+//! A test compares the files with what is made now, pixel by pixel.
 //!
-//! The source includes them under `cfg(doc)`: rustdoc shows them, also for a crate that another one depends on, and editors
-//! do not. Where another crate's documentation takes an item in (`#[doc(inline)]`), they are left out.
+//! The source includes strips under `cfg(doc)`: rustdoc shows them, also for a crate that another one depends on, and
+//! editors do not. Where another crate's documentation takes an item in (`#[doc(inline)]`), they are left out.
+//!
+//! [`DOCUMENTED`] is the table of all of them; each crate has a file with its own.
 
 mod base64;
+mod color;
+mod front;
+mod graph;
+mod mesh;
+mod picture;
+mod points;
+mod preview;
+mod pups;
+mod synth;
+mod tile;
+mod wavelet;
 mod worley;
 
 use crate::{Panel, Picture};
 use anyhow::ensure;
 use core::fmt::Write as _;
 use dapple_color::Code;
-use dapple_image::{Transfer, encode_png};
+use dapple_image::{Limits, PngImage, Transfer, decode_png, encode_png};
 
-/// A crate, and the strips of its documentation.
+/// A folder with a README and with documentation, and the pictures in them.
 #[derive(Clone, Copy, Debug)]
 pub struct Documented {
-    /// The name of the package, and of its folder.
-    pub package: &'static str,
-    /// Its strips.
+    /// The folder of the crate, from the root of the workspace; empty for the root itself.
+    pub folder: &'static str,
+    /// The strips of its documentation, `docs/<name>.md`.
     pub strips: &'static [Strip],
+    /// Makes the picture of its README, `docs/gallery.png`.
+    pub banner: fn() -> anyhow::Result<Panel>,
 }
 
 /// A row of pictures that shows one option.
@@ -37,19 +53,72 @@ pub struct Strip {
     pub render: fn() -> anyhow::Result<Vec<Panel>>,
 }
 
-/// The crates that have pictures in their documentation.
-pub const DOCUMENTED: &[Documented] = &[worley::DOCUMENTED];
+/// Everything that has pictures in its documentation: the workspace, then its crates as the README lists them.
+pub const DOCUMENTED: &[Documented] = &[
+    front::DOCUMENTED,
+    color::DOCUMENTED,
+    points::DOCUMENTED,
+    wavelet::DOCUMENTED,
+    mesh::DOCUMENTED,
+    graph::DOCUMENTED,
+    worley::DOCUMENTED,
+    tile::DOCUMENTED,
+    preview::DOCUMENTED,
+    pups::DOCUMENTED,
+    synth::DOCUMENTED,
+];
+
+/// A file in the folder `docs` of a [`Documented`].
+#[derive(Clone, Debug)]
+pub struct File {
+    /// Its name, which ends in `.md` or `.png`.
+    pub name: String,
+    /// What is in it.
+    pub bytes: Vec<u8>,
+}
 
 /// What a picture begins with in the Markdown.
 const DATA: &str = "data:image/png;base64,";
 
-impl Strip {
-    /// The strip as Markdown: its pictures, then a line that says what is what from left to right.
+impl Documented {
+    /// All files of the folder `docs`, as made now.
     ///
     /// # Errors
     ///
-    /// What the strip's own code reports; or that it made no picture.
-    pub fn markdown(&self) -> anyhow::Result<String> {
+    /// What the code of a strip or of the banner reports; or that a strip has no picture.
+    pub fn files(&self) -> anyhow::Result<Vec<File>> {
+        let mut files = vec![File {
+            name: "gallery.png".to_owned(),
+            bytes: png(&(self.banner)()?)?,
+        }];
+        for strip in self.strips {
+            files.push(File {
+                name: format!("{}.md", strip.name),
+                bytes: strip.markdown()?.into_bytes(),
+            });
+        }
+        Ok(files)
+    }
+}
+
+impl File {
+    /// Whether a file that was made before has the same text and the same pixels. How they were packed does not matter: that
+    /// may change with the library that does it.
+    #[must_use]
+    pub fn shows_the_same_as(&self, before: &[u8]) -> bool {
+        if self.name.ends_with(".png") {
+            let [now, before] = [&self.bytes, before].map(decode);
+            now.is_some() && now == before
+        } else {
+            let [now, before] = [&self.bytes, before].map(decode_markdown);
+            now.is_some() && now == before
+        }
+    }
+}
+
+impl Strip {
+    /// The strip as Markdown: its pictures, then a line that says what is what from left to right.
+    fn markdown(&self) -> anyhow::Result<String> {
         let panels = (self.render)()?;
         ensure!(!panels.is_empty(), "the strip {} is empty", self.name);
         let mut text = String::new();
@@ -73,23 +142,6 @@ impl Strip {
     }
 }
 
-/// The text of a strip without its pictures, and the PNG files in it.
-///
-/// # Errors
-///
-/// If a picture is not in base64.
-pub fn split(markdown: &str) -> anyhow::Result<(String, Vec<Vec<u8>>)> {
-    let mut parts = markdown.split(DATA);
-    let mut text = parts.next().unwrap_or_default().to_owned();
-    let mut files = Vec::new();
-    for part in parts {
-        let (data, rest) = part.split_once(' ').unwrap_or((part, ""));
-        files.push(base64::decode(data)?);
-        text.push_str(rest);
-    }
-    Ok((text, files))
-}
-
 fn png(panel: &Panel) -> anyhow::Result<Vec<u8>> {
     Ok(match &panel.picture {
         Picture::Gray(shades) => {
@@ -103,12 +155,37 @@ fn png(panel: &Panel) -> anyhow::Result<Vec<u8>> {
     })
 }
 
+/// The picture in a PNG file, if it is one.
+fn decode(file: &[u8]) -> Option<PngImage> {
+    decode_png(file, &Limits::default()).ok()
+}
+
+/// The text of a strip without its pictures, and those, if they are pictures.
+fn decode_markdown(markdown: &[u8]) -> Option<(String, Vec<PngImage>)> {
+    let mut parts = core::str::from_utf8(markdown).ok()?.split(DATA);
+    let mut text = parts.next()?.to_owned();
+    let mut images = Vec::new();
+    for part in parts {
+        let (data, rest) = part.split_once(' ')?;
+        images.push(decode(&base64::decode(data).ok()?)?);
+        text.push_str(rest);
+    }
+    Some((text, images))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Strip, split};
+    use super::{Documented, File, Strip, decode_markdown};
     use crate::Panel;
-    use dapple_image::{Limits, decode_png};
     use dapple_raster::Raster;
+
+    fn two(left: f32) -> anyhow::Result<Vec<Panel>> {
+        let shades = Raster::from_vec([2, 1], vec![left, 1.0])?;
+        Ok(vec![
+            Panel::gray("a", shades.clone()),
+            Panel::gray("b", shades),
+        ])
+    }
 
     fn strip(render: fn() -> anyhow::Result<Vec<Panel>>) -> Strip {
         Strip {
@@ -120,26 +197,63 @@ mod tests {
 
     #[test]
     fn markdown_names_each_picture_and_gives_it_back() {
-        let two = strip(|| {
-            let shades = Raster::from_vec([2, 1], vec![0.0, 1.0])?;
-            Ok(vec![
-                Panel::gray("a", shades.clone()),
-                Panel::gray("b", shades),
-            ])
-        });
-        let (text, files) = split(&two.markdown().unwrap()).unwrap();
+        let markdown = strip(|| two(0.0)).markdown().unwrap();
+        let (text, images) = decode_markdown(markdown.as_bytes()).unwrap();
         let expected = "![a](\"a\")\n![b](\"b\")\n\nF1. From left to right: a, b.\n";
         assert_eq!(text, expected);
-        for file in &files {
-            let image = decode_png(file, &Limits::default()).unwrap();
+        assert_eq!(images.len(), 2);
+        for image in images {
             assert_eq!(image.gray().unwrap().pixels(), [0.0, 1.0]);
         }
-        assert_eq!(files.len(), 2);
     }
 
     #[test]
     fn strips_without_pictures_are_refused() {
         let error = strip(|| Ok(Vec::new())).markdown().unwrap_err();
         assert_eq!(error.to_string(), "the strip metric is empty");
+    }
+
+    #[test]
+    fn files_are_compared_by_their_text_and_their_pixels() {
+        let files = |strips, banner| {
+            let documented = Documented {
+                folder: "",
+                strips,
+                banner,
+            };
+            documented.files().unwrap()
+        };
+        const DARK: &[Strip] = &[Strip {
+            name: "metric",
+            caption: "F1",
+            render: || two(0.0),
+        }];
+        const LIGHT: &[Strip] = &[Strip {
+            render: || two(1.0),
+            ..DARK[0]
+        }];
+        const RENAMED: &[Strip] = &[Strip {
+            caption: "F2",
+            ..DARK[0]
+        }];
+        let dark: fn() -> anyhow::Result<Panel> = || Ok(two(0.0)?.swap_remove(0));
+        let light: fn() -> anyhow::Result<Panel> = || Ok(two(1.0)?.swap_remove(0));
+        let now = files(DARK, dark);
+        let names: Vec<_> = now.iter().map(|file| file.name.as_str()).collect();
+        assert_eq!(names, ["gallery.png", "metric.md"]);
+        let same = |before: &[File]| {
+            let pairs = now.iter().zip(before);
+            let same: Vec<bool> = pairs
+                .map(|(now, before)| now.shows_the_same_as(&before.bytes))
+                .collect();
+            same
+        };
+        assert_eq!(same(&files(DARK, dark)), [true, true]);
+        assert_eq!(same(&files(LIGHT, light)), [false, false]);
+        assert_eq!(same(&files(RENAMED, dark)), [true, false]);
+        for damaged in [&b""[..], b"data:image/png;base64,", b"\xff"] {
+            let same = now.iter().any(|file| file.shows_the_same_as(damaged));
+            assert!(!same, "{damaged:?}");
+        }
     }
 }

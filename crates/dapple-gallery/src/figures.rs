@@ -2,8 +2,8 @@
 
 mod fractal;
 mod house;
-mod pups;
-mod surface;
+pub(crate) mod pups;
+pub(crate) mod surface;
 mod wavelet;
 mod worley;
 

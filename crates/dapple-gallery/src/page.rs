@@ -1,10 +1,10 @@
 //! The page: one HTML file beside the pictures that needs nothing else.
 //!
-//! Thumbnails by paper; each leads to the picture in full, with its neighbors on the arrow keys and a switch that repeats
-//! it, which shows a seam where there is one. Without scripts the thumbnails are plain links.
+//! Thumbnails by paper; each leads to the picture in full, with its neighbors on the arrow keys, and pictures that repeat
+//! can be seen tiled. Each figure comes with its source and with the command that renders it. Without scripts the
+//! thumbnails are plain links, and what needs scripts is not there.
 
-use crate::{Figure, PAPERS};
-use core::fmt::Write as _;
+use crate::{Figure, PAPERS, Paper};
 use core::time::Duration;
 
 /// A figure that has been rendered, as the page shows it.
@@ -27,6 +27,8 @@ pub struct Image {
     pub label: String,
     /// What was measured on the picture, or nothing.
     pub note: String,
+    /// Along which axes, x and y, copies of the picture continue each other.
+    pub repeats: [bool; 2],
     /// Columns and rows.
     pub size: [u32; 2],
 }
@@ -34,23 +36,38 @@ pub struct Image {
 /// The page of some figures. `root` leads from the page's folder to the root of the workspace, and may be empty.
 #[must_use]
 pub fn html(entries: &[Entry], root: &str) -> String {
-    let mut body = String::new();
+    let (mut contents, mut sections) = (String::new(), String::new());
     for paper in PAPERS {
         let of_paper = |entry: &&Entry| entry.figure.name().starts_with(&format!("{}-", paper.key));
-        let figures: String = entries
+        let figures: Vec<_> = entries
             .iter()
             .filter(of_paper)
             .map(|entry| article(entry, root))
             .collect();
         if !figures.is_empty() {
-            let (title, reference) = (escape(paper.title), escape(paper.reference));
-            let _ = write!(
-                body,
-                "<section><h2>{title}</h2><p class=\"ref\">{reference}</p>\n{figures}</section>\n"
-            );
+            contents += &link(paper, figures.len());
+            sections += &section(paper, &figures.concat());
         }
     }
-    include_str!("page/template.html").replace("{{figures}}", &body)
+    include_str!("page/template.html")
+        .replace("{{contents}}", &contents)
+        .replace("{{figures}}", &sections)
+}
+
+fn link(paper: &Paper, n_figures: usize) -> String {
+    let (key, title) = (escape(paper.key), escape(paper.title));
+    format!("<li><a href=\"#{key}\">{title}</a> <small>{n_figures}</small></li>\n")
+}
+
+fn section(paper: &Paper, figures: &str) -> String {
+    let (key, title, reference) = (
+        escape(paper.key),
+        escape(paper.title),
+        escape(paper.reference),
+    );
+    format!(
+        "<section><h2 id=\"{key}\">{title}</h2><p class=\"ref\">{reference}</p>\n{figures}</section>\n"
+    )
 }
 
 fn article(entry: &Entry, root: &str) -> String {
@@ -61,24 +78,20 @@ fn article(entry: &Entry, root: &str) -> String {
         "extra" => "Extra".to_owned(),
         number => format!("Figure {}", escape(number)),
     };
-    let images: String = entry
-        .images
-        .iter()
-        .map(|image| thumbnail(image, &number))
-        .collect();
-    let parameters: String = figure
-        .parameters
-        .iter()
-        .map(|pair| parameter(*pair))
-        .collect();
-    let source = escape(&figure.source.path.replace('\\', "/"));
-    let code = escape(figure.source.text);
+    let width = match entry.images.len() {
+        0 | 1 => "",
+        2 | 3 => " class=\"wide\"",
+        _ => " class=\"full\"",
+    };
+    let thumbnails = entry.images.iter().map(|image| thumbnail(image, &number));
+    let images: String = thumbnails.collect();
+    let parameters: String = figure.parameters.iter().copied().map(parameter).collect();
     let time = milliseconds(entry.time);
+    let code = code(figure, root);
     format!(
-        "<article id=\"{name}\"><div class=\"images\">{images}</div>\
-         <div class=\"text\"><p><b>{number}.</b> {caption}</p><dl>{parameters}</dl>\
-         <p class=\"small\">{time} · <a href=\"#{name}\">{name}</a> · <a href=\"{root}{source}\">source</a></p>\
-         <details><summary>code</summary><pre>{code}</pre></details></div></article>\n"
+        "<article id=\"{name}\"{width}><div class=\"images\">{images}</div>\
+         <div class=\"text\"><p><b>{number}.</b> {caption}</p><dl>{parameters}</dl>{code}\
+         <p class=\"small\"><a href=\"#{name}\">{name}</a> · {time}</p></div></article>\n"
     )
 }
 
@@ -91,9 +104,23 @@ fn thumbnail(image: &Image, number: &str) -> String {
         "" => String::new(),
         note => format!("<pre class=\"note\">{}</pre>", escape(note)),
     };
+    let (class, tiles) = match image.repeats {
+        [false, false] => ("", ""),
+        [true, false] => (" class=\"repeats-x\"", "2 × 1"),
+        [false, true] => (" class=\"repeats-y\"", "1 × 2"),
+        [true, true] => (" class=\"repeats\"", "2 × 2"),
+    };
+    let (style, tiled) = match tiles {
+        "" => (String::new(), String::new()),
+        tiles => (
+            format!(" style=\"--tile: url('{file}')\""),
+            format!("<label><input type=\"checkbox\">{tiles}</label>"),
+        ),
+    };
     format!(
-        "<figure><a class=\"zoom\" href=\"{file}\"><img src=\"{file}\" alt=\"{alt}\" width=\"{width}\" height=\"{height}\" \
-         loading=\"lazy\"></a><figcaption>{label}</figcaption>{note}</figure>"
+        "<figure{class}><a class=\"zoom\" href=\"{file}\"><img src=\"{file}\" alt=\"{alt}\" width=\"{width}\" \
+         height=\"{height}\" loading=\"lazy\"{style}></a>\
+         <figcaption><span>{label}</span>{tiled}</figcaption>{note}</figure>"
     )
 }
 
@@ -105,6 +132,22 @@ fn parameter((name, value): (&str, &str)) -> String {
     )
 }
 
+/// The command that renders the figure, and its source.
+fn code(figure: &Figure, root: &str) -> String {
+    let command = escape(&format!("cargo xtask gallery {}", figure.name()));
+    let path = escape(&figure.source.path.replace('\\', "/"));
+    let file = escape(root) + &path;
+    let text = escape(figure.source.text);
+    format!(
+        "<div class=\"code\"><pre class=\"command\">{command}</pre>{COPY}</div>\
+         <details><summary>Source</summary><a href=\"{file}\">{path}</a>\
+         <div class=\"code\"><pre>{text}</pre>{COPY}</div></details>"
+    )
+}
+
+/// The button that copies the text before it.
+const COPY: &str = "<button class=\"scripted\" data-copy>Copy</button>";
+
 fn milliseconds(time: Duration) -> String {
     match time.as_millis() {
         0 => format!("{} µs", time.as_micros()),
@@ -113,6 +156,7 @@ fn milliseconds(time: Duration) -> String {
     }
 }
 
+/// A text as it stands in an element or in an attribute in double quotes.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
@@ -139,6 +183,7 @@ mod tests {
             file,
             label: "a < b".into(),
             note: "seam < 1\n".into(),
+            repeats: [true, false],
             size: [5, 4],
         };
         let entries: Vec<_> = figures()
@@ -168,7 +213,7 @@ mod tests {
             "label, note or time is missing"
         );
         let shell = html(&[], "");
-        for foreign in ["http:", "https:", "//", "@import", "src="] {
+        for foreign in ["http:", "https:", "\"//", "(//", "@import", "src="] {
             assert!(!shell.contains(foreign), "the page refers to `{foreign}`");
         }
     }

@@ -11,6 +11,9 @@ pub struct Panel {
     /// What was measured on the picture, as text in columns; empty where nothing was. The page shows it below, and the
     /// lock leaves it out.
     pub note: String,
+    /// Along which axes, x and y, copies of the picture continue each other. The page shows such pictures tiled, and the
+    /// lock leaves it out.
+    pub repeats: [bool; 2],
     /// The pixels.
     pub picture: Picture,
 }
@@ -31,6 +34,7 @@ impl Panel {
         Self {
             label: label.into(),
             note: String::new(),
+            repeats: [false; 2],
             picture: Picture::Gray(raster),
         }
     }
@@ -41,7 +45,17 @@ impl Panel {
         Self {
             label: label.into(),
             note: String::new(),
+            repeats: [false; 2],
             picture: Picture::Color(raster),
+        }
+    }
+
+    /// The same picture with another label.
+    #[must_use]
+    pub fn with_label(self, label: impl Into<String>) -> Self {
+        Self {
+            label: label.into(),
+            ..self
         }
     }
 
@@ -52,6 +66,18 @@ impl Panel {
             note: note.to_string(),
             ..self
         }
+    }
+
+    /// The same picture, whose copies continue each other along both axes.
+    #[must_use]
+    pub fn repeating(self) -> Self {
+        self.repeating_along([true; 2])
+    }
+
+    /// The same picture, whose copies continue each other along some axes.
+    #[must_use]
+    pub fn repeating_along(self, repeats: [bool; 2]) -> Self {
+        Self { repeats, ..self }
     }
 
     /// Columns and rows.

@@ -8,16 +8,17 @@ mod scatters;
 mod spaces;
 
 use super::Documented;
+use super::picture::{SAMPLES, SIDE, banner, colored, shaded};
 use crate::Panel;
 use crate::draw::shrink;
-use dapple_color::{Code, LinearRgb};
+use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Window};
 use dapple_worley::{Axes, Cellular, Space, Worley2, WorleyError, hash::Seed};
 use glam::DVec2;
 
 /// The crate with its strips, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
-    package: "dapple-worley",
+    folder: "crates/dapple-worley",
     strips: &[
         spaces::AXES,
         scatters::SEED,
@@ -60,15 +61,19 @@ pub(super) const DOCUMENTED: Documented = Documented {
         placing::RADIAL_CELLS,
         placing::FEATURE_SET,
     ],
+    banner: || {
+        let figures = [
+            ("worley-fig-01", 0),
+            ("worley-fig-02", 0),
+            ("worley-fig-extra-ids", 0),
+            ("worley-fig-extra-metrics", 5),
+            ("worley-fig-extra-radial", 0),
+        ];
+        banner(&figures)
+    },
 };
 
-/// Pixels along a side.
-const SIDE: u32 = 92;
-
-/// Samples along the side of a pixel, where a picture has edges.
-const SAMPLES: u32 = 3;
-
-/// How many shades a gray picture has: few, since a file with all 256 is twice as large.
+/// How many shades a gray picture has.
 const SHADES: f32 = 32.0;
 
 /// How many shades a picture with edges has, and each channel of one in color.
@@ -110,30 +115,12 @@ fn color_with_edges(
     value: impl Fn(DVec2) -> LinearRgb + Sync,
 ) -> anyhow::Result<Panel> {
     let fine = Raster::from_window(&fine(cells)?, value)?;
-    let colors = shrink(&fine, SAMPLES)?.map(|color| {
-        let codes = color.to_srgb::<u8>().map(|code| {
-            let shade = rounded(f32::from(code) / 255.0, SHADES_WITH_EDGES);
-            u8::from_unit(shade)
-        });
-        LinearRgb::from_srgb(codes)
-    });
-    Ok(Panel::color(label, colors))
+    Ok(colored(label, &shrink(&fine, SAMPLES)?, SHADES_WITH_EDGES))
 }
 
 fn fine(cells: f64) -> anyhow::Result<Window> {
     let size = [SIDE * SAMPLES; 2];
     Ok(Window::new(DVec2::ZERO, DVec2::splat(cells), size)?)
-}
-
-/// A gray picture with so many shades.
-fn shaded(label: &str, raster: &Raster<f32>, shades: f32) -> Panel {
-    Panel::gray(label, raster.map(|&value| rounded(value, shades)))
-}
-
-/// The nearest of so many shades from 0 to 1.
-fn rounded(value: f32, shades: f32) -> f32 {
-    let last = shades - 1.0;
-    (value.clamp(0.0, 1.0) * last).round() / last
 }
 
 /// The texture with its range as 0 to 1.

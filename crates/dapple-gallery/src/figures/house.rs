@@ -1,7 +1,6 @@
 //! Figures of our own, which no paper has.
 
 mod fig_01;
-mod fig_strip;
 
 use crate::Paper;
 
@@ -10,5 +9,5 @@ pub(super) const PAPER: Paper = Paper {
     key: "house",
     title: "The house",
     reference: "Not from a paper: what the frame of the gallery can draw",
-    figures: &[fig_01::FIGURE, fig_strip::FIGURE],
+    figures: &[fig_01::FIGURE],
 };

@@ -21,7 +21,7 @@ mod fig_16;
 mod fig_17;
 mod fig_extra_colors;
 mod fig_extra_weights;
-mod flower;
+pub(crate) mod flower;
 mod weight;
 
 use crate::draw::shrink;
@@ -59,9 +59,9 @@ pub(super) const PAPER: Paper = Paper {
     ],
 };
 
-/// A texture on the paper's square `[-1, 1]²`, in shades of gray.
+/// A texture on the paper's square `[-1, 1]²`, in shades of gray. The square is a torus, so the picture repeats.
 fn picture(label: impl Into<String>, texture: &dyn Field, size: u32) -> Result<Panel, RasterError> {
-    Ok(Panel::gray(label, texture.to_raster(&square(size)?)?))
+    Ok(Panel::gray(label, texture.to_raster(&square(size)?)?).repeating())
 }
 
 /// The same for a texture of labels, whose hard edges are smoothed: every pixel is the mean of 4 × 4 samples.
@@ -72,7 +72,7 @@ fn picture_of_labels(
 ) -> Result<Panel, RasterError> {
     const SIDE: u32 = 4;
     let fine = texture.to_raster(&square(size.saturating_mul(SIDE))?)?;
-    Ok(Panel::gray(label, shrink(&fine, SIDE)?))
+    Ok(Panel::gray(label, shrink(&fine, SIDE)?).repeating())
 }
 
 /// The pixels of the paper's square.

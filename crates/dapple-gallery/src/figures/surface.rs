@@ -2,7 +2,7 @@
 
 mod bricks;
 mod checker;
-mod exemplar;
+pub(crate) mod exemplar;
 mod fig_01;
 mod fig_02;
 mod fig_03;
@@ -14,9 +14,9 @@ mod letter;
 pub(crate) mod own;
 mod puzzle;
 mod scales;
-mod stage;
+pub(crate) mod stage;
 mod stripes;
-mod subject;
+pub(crate) mod subject;
 mod suckers;
 mod text;
 mod textured;

@@ -1,33 +1,59 @@
-//! `--docs`: the pictures in the documentation of the crates.
+//! `--docs`: the pictures in the documentation of the crates and in their READMEs.
 #![expect(
     clippy::disallowed_methods,
     reason = "the pictures are files beside the source"
 )]
 
 use crate::{root, say};
-use anyhow::Context;
-use dapple_gallery::docs::DOCUMENTED;
+use anyhow::{Context, ensure};
+use dapple_gallery::docs::{DOCUMENTED, Documented};
 use std::fs;
+use std::path::PathBuf;
 
-/// Writes every strip into the folder `docs` of its crate, and says how large they are.
+/// Writes every picture into the folder `docs` of its crate, and says how large they are.
 pub(crate) fn write() -> anyhow::Result<()> {
     for documented in DOCUMENTED {
-        let package = documented.package;
-        let folder = root().join("crates").join(package).join("docs");
+        let folder = folder(documented);
         fs::create_dir_all(&folder)
             .with_context(|| format!("cannot make the folder {}", folder.display()))?;
-        let mut n_bytes = 0;
-        for strip in documented.strips {
-            let markdown = strip.markdown()?;
-            let path = folder.join(format!("{}.md", strip.name));
-            n_bytes += markdown.len();
-            fs::write(&path, markdown)
+        let files = documented.files()?;
+        for file in &files {
+            let path = folder.join(&file.name);
+            fs::write(&path, &file.bytes)
                 .with_context(|| format!("cannot write {}", path.display()))?;
         }
+        let n_bytes: usize = files.iter().map(|file| file.bytes.len()).sum();
+        let folder = documented.folder;
         say(&format!(
-            "{} strips with {n_bytes} bytes for {package}",
-            documented.strips.len()
+            "{} files with {n_bytes} bytes in {folder}/docs",
+            files.len()
         ));
     }
     Ok(())
+}
+
+/// Fails if a picture is not as made now.
+pub(crate) fn check() -> anyhow::Result<()> {
+    let mut old = Vec::new();
+    for documented in DOCUMENTED {
+        let folder = folder(documented);
+        for file in documented.files()? {
+            let path = folder.join(&file.name);
+            let before = fs::read(&path).unwrap_or_default();
+            if !file.shows_the_same_as(&before) {
+                say(&format!("changed  {}", path.display()));
+                old.push(path);
+            }
+        }
+    }
+    ensure!(
+        old.is_empty(),
+        "{} pictures are not as made now; accept them with `cargo xtask docs-images`",
+        old.len()
+    );
+    Ok(())
+}
+
+fn folder(documented: &Documented) -> PathBuf {
+    root().join(documented.folder).join("docs")
 }

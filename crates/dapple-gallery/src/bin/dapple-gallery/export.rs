@@ -50,6 +50,7 @@ fn export_figure(figure: &'static Figure, size: u32, out: &Path) -> anyhow::Resu
             file,
             label: panel.label.clone(),
             note: panel.note.clone(),
+            repeats: panel.repeats,
             size: panel.size(),
         });
     }

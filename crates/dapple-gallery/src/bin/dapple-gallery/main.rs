@@ -51,8 +51,9 @@ struct Arguments {
     #[arg(long, conflicts_with_all = ["list", "check", "bless", "out", "open", "size"])]
     ranges: bool,
 
-    /// Rewrites the pictures in the documentation of the crates: `docs/*.md` in their folders.
-    #[arg(long, conflicts_with_all = ["filter", "list", "check", "bless", "out", "open", "size", "ranges"])]
+    /// Rewrites the pictures in the documentation of the crates and in their READMEs, `docs/*` in their folders, or compares
+    /// them with `--check`: what `cargo xtask docs-images` does.
+    #[arg(long, conflicts_with_all = ["filter", "list", "bless", "out", "open", "size", "ranges"])]
     docs: bool,
 
     #[command(flatten)]
@@ -83,6 +84,8 @@ fn main() -> anyhow::Result<()> {
     } else if arguments.ranges {
         say(&ranges::table()?);
         Ok(())
+    } else if arguments.docs && arguments.check {
+        docs::check()
     } else if arguments.docs {
         docs::write()
     } else if arguments.list {

@@ -25,5 +25,5 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let mut canvas = Canvas::new(&window, 1.0)?;
     canvas.graph(&points, &graph, 1.5 * pixel, 0.45);
     canvas.points(&points, 5.0 * pixel, 0.0);
-    Ok(vec![Panel::gray("", canvas.into_raster())])
+    Ok(vec![Panel::gray("", canvas.into_raster()).repeating()])
 }

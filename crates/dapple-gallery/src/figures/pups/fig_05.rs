@@ -38,7 +38,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         let cells = Pups::new(&points, &graph, options)?.label_raster(&window, &shades)?;
         let mut canvas = Canvas::over(&window, cells)?;
         canvas.points(&points, 4.0 * f64::from(size) / 512.0, 0.0);
-        panels.push(Panel::gray(label, canvas.into_raster()));
+        panels.push(Panel::gray(label, canvas.into_raster()).repeating());
     }
     Ok(panels)
 }

@@ -20,7 +20,7 @@ pub(super) const FIGURE: Figure = Figure {
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let texture = |seed| cow_progression(&ProgressionOptions::default(), seed);
     Ok(vec![
-        picture_of_labels("first", &texture(Seed(15))?, size)?,
-        picture_of_labels("second", &texture(Seed(155))?, size)?,
+        picture_of_labels("first", &texture(Seed(15))?, size)?.repeating_along([false, true]),
+        picture_of_labels("second", &texture(Seed(155))?, size)?.repeating_along([false, true]),
     ])
 }

@@ -24,5 +24,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         ..ProgressionOptions::default()
     };
     let texture = giraffe_progression(&options, Seed(16))?;
-    Ok(vec![picture_of_labels("", &texture, size)?])
+    Ok(vec![
+        picture_of_labels("", &texture, size)?.repeating_along([false, true]),
+    ])
 }

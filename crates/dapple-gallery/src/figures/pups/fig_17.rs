@@ -17,5 +17,7 @@ pub(super) const FIGURE: Figure = Figure {
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let texture = label_ramp(&LabelRampOptions::default(), Seed(17))?;
-    Ok(vec![picture_of_labels("", &texture, size)?])
+    Ok(vec![
+        picture_of_labels("", &texture, size)?.repeating_along([false, true]),
+    ])
 }

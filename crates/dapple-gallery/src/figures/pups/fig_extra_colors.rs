@@ -21,5 +21,5 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let texture = color_noise(&options, Seed(18))?;
     let colors = texture.to_raster(&square(size)?)?;
     let colors = colors.map(|&[red, green, blue]| LinearRgb::new(red, green, blue));
-    Ok(vec![Panel::color("", colors)])
+    Ok(vec![Panel::color("", colors).repeating()])
 }

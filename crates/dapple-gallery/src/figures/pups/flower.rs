@@ -7,7 +7,7 @@ use glam::DVec2;
 const EDGE: f64 = 0.1;
 
 /// The intensities of the flower, from 0 to 1.
-pub(super) fn flower(window: &Window) -> Result<Raster<f32>, RasterError> {
+pub(crate) fn flower(window: &Window) -> Result<Raster<f32>, RasterError> {
     Raster::from_window(window, |position| {
         let radius = position.length();
         let petals = soft(0.62 + 0.26 * five_waves(position) - radius);

@@ -9,20 +9,20 @@ use dapple_raster::Raster;
 
 /// An image to synthesize from.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Exemplar {
+pub(crate) struct Exemplar {
     /// What it shows.
-    pub(super) name: &'static str,
+    pub(crate) name: &'static str,
     /// Its width and height where it is used, in pixels.
-    pub(super) side: u32,
+    pub(crate) side: u32,
     /// Whether opposite sides fit.
-    pub(super) edges: Edges,
+    pub(crate) edges: Edges,
     /// Draws it, with as many pixels along each side as it is told.
-    pub(super) draw: fn(size: u32) -> anyhow::Result<Raster<LinearRgb>>,
+    pub(crate) draw: fn(size: u32) -> anyhow::Result<Raster<LinearRgb>>,
 }
 
 /// What meets where two copies of an exemplar lie side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Edges {
+pub(crate) enum Edges {
     /// The image repeats exactly.
     Repeating,
     /// It does not.
@@ -30,7 +30,7 @@ pub(super) enum Edges {
 }
 
 /// The exemplars, the six of figure 5 first, in the order of table 1.
-pub(super) const EXEMPLARS: [Exemplar; 9] = [
+pub(crate) const EXEMPLARS: [Exemplar; 9] = [
     Exemplar {
         name: "wiggly checker",
         side: 64,

@@ -18,13 +18,13 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let panel = |exemplar: &super::exemplar::Exemplar| {
         // A small figure shows the same image with fewer pixels.
         let side = exemplar.side.min(size);
-        let repeats = match exemplar.edges {
-            Edges::Repeating => "repeats",
-            Edges::Cropped => "does not repeat",
+        let (edges, repeats) = match exemplar.edges {
+            Edges::Repeating => ("repeats", true),
+            Edges::Cropped => ("does not repeat", false),
         };
         let image = enlarged(&(exemplar.draw)(side)?, size)?;
-        let label = format!("{}, {}², {repeats}", exemplar.name, exemplar.side);
-        Ok(Panel::color(label, image))
+        let label = format!("{}, {}², {edges}", exemplar.name, exemplar.side);
+        Ok(Panel::color(label, image).repeating_along([repeats; 2]))
     };
     EXEMPLARS.iter().map(panel).collect()
 }

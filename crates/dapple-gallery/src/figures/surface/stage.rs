@@ -10,15 +10,15 @@ use glam::DVec3;
 
 /// Where a mesh is seen from.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct View {
-    pub(super) eye: DVec3,
-    pub(super) target: DVec3,
+pub(crate) struct View {
+    pub(crate) eye: DVec3,
+    pub(crate) target: DVec3,
     /// The angle between the top and the bottom of the picture, in radians.
-    pub(super) fov: f64,
+    pub(crate) fov: f64,
 }
 
 /// A mesh in a plain room, with two lights from above that follow the eye.
-pub(super) fn lit(
+pub(crate) fn lit(
     mesh: &dapple_synth::mesh::Mesh,
     view: &View,
     size: [u32; 2],

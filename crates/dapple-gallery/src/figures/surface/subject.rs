@@ -21,9 +21,9 @@ const TEXELS: u32 = 2;
 
 /// A model that gets a texture.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Subject {
-    pub(super) name: &'static str,
-    pub(super) model: fn(n_triangles: usize) -> Result<Mesh, MeshError>,
+pub(crate) struct Subject {
+    pub(crate) name: &'static str,
+    pub(crate) model: fn(n_triangles: usize) -> Result<Mesh, MeshError>,
     /// The name of the exemplar.
     exemplar: &'static str,
     /// Sites of the finest level at full size, and levels: those of table 1.
@@ -31,14 +31,14 @@ pub(super) struct Subject {
     n_levels: usize,
     /// Positions, and the directions there that are the texture's down.
     directions: &'static [[DVec3; 2]],
-    pub(super) view: View,
+    pub(crate) view: View,
 }
 
 /// The six, in the order of table 1.
-pub(super) const SUBJECTS: [Subject; 6] = [RAY, OCTOPUS, BUNNY, TORI, ZEBRA, ELEPHANT];
+pub(crate) const SUBJECTS: [Subject; 6] = [RAY, OCTOPUS, BUNNY, TORI, ZEBRA, ELEPHANT];
 
 /// The stingray: its texture spreads from the snout.
-pub(super) const RAY: Subject = Subject {
+pub(crate) const RAY: Subject = Subject {
     name: "ray",
     model: models::ray,
     exemplar: "wiggly checker",
@@ -111,7 +111,7 @@ const BUNNY: Subject = Subject {
 };
 
 /// Three blended tori: strands go around their tubes.
-pub(super) const TORI: Subject = Subject {
+pub(crate) const TORI: Subject = Subject {
     name: "tori",
     model: models::blended_tori,
     exemplar: "woven hooks",
@@ -175,7 +175,7 @@ const ELEPHANT: Subject = Subject {
 
 impl Subject {
     /// The sites of the subject in a figure of a size: those of the paper at full size, and fewer as there are fewer pixels.
-    pub(super) fn sites(&self, size: u32) -> HierarchyOptions {
+    pub(crate) fn sites(&self, size: u32) -> HierarchyOptions {
         HierarchyOptions {
             n_sites: (self.n_sites as f64 * part(size)).max(SITES_MIN) as usize,
             n_levels: self.n_levels,
@@ -184,7 +184,7 @@ impl Subject {
     }
 
     /// The directions of the texture.
-    pub(super) fn directions(&self) -> Vec<Direction> {
+    pub(crate) fn directions(&self) -> Vec<Direction> {
         let directions = self.directions.iter();
         directions
             .map(|&[at, vector]| Direction { at, vector })
@@ -192,7 +192,7 @@ impl Subject {
     }
 
     /// The exemplar as an image, as large as in table 1.
-    pub(super) fn image(&self) -> Result<(Raster<LinearRgb>, dapple_synth::Edges)> {
+    pub(crate) fn image(&self) -> Result<(Raster<LinearRgb>, dapple_synth::Edges)> {
         let exemplar = EXEMPLARS
             .iter()
             .find(|exemplar| exemplar.name == self.exemplar);

@@ -42,13 +42,14 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let on_pebble = overgrown(&pebble, &grass.color)?;
     let tile = blend_tile(&stone)?;
     let panel = |label: &str, color: &Raster<LinearRgb>| -> anyhow::Result<Panel> {
-        Ok(Panel::color(label, enlarged(&repeat(color, map)?, size)?))
+        Ok(Panel::color(label, enlarged(&repeat(color, map)?, size)?).repeating())
     };
     Ok(vec![
         panel("stone", &stone.color)?,
         panel("pebble", &pebble.color)?,
         panel("grass", &grass.color)?,
         Panel::gray("blend tile of the stone", enlarged(&tile, size)?)
+            .repeating()
             .with_note(report(&tile, &tile)?),
         panel("c1: stone with grass", &on_stone)?,
         panel("c2: pebble with grass", &on_pebble)?,

@@ -26,27 +26,32 @@ pub(super) const FIGURE: Figure = Figure {
 /// What makes a picture of a map of noise.
 type Function = fn(&Raster<f32>) -> anyhow::Result<Raster<LinearRgb>>;
 
-/// Each function with its name, and the cells across its tile.
-const FUNCTIONS: [(&str, f64, Function); 3] = [
-    ("marble", 2.5, |noise| marble(noise, 8)),
-    ("wood grain", 1.5, |noise| wood(noise, 12)),
-    ("clouds", 3.3, cloud),
+/// Each function with its name, the cells across its tile, and whether it repeats with the map.
+const FUNCTIONS: [(&str, f64, bool, Function); 3] = [
+    ("marble", 2.5, true, |noise| marble(noise, 8)),
+    ("wood grain", 1.5, false, |noise| wood(noise, 12)),
+    ("clouds", 3.3, true, cloud),
 ];
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let side = tile_side(size);
     let ours = Seamless::new(Method::PeriodicThenProject(BLEND_TILE));
     let mut rows = [Vec::new(), Vec::new(), Vec::new()];
-    for (name, cells, function) in FUNCTIONS {
+    for (name, cells, repeats, function) in FUNCTIONS {
         let raw = perlin(side, cells, 5, Seed(5).child(name, 0))?;
         let tile = ours.apply(&raw)?;
         rows[0].push(Panel::gray(
             format!("tile for {name}"),
             enlarged(&raw, size)?,
         ));
-        for (row, label, tile) in [(1, "the raw tile", &raw), (2, "our tile", &tile)] {
+        let repeats = repeats && size.is_multiple_of(side);
+        for (row, label, tile, repeats) in [
+            (1, "the raw tile", &raw, false),
+            (2, "our tile", &tile, repeats),
+        ] {
             let picture = function(&repeat(tile, [size; 2])?)?;
-            let panel = Panel::color(format!("{name} of {label}"), picture);
+            let panel =
+                Panel::color(format!("{name} of {label}"), picture).repeating_along([repeats; 2]);
             rows[row].push(panel.with_note(report(&raw, tile)?));
         }
     }

@@ -43,13 +43,19 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         let tile = &matched[((column / side + row / side) % 2) as usize];
         tile.row(row % side)[(column % side) as usize]
     })?;
+    // Whole copies repeat, and so does a board of an even number of them.
+    let n_copies = size / side;
+    let whole = size.is_multiple_of(side);
     Ok(vec![
-        Panel::gray("copies of one tile", repeat(&tiles[0], [size; 2])?),
+        Panel::gray("copies of one tile", repeat(&tiles[0], [size; 2])?)
+            .repeating_along([whole; 2]),
         Panel::gray(
             "disturbed inside of their borders",
             disturbance.render(&tiles[0], [0, 0], [size; 2])?,
-        ),
-        Panel::gray("unlike tiles with the same borders", board),
+        )
+        .repeating_along([whole; 2]),
+        Panel::gray("unlike tiles with the same borders", board)
+            .repeating_along([whole && n_copies.is_multiple_of(2); 2]),
         Panel::gray(
             "corner tiles of both",
             CornerTiles::new(&tiles)?.render(Seed(3), [0, 0], [size; 2])?,

@@ -47,7 +47,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         Panel::color(
             "pebbles that repeat, 2 × 2",
             shrink(&repeating.tile([2, 2])?, 2)?,
-        ),
+        )
+        .repeating(),
         Panel::gray("a tile of Perlin noise", perlin(size, 4.0, 5, Seed(5))?),
         Panel::color("marble", marble(&noise, 4)?),
         Panel::color("wood", wood(&noise, 14)?),

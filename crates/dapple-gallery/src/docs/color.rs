@@ -1,0 +1,174 @@
+//! The strips of `dapple-color`.
+
+use super::picture::{BANNER, COLORS, GRAYS, banner_of, colored, rounded, shaded};
+use super::{Documented, Strip};
+use crate::Panel;
+use dapple_color::{
+    ColorRamp, LinearRgb, Normal, NormalOptions, NormalY, Outside, Palette, normal_map,
+};
+use dapple_color::{ColorStop, Interpolation};
+use dapple_raster::{Field, Raster, Window, Wrap};
+use dapple_worley::{Combination, Worley2, hash::Seed};
+use glam::DVec2;
+
+/// The crate with its strips, in the order of its documentation.
+pub(super) const DOCUMENTED: Documented = Documented {
+    folder: "crates/dapple-color",
+    strips: &[
+        INTERPOLATION,
+        OUTSIDE,
+        PALETTE,
+        palette("palette-gray", || of(Palette::Gray)),
+        palette("palette-lagoon", || of(Palette::Lagoon)),
+        palette("palette-ember", || of(Palette::Ember)),
+        palette("palette-terrain", || of(Palette::Terrain)),
+        palette("palette-cow", || of(Palette::Cow)),
+        palette("palette-giraffe", || of(Palette::Giraffe)),
+        palette("palette-labels", || of(Palette::Labels)),
+        NORMAL_MAP,
+    ],
+    banner: || {
+        let height = height(BANNER)?;
+        let mut panels = vec![shaded("", &height, GRAYS)];
+        for palette in [
+            Palette::Lagoon,
+            Palette::Ember,
+            Palette::Terrain,
+            Palette::Giraffe,
+        ] {
+            panels.push(painted("", palette, &height));
+        }
+        panels.push(normals("", &height, &NormalOptions::default())?);
+        banner_of(&panels)
+    },
+};
+
+/// Columns and rows of a bar.
+const BAR: [u32; 2] = [192, 20];
+
+/// Pixels along a side of a picture.
+const SMALL: u32 = 72;
+
+const INTERPOLATION: Strip = Strip {
+    name: "interpolation",
+    caption: "Five stops",
+    render: || {
+        let kinds = [
+            ("linear", Interpolation::Linear),
+            ("stepped", Interpolation::Stepped),
+            ("smooth", Interpolation::Smooth),
+        ];
+        let bars = kinds.map(|(label, kind)| bar(label, &ramp()?.with_interpolation(kind), 1.0));
+        bars.into_iter().collect()
+    },
+};
+
+const OUTSIDE: Strip = Strip {
+    name: "outside",
+    caption: "Values from 0 to 3",
+    render: || {
+        let kinds = [("clamp", Outside::Clamp), ("repeat", Outside::Repeat)];
+        let bars = kinds.map(|(label, kind)| bar(label, &ramp()?.with_outside(kind), 3.0));
+        bars.into_iter().collect()
+    },
+};
+
+const PALETTE: Strip = Strip {
+    name: "palette",
+    caption: "A height as gray, and in three palettes",
+    render: || {
+        let height = height(SMALL)?;
+        let palettes = [
+            ("lagoon", Palette::Lagoon),
+            ("ember", Palette::Ember),
+            ("terrain", Palette::Terrain),
+        ];
+        let painted = palettes.map(|(label, palette)| painted(label, palette, &height));
+        let mut panels = vec![shaded("the height", &height, GRAYS)];
+        panels.extend(painted);
+        Ok(panels)
+    },
+};
+
+const NORMAL_MAP: Strip = Strip {
+    name: "normal-map",
+    caption: "",
+    render: || {
+        let height = height(SMALL)?;
+        let mut panels = vec![shaded("a height", &height, GRAYS)];
+        for (label, y) in [("OpenGL", NormalY::OpenGl), ("DirectX", NormalY::DirectX)] {
+            let options = NormalOptions {
+                y,
+                ..NormalOptions::default()
+            };
+            panels.push(normals(label, &height, &options)?);
+        }
+        Ok(panels)
+    },
+};
+
+const fn palette(name: &'static str, render: fn() -> anyhow::Result<Vec<Panel>>) -> Strip {
+    Strip {
+        name,
+        caption: "",
+        render,
+    }
+}
+
+/// The bar of a palette; those of separate colors have no transitions.
+fn of(palette: Palette) -> anyhow::Result<Vec<Panel>> {
+    let ramp = match palette {
+        Palette::Cow | Palette::Labels => ColorRamp::bands(&palette.colors())?,
+        _ => palette.ramp(),
+    };
+    Ok(vec![bar("its colors", &ramp, 1.0)?])
+}
+
+/// A ramp whose stops are not at equal distances.
+fn ramp() -> anyhow::Result<ColorRamp> {
+    let stops = [
+        (0.0, [20_u8, 24, 60]),
+        (0.2, [40, 110, 140]),
+        (0.5, [240, 220, 160]),
+        (0.7, [220, 100, 50]),
+        (1.0, [80, 20, 40]),
+    ];
+    let stops = stops.map(|(position, codes)| ColorStop {
+        position,
+        color: LinearRgb::from_srgb(codes),
+    });
+    Ok(ColorRamp::new(stops)?)
+}
+
+/// The colors of the values from 0 to `end`, from left to right.
+fn bar(label: &str, ramp: &ColorRamp, end: f32) -> anyhow::Result<Panel> {
+    let value = |column: u32| (column as f32 + 0.5) * end / BAR[0] as f32;
+    let colors = Raster::from_fn(BAR, |column, _| ramp.at(value(column)))?;
+    Ok(Panel::color(label, colors))
+}
+
+/// A height that repeats.
+fn height(side: u32) -> anyhow::Result<Raster<f32>> {
+    let bumps = Worley2::new(Seed(5))
+        .with_period([Some(3); 2])?
+        .combine(Combination::F1)
+        .normalized()?;
+    let window = Window::new(DVec2::ZERO, DVec2::splat(3.0), [side; 2])?;
+    Ok(bumps.to_raster(&window)?.map(|value| 1.0 - value))
+}
+
+/// The height in the colors of a palette, no more of them than a gray picture has grays.
+fn painted(label: &str, palette: Palette, height: &Raster<f32>) -> Panel {
+    let height = height.map(|&value| rounded(value, GRAYS));
+    Panel::color(label, palette.ramp().apply(&height))
+}
+
+fn normals(label: &str, height: &Raster<f32>, options: &NormalOptions) -> anyhow::Result<Panel> {
+    let options = NormalOptions {
+        wrap: [Wrap::Repeat; 2],
+        ..*options
+    };
+    let normals = normal_map(height, &options)?;
+    let colors = normals.map(|normal: &Normal| LinearRgb::from_srgb(normal.to_codes::<u8>()));
+    Ok(colored(label, &colors, COLORS))
+}

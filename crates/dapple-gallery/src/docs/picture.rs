@@ -1,0 +1,169 @@
+//! What the strips share: pictures with few shades, whose files are small, and pictures in a row.
+
+use crate::draw::shrink;
+use crate::figures::figures;
+use crate::{Panel, Picture};
+use anyhow::Context;
+use dapple_color::{Code, LinearRgb};
+use dapple_raster::{Field, Raster, Window};
+use glam::DVec2;
+
+/// Pixels along a side of a picture.
+pub(super) const SIDE: u32 = 92;
+
+/// Pixels along a side of a picture of dots, lines or areas, which is small in a file.
+pub(super) const LARGE: u32 = 108;
+
+/// Samples along the side of a pixel, where a picture has edges.
+pub(super) const SAMPLES: u32 = 3;
+
+/// How many grays a smooth picture has, in which fewer would be seen as steps.
+pub(super) const SMOOTH_GRAYS: f32 = 32.0;
+
+/// How many grays other pictures have: few, since a file with all 256 is several times as large.
+pub(super) const GRAYS: f32 = 16.0;
+
+/// How many shades each channel of a picture in color has.
+pub(super) const COLORS: f32 = 10.0;
+
+/// How many pixels a picture in a README is high.
+pub(super) const BANNER: u32 = 96;
+
+/// Pixels between the pictures of a row.
+const GAP: u32 = 8;
+
+/// The square of so many units about the origin.
+pub(super) fn square(units: f64, side: u32) -> anyhow::Result<Window> {
+    let corner = DVec2::splat(-0.5 * units);
+    Ok(Window::new(corner, DVec2::splat(units), [side; 2])?)
+}
+
+/// A picture of a smooth field with values from 0 to 1.
+pub(super) fn smooth(label: &str, field: &dyn Field, window: &Window) -> anyhow::Result<Panel> {
+    Ok(shaded(label, &field.to_raster(window)?, SMOOTH_GRAYS))
+}
+
+/// A picture of a field with edges, with values from 0 to 1; the window is that of the picture.
+pub(super) fn edged(label: &str, field: &dyn Field, window: &Window) -> anyhow::Result<Panel> {
+    let fine = field.to_raster(&finer(window)?)?;
+    Ok(shaded(label, &shrink(&fine, SAMPLES)?, GRAYS))
+}
+
+/// The window with all samples of its pixels.
+pub(super) fn finer(window: &Window) -> anyhow::Result<Window> {
+    let size = window.size.map(|pixels| pixels * SAMPLES);
+    let extent = DVec2::from(window.size.map(f64::from)) * window.pixel;
+    Ok(Window::new(window.origin, extent, size)?)
+}
+
+/// A gray picture with so many shades.
+pub(super) fn shaded(label: &str, raster: &Raster<f32>, shades: f32) -> Panel {
+    Panel::gray(label, raster.map(|&value| rounded(value, shades)))
+}
+
+/// A picture in color with so many shades in each channel of sRGB.
+pub(super) fn colored(label: &str, raster: &Raster<LinearRgb>, shades: f32) -> Panel {
+    let colors = raster.map(|color| {
+        let codes = color
+            .to_srgb::<u8>()
+            .map(|code| u8::from_unit(rounded(f32::from(code) / 255.0, shades)));
+        LinearRgb::from_srgb(codes)
+    });
+    Panel::color(label, colors)
+}
+
+/// The nearest of so many shades from 0 to 1.
+pub(super) fn rounded(value: f32, shades: f32) -> f32 {
+    let last = shades - 1.0;
+    (value.clamp(0.0, 1.0) * last).round() / last
+}
+
+/// Panels of figures, by the names of the figures and the numbers of the panels, from 0, all `height` pixels high.
+pub(super) fn of_figures(places: &[(&str, usize)], height: u32) -> anyhow::Result<Vec<Panel>> {
+    places
+        .iter()
+        .map(|&(name, panel)| of_figure(name, panel, height))
+        .collect()
+}
+
+fn of_figure(name: &str, number: usize, height: u32) -> anyhow::Result<Panel> {
+    let figure = figures()
+        .find(|figure| figure.name() == name)
+        .with_context(|| format!("no figure {name}"))?;
+    let panel = |size| -> anyhow::Result<Panel> {
+        let panel = figure.render(size)?.into_iter().nth(number);
+        panel.with_context(|| format!("too few panels in {name}"))
+    };
+    let first = panel(height)?;
+    match first.size() {
+        [_, found] if found < height => panel((height * height).div_ceil(found)),
+        _ => Ok(first),
+    }
+}
+
+/// Panels of figures in a row, as the picture of a README.
+pub(super) fn banner(figures: &[(&str, usize)]) -> anyhow::Result<Panel> {
+    banner_of(&of_figures(figures, BANNER)?)
+}
+
+/// Panels in a row, as the picture of a README.
+pub(super) fn banner_of(panels: &[Panel]) -> anyhow::Result<Panel> {
+    Ok(colored("", &row(panels)?, COLORS))
+}
+
+/// Pictures side by side, with white between them, as high as the lowest of them.
+pub(super) fn row(panels: &[Panel]) -> anyhow::Result<Raster<LinearRgb>> {
+    let height = panels.iter().map(|panel| panel.size()[1]).min();
+    let height = height.context("there is no picture for the row")?;
+    let widths: u32 = panels.iter().map(|panel| panel.size()[0] + GAP).sum();
+    let width = widths - GAP;
+    let mut row = Raster::filled([width, height], LinearRgb::WHITE)?;
+    let mut left = 0;
+    for panel in panels {
+        let picture = in_color(panel);
+        let mut place = row.view_mut().crop([left, 0], [picture.width(), height])?;
+        for (number, pixels) in (0..).zip(place.rows_mut()) {
+            pixels.copy_from_slice(picture.row(number));
+        }
+        left += picture.width() + GAP;
+    }
+    Ok(row)
+}
+
+fn in_color(panel: &Panel) -> Raster<LinearRgb> {
+    match &panel.picture {
+        Picture::Color(colors) => colors.clone(),
+        Picture::Gray(shades) => {
+            shades.map(|&shade| LinearRgb::from_srgb([u8::from_unit(shade); 3]))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{GAP, row, shaded};
+    use crate::Panel;
+    use dapple_color::LinearRgb;
+    use dapple_raster::Raster;
+
+    #[test]
+    fn shaded_pictures_have_so_many_shades() {
+        let ramp = Raster::from_fn([256, 1], |column, _| column as f32 / 255.0).unwrap();
+        let mut bytes = shaded("", &ramp, 5.0).bytes();
+        bytes.dedup();
+        assert_eq!(bytes, [0, 64, 128, 191, 255]);
+    }
+
+    #[test]
+    fn rows_have_white_between_pictures_and_the_height_of_the_lowest() {
+        let dark = |size| Panel::gray("", Raster::filled(size, 0.0).unwrap());
+        let row = row(&[dark([3, 2]), dark([1, 4])]).unwrap();
+        assert_eq!(row.size(), [4 + GAP, 2]);
+        let n_white = row
+            .pixels()
+            .iter()
+            .filter(|&&color| color == LinearRgb::WHITE);
+        assert_eq!(n_white.count(), 2 * GAP as usize);
+        assert!(super::row(&[]).is_err(), "a row of nothing");
+    }
+}

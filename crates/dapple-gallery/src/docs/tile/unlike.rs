@@ -1,0 +1,74 @@
+//! Copies of a tile that differ inside.
+
+use super::pebbles;
+use crate::docs::Strip;
+use crate::docs::picture::{GRAYS, shaded};
+use dapple_raster::Raster;
+use dapple_tile::{CornerTiles, Disturbance, MatchBorders, repeat};
+use dapple_worley::hash::Seed;
+
+/// Pixels along the side of a tile.
+const TILE: u32 = 40;
+
+/// Pixels along the side of a picture: three tiles.
+const MAP: [u32; 2] = [3 * TILE; 2];
+
+pub(super) const DISTURBANCE: Strip = Strip {
+    name: "disturbance",
+    caption: "Three by three copies",
+    render: || {
+        let [tile, _] = tiles()?;
+        let disturbance = Disturbance {
+            frozen: 3,
+            ramp: 9,
+            seed: Seed(2),
+        };
+        let disturbed = disturbance.render(&tile, [0, 0], MAP)?;
+        Ok(vec![
+            shaded("of one tile", &repeat(&tile, MAP)?, GRAYS),
+            shaded("disturbed inside", &disturbed, GRAYS),
+        ])
+    },
+};
+
+pub(super) const MATCH_BORDERS: Strip = Strip {
+    name: "match-borders",
+    caption: "Two tiles in turns",
+    render: || {
+        let tiles = tiles()?;
+        let matched = MatchBorders {
+            width: TILE / 4,
+            ..MatchBorders::default()
+        };
+        let matched = matched.apply(&tiles)?;
+        Ok(vec![
+            shaded("as they are", &board(&tiles)?, GRAYS),
+            shaded("with the same borders", &board(&matched)?, GRAYS),
+        ])
+    },
+};
+
+pub(super) const CORNER_TILES: Strip = Strip {
+    name: "corner-tiles",
+    caption: "",
+    render: || {
+        let map = CornerTiles::new(&tiles()?)?.render(Seed(3), [0, 0], MAP)?;
+        Ok(vec![shaded("corner tiles of two textures", &map, GRAYS)])
+    },
+};
+
+/// Two tiles of unlike cells.
+fn tiles() -> anyhow::Result<[Raster<f32>; 2]> {
+    Ok([
+        pebbles(3, TILE, true, Seed(8))?,
+        pebbles(5, TILE, true, Seed(8))?,
+    ])
+}
+
+/// A checkerboard of two tiles.
+fn board(tiles: &[Raster<f32>]) -> anyhow::Result<Raster<f32>> {
+    Ok(Raster::from_fn(MAP, |column, row| {
+        let tile = &tiles[((column / TILE + row / TILE) % 2) as usize];
+        tile.row(row % TILE)[(column % TILE) as usize]
+    })?)
+}
