@@ -1,7 +1,25 @@
-//! Workspace-wide tests. They live in the test binary `it`; the code of the README is a test of this library.
+//! Workspace-wide tests. They live in the test binary `it`; the code of the READMEs is a test of this library.
 
 #![forbid(unsafe_code)]
 
+/// Tests the code of a README.
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-mod readme {}
+macro_rules! readmes {
+    ($($name:ident: $path:literal),* $(,)?) => {
+        $(
+            #[doc = include_str!($path)]
+            mod $name {}
+        )*
+    };
+}
+
+#[cfg(doctest)]
+readmes! {
+    top: "../README.md",
+    dapple: "../crates/dapple/README.md",
+    hash: "../crates/dapple-hash/README.md",
+    points: "../crates/dapple-points/README.md",
+    pups: "../crates/dapple-pups/README.md",
+    raster: "../crates/dapple-raster/README.md",
+    recipe: "../crates/dapple-recipe/README.md",
+}

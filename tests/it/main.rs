@@ -2,9 +2,12 @@
 
 mod chain;
 mod docs;
+mod examples;
 mod figures;
 mod golden;
 mod readme;
+mod recipe_code;
+mod recipes;
 mod seams;
 mod surfaces;
 mod tiles;

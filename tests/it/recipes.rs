@@ -1,0 +1,114 @@
+//! What the README of `dapple-recipe` says about recipes is so.
+
+use dapple::color::LinearRgb;
+use dapple::raster::Raster;
+use dapple::recipe::{
+    Bake, BakeOptions, Images, KINDS, MapKind, Picture, Plan, Recipe, RecipeError,
+};
+use std::sync::Arc;
+
+const README: &str = include_str!("../../crates/dapple-recipe/README.md");
+
+/// What the examples of nodes stand in: `a` and `b` are numbers, `c` is a color.
+const AROUND: &str = r##"
+dapple = 1
+extent = [8.0, 8.0]
+
+[material]
+albedo = "x"
+
+[nodes]
+a = { noise = { frequency = 1.0, octaves = 1 } }
+b = { coordinate = { along = [0.125, 0.0] } }
+c = { ramp = { input = "a", palette = "lagoon" } }
+"##;
+
+/// The rows of the tables of nodes: the kind and its example.
+fn rows() -> impl Iterator<Item = (&'static str, &'static str)> {
+    README.lines().filter_map(|line| {
+        let (kind, rest) = line.strip_prefix("| `")?.split_once('`')?;
+        let example = rest.strip_suffix("` |")?.rsplit_once(" | `")?.1;
+        example
+            .starts_with(&format!("{kind} = "))
+            .then_some((kind, example))
+    })
+}
+
+fn bake(text: &str) -> Result<(), RecipeError> {
+    let photo = Raster::from_fn([16, 16], |x, y| LinearRgb::gray((x ^ y) as f32 / 15.0))?;
+    let images = Images::from([("photo.png".into(), Picture::Colors(Arc::new(photo)))]);
+    let plan = Plan::new(&Recipe::from_toml(text)?, &images, 0.0)?;
+    let maps = MapKind::ALL.to_vec();
+    let options = BakeOptions {
+        size: [32, 32],
+        maps,
+        ..BakeOptions::default()
+    };
+    Bake::new(&plan, &options)?.try_for_each(|band| band.map(|_| ()))
+}
+
+#[test]
+fn readme_has_an_example_of_every_kind_of_node() {
+    let kinds: Vec<_> = rows().map(|(kind, _)| kind).collect();
+    for kind in KINDS {
+        assert!(kinds.contains(&kind), "no row of a table is about `{kind}`");
+    }
+    assert_eq!(kinds.len(), KINDS.len(), "a row for each kind: {kinds:?}");
+}
+
+#[test]
+fn readme_examples_of_nodes_bake() {
+    for (kind, example) in rows() {
+        let text = format!("{AROUND}x = {{ {example} }}\n");
+        assert_eq!(bake(&text).err(), None, "the example of `{kind}`");
+    }
+}
+
+#[test]
+fn readme_recipe_bakes() {
+    assert_eq!(bake(block("toml")).err(), None, "the recipe of the README");
+}
+
+#[test]
+fn readme_shows_errors_as_they_are() {
+    let errors = [
+        ("curve =", "curv ="),
+        ("input = \"joint\"", "input = \"joints\""),
+        ("by = \"stones\"", "by = \"gray\""),
+        ("extent = [8.0, 8.0]", "extent = [8.5, 8.0]"),
+    ]
+    .map(|(right, wrong)| {
+        let broken = block("toml").replacen(right, wrong, 1);
+        let error = bake(&broken).expect_err(wrong);
+        format!("{error}\n")
+    });
+    assert_eq!(errors.concat(), block("text"), "the errors of the README");
+}
+
+/// The first block of code in a language.
+fn block(language: &str) -> &'static str {
+    let start = format!("```{language}\n");
+    let block = README.split(&start).nth(1).expect("a block");
+    block.split("```").next().expect("its end")
+}
+
+#[test]
+fn readme_names_every_key_of_the_material_and_every_map() {
+    let recipe = Recipe::builtin("flagstone").expect("a recipe");
+    let text = recipe.to_json().expect("it is data");
+    let material = text.split("\"material\"").nth(1).expect("a material");
+    let keys = material.split('"').skip(1).step_by(2);
+    for key in keys.filter(|key| material.contains(&format!("\"{key}\":"))) {
+        assert!(
+            README.contains(&format!("| `{key}` |")),
+            "no row is about the key `{key}`"
+        );
+    }
+    for map in MapKind::ALL {
+        let name = map.name();
+        assert!(
+            README.contains(&format!("`{name}`")),
+            "no row is about `{name}`"
+        );
+    }
+}
