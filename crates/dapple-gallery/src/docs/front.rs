@@ -1,8 +1,7 @@
-//! The picture of the README of the workspace: some figures in a row.
+//! The picture of the README of the workspace: some figures in a row, and built-in recipes in light below them.
 
 use super::Documented;
-use super::picture::{of_figures, row};
-use crate::Panel;
+use super::picture::{below, colored, of_figures, row};
 
 pub(super) const DOCUMENTED: Documented = Documented {
     folder: "",
@@ -16,7 +15,33 @@ pub(super) const DOCUMENTED: Documented = Documented {
             ("pups-fig-14", 3),
             ("pups-fig-15", 0),
         ];
-        let row = row(&of_figures(&figures, 171)?)?;
-        Ok(Panel::color("", row))
+        // By their places among the names of all built-in recipes.
+        let [
+            flagstone,
+            giraffe,
+            ice,
+            stone_and_grass,
+            vein_tracery,
+            wood_grain,
+        ] = [6, 7, 8, 16, 18, 19].map(|place| ("house-fig-02", place));
+        let recipes = [
+            flagstone,
+            wood_grain,
+            vein_tracery,
+            stone_and_grass,
+            giraffe,
+            ice,
+        ];
+        let rows = [
+            row(&of_figures(&figures, HEIGHT)?)?,
+            row(&of_figures(&recipes, HEIGHT)?)?,
+        ];
+        Ok(colored("", &below(&rows)?, COLORS))
     },
 };
+
+/// How many shades each channel has: the whole file is to be small.
+const COLORS: f32 = 16.0;
+
+/// Pixels that a picture of a row is high.
+const HEIGHT: u32 = 171;

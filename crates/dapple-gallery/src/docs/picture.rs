@@ -130,6 +130,20 @@ pub(super) fn row(panels: &[Panel]) -> anyhow::Result<Raster<LinearRgb>> {
     Ok(row)
 }
 
+/// Rows of the same width one below the other, with white between them.
+pub(super) fn below(rows: &[Raster<LinearRgb>]) -> anyhow::Result<Raster<LinearRgb>> {
+    let width = rows.first().context("there is no row")?.width();
+    let mut pixels = Vec::new();
+    for (number, row) in rows.iter().enumerate() {
+        if number > 0 {
+            pixels.resize(pixels.len() + (GAP * width) as usize, LinearRgb::WHITE);
+        }
+        pixels.extend_from_slice(row.pixels());
+    }
+    let heights: u32 = rows.iter().map(|row| row.height() + GAP).sum();
+    Ok(Raster::from_vec([width, heights - GAP], pixels)?)
+}
+
 fn in_color(panel: &Panel) -> Raster<LinearRgb> {
     match &panel.picture {
         Picture::Color(colors) => colors.clone(),
@@ -141,7 +155,7 @@ fn in_color(panel: &Panel) -> Raster<LinearRgb> {
 
 #[cfg(test)]
 mod tests {
-    use super::{GAP, row, shaded};
+    use super::{GAP, below, row, shaded};
     use crate::Panel;
     use dapple_color::LinearRgb;
     use dapple_raster::Raster;
@@ -165,5 +179,16 @@ mod tests {
             .filter(|&&color| color == LinearRgb::WHITE);
         assert_eq!(n_white.count(), 2 * GAP as usize);
         assert!(super::row(&[]).is_err(), "a row of nothing");
+    }
+
+    #[test]
+    fn rows_stand_below_each_other_and_are_of_one_width() {
+        let white = |size| Raster::filled(size, LinearRgb::WHITE).unwrap();
+        assert_eq!(
+            below(&[white([3, 2]), white([3, 1])]).unwrap().size(),
+            [3, 3 + GAP]
+        );
+        assert!(below(&[white([3, 2]), white([2, 1])]).is_err(), "widths");
+        assert!(below(&[]).is_err(), "no row");
     }
 }

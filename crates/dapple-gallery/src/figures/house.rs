@@ -1,6 +1,8 @@
 //! Figures of our own, which no paper has.
 
 mod fig_01;
+mod fig_02;
+mod lit;
 
 use crate::Paper;
 
@@ -8,6 +10,6 @@ use crate::Paper;
 pub(super) const PAPER: Paper = Paper {
     key: "house",
     title: "The house",
-    reference: "Not from a paper: what the frame of the gallery can draw",
-    figures: &[fig_01::FIGURE],
+    reference: "Not from a paper: what the drawing can do, and the built-in recipes",
+    figures: &[fig_01::FIGURE, fig_02::FIGURE],
 };

@@ -10,7 +10,7 @@ use dapple_gallery::docs::{DOCUMENTED, Documented};
 use std::fs;
 use std::path::PathBuf;
 
-/// Writes every picture into the folder `docs` of its crate, and says how large they are.
+/// Writes every picture that is not as made now into the folder `docs` of its crate, and says how large all of them are.
 pub(crate) fn write() -> anyhow::Result<()> {
     for documented in DOCUMENTED {
         let folder = folder(documented);
@@ -19,8 +19,11 @@ pub(crate) fn write() -> anyhow::Result<()> {
         let files = documented.files()?;
         for file in &files {
             let path = folder.join(&file.name);
-            fs::write(&path, &file.bytes)
-                .with_context(|| format!("cannot write {}", path.display()))?;
+            // Another build may compress the same pixels to other bytes.
+            if !file.shows_the_same_as(&fs::read(&path).unwrap_or_default()) {
+                fs::write(&path, &file.bytes)
+                    .with_context(|| format!("cannot write {}", path.display()))?;
+            }
         }
         let n_bytes: usize = files.iter().map(|file| file.bytes.len()).sum();
         let folder = documented.folder;

@@ -1,0 +1,70 @@
+//! A baked material in light, seen straight from above, so that the picture repeats as the maps do.
+
+use anyhow::bail;
+use dapple_color::{LinearRgb, Normal};
+use dapple_raster::Raster;
+use dapple_recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
+use glam::DVec3;
+
+/// What is reflected straight back by what is no metal.
+const DIELECTRIC: f32 = 0.04;
+
+/// A recipe without images, `size` pixels along its longer side.
+pub(super) fn lit(recipe: &Recipe, size: u32) -> anyhow::Result<Raster<LinearRgb>> {
+    let plan = Plan::new(recipe, &Images::new(), 0.0)?;
+    let sides = plan.extent() / plan.extent().max_element() * f64::from(size);
+    let sides = <[f64; 2]>::from(sides).map(|side| side.round() as u32);
+    let [normals, packed, albedo] = maps(&plan, sides)?;
+    let (MapRows::Normal(normals), MapRows::Packed(packed), MapRows::Color(albedo)) =
+        (normals, packed, albedo)
+    else {
+        bail!("{} has other maps than were asked for", recipe.name);
+    };
+    let surface = normals.zip_map(&packed, |&normal, &orm| (normal, orm))?;
+    Ok(surface.zip_map(&albedo, |&(normal, orm), &color| shaded(normal, orm, color))?)
+}
+
+/// The normals, the occlusion with roughness and metallic, and the colors of the whole tile.
+fn maps(plan: &Plan, size: [u32; 2]) -> anyhow::Result<[MapRows; 3]> {
+    let options = BakeOptions {
+        size,
+        maps: vec![MapKind::Normal, MapKind::Orm, MapKind::Albedo],
+        ..BakeOptions::default()
+    };
+    let mut normals = Vec::new();
+    let mut packed = Vec::new();
+    let mut albedo = Vec::new();
+    for band in Bake::new(plan, &options)? {
+        for (_, rows) in band?.maps {
+            match rows {
+                MapRows::Normal(rows) => normals.extend(rows.into_pixels()),
+                MapRows::Packed(rows) => packed.extend(rows.into_pixels()),
+                MapRows::Color(rows) => albedo.extend(rows.into_pixels()),
+                MapRows::Gray(_) => {}
+            }
+        }
+    }
+    Ok([
+        MapRows::Normal(Raster::from_vec(size, normals)?),
+        MapRows::Packed(Raster::from_vec(size, packed)?),
+        MapRows::Color(Raster::from_vec(size, albedo)?),
+    ])
+}
+
+/// The light that comes from a point: scattered by what is no metal, and mirrored, more blurred on what is rough.
+fn shaded(normal: Normal, [free, roughness, metallic]: [f32; 3], color: LinearRgb) -> LinearRgb {
+    let normal = DVec3::from_array(normal.to_array().map(f64::from));
+    let toward = DVec3::new(-0.5, 0.6, 0.75).normalize();
+    let sun = normal.dot(toward).max(0.0) as f32;
+    let scattered = color * ((1.0 - metallic) * (0.9 * sun + 0.3 * free));
+
+    let half = (toward + DVec3::Z).normalize();
+    let gloss = 1.0 - roughness.clamp(0.05, 1.0);
+    let exponent = libm::exp2f(1.0 + 8.0 * gloss);
+    let highlight = 0.1 * exponent * libm::powf(normal.dot(half).max(0.0) as f32, exponent);
+    // What is seen in the mirror of the normal; from above the eye is at Z.
+    let mirrored = 2.0 * normal.z * normal - DVec3::Z;
+    let sky = (0.6 + 0.4 * (mirrored.y - mirrored.x).clamp(-1.0, 1.0)) as f32;
+    let straight = LinearRgb::gray(DIELECTRIC).lerp(color, metallic);
+    scattered + straight * (free * (sky + highlight))
+}
