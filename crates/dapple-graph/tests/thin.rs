@@ -1,4 +1,5 @@
-//! Domains that wrap and are much thinner than their points are apart: a graph or a refusal, and soon.
+//! Domains of odd sizes. Those that wrap and are much thinner than their points are apart have a graph or a refusal, and
+//! soon; tiny and huge ones have the graphs of others.
 
 use dapple_graph::glam::DVec2;
 use dapple_graph::points::hash::{Seed, rand_core::Rng, unit_f64};
@@ -55,5 +56,21 @@ fn tori_that_need_too_many_copies_are_refused() {
                 assert!(text.contains(&limit.to_string()), "{text}");
             }
         }
+    }
+}
+
+#[test]
+fn graphs_of_tiny_and_huge_domains_are_sane() {
+    for scale in [f64::MIN_POSITIVE, 1e-300, 1e-160, 1e160, 1e300] {
+        let unit = points(30, 0.7);
+        let domain = Domain::torus(DVec2::ZERO, unit.domain().size * scale);
+        let positions = unit.positions().iter().map(|&at| at * scale).collect();
+        let scaled = PointSet::new(domain, positions).unwrap();
+        for graph in graphs(&scaled).into_iter().flatten() {
+            assert_eq!(graph.sanity_check(), Ok(()), "{scale:e}");
+        }
+        let single = PointSet::new(domain, vec![DVec2::ZERO]).unwrap();
+        let graph = delaunay(&single).unwrap();
+        assert_eq!(graph.sanity_check(), Ok(()), "{scale:e}");
     }
 }
