@@ -29,7 +29,7 @@ impl Budget {
     /// The images that may be gone through for `n` points. For few, that is the work of a tenth of a second.
     pub(crate) fn limit(n: usize) -> u64 {
         let n = n as u64;
-        (1 << 23) + 32_u64.saturating_mul(n.saturating_mul(n))
+        (1 << 21) + 32_u64.saturating_mul(n.saturating_mul(n))
     }
 
     fn take(&mut self, images: u64) -> Result<(), TooThin> {
