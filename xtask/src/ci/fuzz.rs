@@ -75,7 +75,7 @@ fn run(shell: &Shell, folder: &Path, target: &str) -> anyhow::Result<()> {
         shell,
         "cargo +nightly fuzz run --fuzz-dir tests/fuzz --target-dir {built} --sanitizer none {target} {learned} {seeds}"
     )
-    .args(["--", "-max_len=4096", "-print_final_stats=0", "-verbosity=0", &prefix])
+    .args(["--", "-max_len=4096", "-print_funcs=0", "-verbosity=0", &prefix])
     .arg(format!("-max_total_time={SECONDS}"))
     .arg(format!("-timeout={SECONDS_OF_AN_INPUT}"))
     .arg(format!("-rss_limit_mb={MEMORY}"));
