@@ -1,5 +1,7 @@
 //! What CI runs, step by step; `.ci/run` installs what is missing and then comes here.
 
+mod fuzz;
+
 use crate::tidy;
 use crate::tidy::workspace::{Member, Workspace};
 use anyhow::Context;
@@ -20,17 +22,20 @@ pub(crate) enum Step {
     Tidy,
     /// Every library crate alone: without features, and with each of them; its values without threads.
     Features,
+    /// Each fuzz target for some seconds, where nightly Rust and cargo-fuzz are.
+    Fuzz,
 }
 
 impl Step {
     /// The steps, in the order in which CI runs them.
-    pub(crate) const ALL: [Self; 6] = [
+    pub(crate) const ALL: [Self; 7] = [
         Self::Test,
         Self::Fmt,
         Self::Clippy,
         Self::Doc,
         Self::Tidy,
         Self::Features,
+        Self::Fuzz,
     ];
 
     /// What the command line calls the step.
@@ -42,6 +47,7 @@ impl Step {
             Self::Doc => "doc",
             Self::Tidy => "tidy",
             Self::Features => "features",
+            Self::Fuzz => "fuzz",
         }
     }
 
@@ -73,6 +79,7 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
         }
         Step::Tidy => return tidy::tidy(shell),
         Step::Features => return features(shell),
+        Step::Fuzz => return fuzz::fuzz(shell),
     };
     Ok(command.run()?)
 }

@@ -18,7 +18,7 @@ mod patch;
 mod star;
 mod tiles;
 
-use crate::grid::LazyGrid;
+use crate::grid::{LazyGrid, TooThin};
 use crate::lattice::{Lattice, check_distinct};
 use crate::{Graph, GraphError};
 use dapple_points::{PointIdx, PointSet};
@@ -38,7 +38,8 @@ use tiles::Tiles;
 ///
 /// # Errors
 ///
-/// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points lie at the same place.
+/// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points lie at the same place;
+/// [`GraphErrorKind::Thin`](crate::GraphErrorKind::Thin) on a domain that wraps and is too thin for the distance of its points.
 ///
 /// # Examples
 ///
@@ -56,10 +57,16 @@ use tiles::Tiles;
 pub fn delaunay(points: &PointSet) -> Result<Graph, GraphError> {
     let lattice = Lattice::new(points.domain());
     let sites = lattice.sites(points);
-    let Some(rows) = rows(&lattice, &sites) else {
-        check_distinct(&sites)?;
-        // Images of different sites never coincide, so this is never reached.
-        return Err(GraphError::coincident(PointIdx(0), PointIdx(0)));
+    let rows = match rows(&lattice, &sites) {
+        Ok(rows) => rows,
+        Err(refusal) => {
+            check_distinct(&sites)?;
+            return Err(match refusal {
+                // Images of different sites never coincide, so this is never reached.
+                Refusal::Coincident => GraphError::coincident(PointIdx(0), PointIdx(0)),
+                Refusal::Thin => GraphError::thin(points),
+            });
+        }
     };
     Ok(Graph {
         lattice,
@@ -70,8 +77,23 @@ pub fn delaunay(points: &PointSet) -> Result<Graph, GraphError> {
     })
 }
 
-/// The rows of the graph; `None` if two sites coincide.
-fn rows(lattice: &Lattice, sites: &[DVec2]) -> Option<Rows> {
+/// Why there are no rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Refusal {
+    /// Two sites coincide.
+    Coincident,
+    /// Too many images are needed.
+    Thin,
+}
+
+impl From<TooThin> for Refusal {
+    fn from(_: TooThin) -> Self {
+        Self::Thin
+    }
+}
+
+/// The rows of the graph.
+fn rows(lattice: &Lattice, sites: &[DVec2]) -> Result<Rows, Refusal> {
     let margin = MARGIN * (lattice.size.x * (lattice.size.y / sites.len().max(1) as f64)).sqrt();
     if let Some(tiles) = Tiles::new(lattice, sites.len(), margin) {
         return tiles.rows(sites);
@@ -80,11 +102,11 @@ fn rows(lattice: &Lattice, sites: &[DVec2]) -> Option<Rows> {
 }
 
 /// The rows, from a single triangulation.
-fn whole(lattice: &Lattice, sites: &[DVec2], margin: f64) -> Option<Rows> {
+fn whole(lattice: &Lattice, sites: &[DVec2], margin: f64) -> Result<Rows, Refusal> {
     let cover = Cover::new(lattice, DVec2::ZERO, lattice.size, margin);
-    let images = cover.images(lattice, sites);
+    let images = cover.images(lattice, sites)?;
     let mut patch = Patch::new(lattice, cover, &images, sites.len())?;
-    Some(patch.rows(&LazyGrid::new(lattice, sites)))
+    Ok(patch.rows(&LazyGrid::new(lattice, sites))?)
 }
 
 /// The margin of images around the domain at first, in mean distances (the root of the area per point).

@@ -1,7 +1,8 @@
 //! Why a graph was refused.
 
+use crate::grid::Budget;
 use core::fmt;
-use dapple_points::PointIdx;
+use dapple_points::{PointIdx, PointSet};
 use glam::DVec2;
 
 /// Why a graph could not be made, or is not sane.
@@ -57,6 +58,13 @@ pub enum GraphErrorKind {
     TooManyAxes {
         /// How many.
         n_axes: usize,
+    },
+    /// The domain wraps, and is so thin for the distance of its points that too many copies of them count.
+    Thin {
+        /// Its width and height.
+        size: DVec2,
+        /// The most copies of points that all searches together may go through.
+        limit: u64,
     },
     /// A row's axes are not in their order, or one of them comes twice.
     Order {
@@ -124,6 +132,11 @@ impl fmt::Display for GraphError {
                     u32::MAX
                 )
             }
+            GraphErrorKind::Thin { size, limit } => write!(
+                f,
+                "the domain has size {size} and wraps, so thin that the search for neighbors goes through more than \
+                 {limit} copies of points, which is the limit"
+            ),
             GraphErrorKind::Order { point } => write!(
                 f,
                 "the axes of point {} are not in counterclockwise order from the x axis",
@@ -146,6 +159,14 @@ impl fmt::Display for GraphError {
 impl core::error::Error for GraphError {}
 
 impl GraphError {
+    /// The error of a domain that is too thin for its points.
+    pub(crate) fn thin(points: &PointSet) -> Self {
+        Self::new(GraphErrorKind::Thin {
+            size: points.domain().size,
+            limit: Budget::limit(points.len()),
+        })
+    }
+
     /// The error of two points at the same place.
     pub(crate) fn coincident(a: PointIdx, b: PointIdx) -> Self {
         Self::new(GraphErrorKind::Coincident {

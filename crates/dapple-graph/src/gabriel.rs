@@ -20,7 +20,8 @@ use glam::DVec2;
 ///
 /// # Errors
 ///
-/// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points lie at the same place.
+/// [`GraphErrorKind::Coincident`](crate::GraphErrorKind::Coincident) if two points lie at the same place;
+/// [`GraphErrorKind::Thin`](crate::GraphErrorKind::Thin) on a domain that wraps and is too thin for the distance of its points.
 ///
 /// # Examples
 ///

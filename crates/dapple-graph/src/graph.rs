@@ -119,6 +119,14 @@ impl Graph {
 impl Axis {
     /// The order of a point's axes.
     pub(crate) fn order(&self, other: &Self) -> core::cmp::Ordering {
-        by_angle(self.vector, other.vector).then(self.to.cmp(&other.to))
+        let scale = scale(self.vector.abs().max(other.vector.abs()).max_element());
+        by_angle(self.vector * scale, other.vector * scale).then(self.to.cmp(&other.to))
     }
+}
+
+/// A power of two that takes a length to between 1 and 2, so that products of tiny or huge ones do not round to nothing or
+/// infinity. On a lattice, vectors of such lengths are multiplied without rounding.
+fn scale(length: f64) -> f64 {
+    let exponent_only = f64::from_bits(length.to_bits() & f64::INFINITY.to_bits());
+    1.0 / exponent_only.max(f64::MIN_POSITIVE)
 }

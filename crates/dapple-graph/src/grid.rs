@@ -4,6 +4,47 @@ use crate::lattice::Lattice;
 use glam::DVec2;
 use std::sync::OnceLock;
 
+/// The refusal of a domain so thin that a search goes through too many copies of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TooThin;
+
+/// How many images the searches around the points of a set may still go through, all together.
+///
+/// Any domain takes up to the square of the number of points where they crowd into one spot, and a square torus has up
+/// to 25 copies within the reach of a search that finds little. On a domain that is thin beside the distance of its points
+/// there would be any number of copies.
+#[derive(Debug)]
+pub(crate) struct Budget {
+    left: u64,
+}
+
+impl Budget {
+    /// The budget of `n` points.
+    pub(crate) fn new(n: usize) -> Self {
+        Self {
+            left: Self::limit(n),
+        }
+    }
+
+    /// The images that may be gone through for `n` points. For few, that is the work of a tenth of a second.
+    pub(crate) fn limit(n: usize) -> u64 {
+        let n = n as u64;
+        (1 << 21) + 32_u64.saturating_mul(n.saturating_mul(n))
+    }
+
+    fn take(&mut self, images: u64) -> Result<(), TooThin> {
+        self.left = self.left.checked_sub(images).ok_or(TooThin)?;
+        Ok(())
+    }
+}
+
+/// The most images of `n` points that a triangulation is begun with, or that are added to it.
+///
+/// Where they lie on one line, as those of a single point do, the time grows with the square of their number.
+pub(crate) fn triangulated_limit(n: usize) -> u64 {
+    64 * n as u64 + 4096
+}
+
 /// Sites sorted into equal cells that hold about two each.
 #[derive(Debug)]
 pub(crate) struct Grid<'a> {
@@ -49,7 +90,15 @@ impl<'a> Grid<'a> {
     }
 
     /// Calls `visit` with the number and the place of every image in the box, and maybe of some beside it.
-    pub(crate) fn visit_box(&self, low: DVec2, high: DVec2, mut visit: impl FnMut(u32, DVec2)) {
+    ///
+    /// Fails past the budget, when `visit` has been called for some.
+    pub(crate) fn visit_box(
+        &self,
+        low: DVec2,
+        high: DVec2,
+        budget: &mut Budget,
+        mut visit: impl FnMut(u32, DVec2),
+    ) -> Result<(), TooThin> {
         let [(x_first, x_last), (y_first, y_last)] =
             [0, 1].map(|axis| self.lattice.images(axis, low[axis], high[axis]));
         let size = self.lattice.size;
@@ -64,6 +113,8 @@ impl<'a> Grid<'a> {
                 let row = row * self.cells[0];
                 let first = self.starts[row + columns.start()] as usize;
                 let end = self.starts[row + columns.end() + 1] as usize;
+                // A row of a copy takes a while even where it is empty.
+                budget.take((end - first) as u64 + 1)?;
                 for &index in &self.order[first..end] {
                     visit(index, self.sites[index as usize] + shift);
                 }
@@ -73,6 +124,7 @@ impl<'a> Grid<'a> {
                 image = DVec2::new(x_first, image.y + 1.0);
             }
         }
+        Ok(())
     }
 
     /// The root of the area per point.
@@ -135,7 +187,7 @@ impl<'a> LazyGrid<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::Grid;
+    use super::{Budget, Grid};
     use crate::lattice::Lattice;
     use dapple_points::{Domain, PointSet};
     use glam::DVec2;
@@ -159,11 +211,12 @@ mod tests {
             let [low, high] = [low, high].map(|corner| lattice.steps(DVec2::from(corner)));
             let inside = |at: DVec2| at.cmpge(low).all() && at.cmple(high).all();
             let mut found = Vec::new();
-            grid.visit_box(low, high, |index, at| {
+            let visited = grid.visit_box(low, high, &mut Budget::new(50), |index, at| {
                 if inside(at) {
                     found.push((index, at.x));
                 }
             });
+            assert_eq!(visited, Ok(()), "in the box {low} to {high}");
             let mut expected = Vec::new();
             for k in -5..5 {
                 for (index, &site) in (0..).zip(&sites) {

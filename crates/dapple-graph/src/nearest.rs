@@ -1,7 +1,7 @@
 //! The graph of nearest neighbors, and the search from near to far that other graphs use as well.
 
 use crate::build::{Choice, Direction, graph_of};
-use crate::grid::Grid;
+use crate::grid::{Budget, Grid, TooThin};
 use crate::lattice::{Lattice, check_distinct};
 use crate::{Graph, GraphError, GraphErrorKind};
 use dapple_points::PointSet;
@@ -18,7 +18,8 @@ use glam::DVec2;
 ///
 /// [`GraphErrorKind::Neighbors`] for `k = 0` and past 4096, on a rectangle for more neighbors than there are other
 /// points, and on a domain that wraps for more than ten times as many as there are points; [`GraphErrorKind::Coincident`] if two points lie at the same place;
-/// [`GraphErrorKind::TooManyAxes`] past 2^32 axes.
+/// [`GraphErrorKind::TooManyAxes`] past 2^32 axes; [`GraphErrorKind::Thin`] on a domain that wraps and is too thin for
+/// the distance of its points.
 ///
 /// # Examples
 ///
@@ -45,20 +46,22 @@ pub fn k_nearest(points: &PointSet, k: u32, direction: Direction) -> Result<Grap
     check_distinct(&sites)?;
     let grid = Grid::new(&lattice, &sites);
     let wanted = k as usize;
+    let mut budget = Budget::new(sites.len());
     let rows = sites.iter().map(|&site| {
         // A disc of this radius holds about twice as many as wanted.
         let mut radius = 0.8 * grid.mean_distance() * f64::from(k + 1).sqrt();
         loop {
             radius = radius.min(grid.farthest());
-            let mut near = near(&grid, site, radius);
+            let mut near = near(&grid, site, radius, &mut budget)?;
             if near.len() >= wanted || radius == grid.farthest() {
                 near.truncate(wanted);
-                return near;
+                return Ok(near);
             }
             radius *= 1.5;
         }
     });
-    let rows = rows.collect();
+    let rows: Result<_, TooThin> = rows.collect();
+    let rows = rows.map_err(|TooThin| GraphError::thin(points))?;
     graph_of(lattice, sites, rows, direction)
 }
 
@@ -66,22 +69,27 @@ pub fn k_nearest(points: &PointSet, k: u32, direction: Direction) -> Result<Grap
 const MAX_NEIGHBORS: u32 = 4096;
 
 /// All images within a distance of a site but the site itself, nearest first.
-pub(crate) fn near(grid: &Grid<'_>, site: DVec2, radius: f64) -> Vec<Choice> {
+pub(crate) fn near(
+    grid: &Grid<'_>,
+    site: DVec2,
+    radius: f64,
+    budget: &mut Budget,
+) -> Result<Vec<Choice>, TooThin> {
     let mut found: Vec<(i128, Choice)> = Vec::new();
     let radius_sq = (radius * radius) as i128;
-    grid.visit_box(site - radius, site + radius, |to, at| {
+    grid.visit_box(site - radius, site + radius, budget, |to, at| {
         let steps = at - site;
         let distance_sq = length_sq(steps);
         if distance_sq > 0 && distance_sq <= radius_sq {
             found.push((distance_sq, Choice { to, steps }));
         }
-    });
+    })?;
     found.sort_unstable_by(|(a_sq, a), (b_sq, b)| {
         (a_sq.cmp(b_sq))
             .then(a.to.cmp(&b.to))
             .then_with(|| crate::angle::by_angle(a.steps, b.steps))
     });
-    found.into_iter().map(|(_, choice)| choice).collect()
+    Ok(found.into_iter().map(|(_, choice)| choice).collect())
 }
 
 /// The squared length in steps, exact: products of whole numbers below 2^53.

@@ -3,6 +3,7 @@
 use crate::{Axis, Graph, GraphError, GraphErrorKind};
 use core::cmp::Ordering;
 use dapple_points::PointIdx;
+use glam::DVec2;
 
 impl Graph {
     /// Looks through the whole graph for what must never be: for tests, and for graphs that went through other hands.
@@ -52,7 +53,8 @@ impl Graph {
         let is_whole = |k: f64, wraps: bool| k == 0.0 || (wraps && k.floor() == k);
         let whole =
             is_whole(around.x, self.lattice.wrap[0]) && is_whole(around.y, self.lattice.wrap[1]);
-        whole && axis.vector.is_finite() && axis.vector.length_squared() > 0.0
+        // A square of a tiny vector may round to zero.
+        whole && axis.vector.is_finite() && axis.vector != DVec2::ZERO
     }
 
     fn has_opposite(&self, from: PointIdx, axis: &Axis) -> bool {

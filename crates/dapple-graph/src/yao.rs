@@ -10,7 +10,7 @@
 
 use crate::angle::{by_angle, turn};
 use crate::build::{Choice, Direction, graph_of};
-use crate::grid::Grid;
+use crate::grid::{Budget, Grid, TooThin};
 use crate::lattice::{Lattice, check_distinct};
 use crate::nearest::near;
 use crate::{Graph, GraphError, GraphErrorKind};
@@ -30,7 +30,8 @@ use glam::DVec2;
 /// # Errors
 ///
 /// [`GraphErrorKind::Cones`] for no cones and for more than 32; [`GraphErrorKind::Coincident`] if two points lie at the
-/// same place; [`GraphErrorKind::TooManyAxes`] past 2^32 axes.
+/// same place; [`GraphErrorKind::TooManyAxes`] past 2^32 axes; [`GraphErrorKind::Thin`] on a domain that wraps and is
+/// too thin for the distance of its points.
 ///
 /// # Examples
 ///
@@ -54,17 +55,19 @@ pub fn yao(points: &PointSet, cones: u32, direction: Direction) -> Result<Graph,
     let sites = lattice.sites(points);
     check_distinct(&sites)?;
     let grid = Grid::new(&lattice, &sites);
+    let mut budget = Budget::new(sites.len());
     let rows = sites.iter().map(|&site| {
         let mut radius = (2.0 * grid.mean_distance()).min(grid.farthest());
         loop {
-            let chosen = nearest_per_cone(&near(&grid, site, radius), &borders);
+            let chosen = nearest_per_cone(&near(&grid, site, radius, &mut budget)?, &borders);
             if chosen.iter().all(Option::is_some) || radius == grid.farthest() {
-                return chosen.into_iter().flatten().collect();
+                return Ok(chosen.into_iter().flatten().collect());
             }
             radius = (2.0 * radius).min(grid.farthest());
         }
     });
-    let rows = rows.collect();
+    let rows: Result<_, TooThin> = rows.collect();
+    let rows = rows.map_err(|TooThin| GraphError::thin(points))?;
     graph_of(lattice, sites, rows, direction)
 }
 

@@ -3,6 +3,9 @@
 use crate::{PointsError, PointsErrorKind};
 use glam::DVec2;
 
+/// The farthest that a domain reaches along an axis, and its longest side. What lies some periods away is still a number.
+const FARTHEST: f64 = 1e300;
+
 /// The rectangle from `origin` with the given `size`, which wraps around along the axes that say so.
 ///
 /// With both axes wrapped it is a torus, with one a cylinder, with none a plain rectangle. Along a wrapped axis the
@@ -12,7 +15,7 @@ use glam::DVec2;
 pub struct Domain {
     /// The corner with the smallest coordinates.
     pub origin: DVec2,
-    /// Width and height, both above zero.
+    /// Width and height, both above zero and at most 1e300.
     pub size: DVec2,
     /// Whether x and y wrap around.
     pub wrap: [bool; 2],
@@ -49,10 +52,14 @@ impl Domain {
     ///
     /// # Errors
     ///
-    /// [`PointsErrorKind::Domain`] if the origin is not finite or a side is not above zero and finite.
+    /// [`PointsErrorKind::Domain`] if the origin is not between -1e300 and 1e300, or a side is not above zero and at
+    /// most 1e300.
     pub fn checked(self) -> Result<Self, PointsError> {
-        let valid =
-            self.origin.is_finite() && self.size.is_finite() && self.size.min_element() > 0.0;
+        // A part that is not a number is in no range.
+        let valid = (0..2).all(|axis| {
+            let (origin, size) = (self.origin[axis], self.size[axis]);
+            origin.abs() <= FARTHEST && size > 0.0 && size <= FARTHEST
+        });
         if valid {
             Ok(self)
         } else {
@@ -169,12 +176,13 @@ mod tests {
     }
 
     #[test]
-    fn domains_without_area_are_refused() {
+    fn domains_without_area_or_without_end_are_refused() {
         for size in [
             DVec2::ZERO,
             DVec2::new(1.0, -1.0),
             DVec2::new(f64::NAN, 1.0),
             DVec2::INFINITY,
+            DVec2::new(1.0, 1.1e300),
         ] {
             assert!(
                 Domain::torus(DVec2::ZERO, size).checked().is_err(),
@@ -184,6 +192,12 @@ mod tests {
         assert!(
             Domain::torus(DVec2::NAN, DVec2::ONE).checked().is_err(),
             "a NaN origin was accepted"
+        );
+        assert!(
+            Domain::torus(DVec2::splat(-1.1e300), DVec2::ONE)
+                .checked()
+                .is_err(),
+            "a far origin was accepted"
         );
     }
 }

@@ -16,7 +16,7 @@ pub struct PointsError {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum PointsErrorKind {
-    /// The origin of the domain is not finite, or a side is not above zero and finite.
+    /// The origin of the domain is beyond 1e300, or a side is not above zero and at most 1e300.
     Domain {
         /// The domain.
         domain: Domain,
@@ -130,7 +130,7 @@ impl fmt::Display for PointsError {
                 domain: Domain { origin, size, .. },
             } => write!(
                 f,
-                "the domain from {origin} has size {size}, but both sides must be above 0 and finite"
+                "the domain from {origin} has size {size}, but both sides must be above 0 and at most 1e300, and the origin between -1e300 and 1e300"
             ),
             Kind::Outside { point, position } => {
                 write!(f, "point {} at {position} is not in the domain", point.0)

@@ -91,6 +91,15 @@ pub enum RecipeErrorKind {
         /// The range it must lie in, as text.
         range: &'static str,
     },
+    /// The recipe, up to this node, asks for more work than the limits allow: see [`PlanLimits`](crate::PlanLimits).
+    TooMuch {
+        /// What there would be too much of.
+        what: &'static str,
+        /// About how much there would be.
+        value: f64,
+        /// How much there may be.
+        limit: u64,
+    },
     /// Two things that exclude each other, or one that needs another.
     Conflict {
         /// The rule, as a sentence without a full stop.
@@ -246,6 +255,19 @@ impl fmt::Display for RecipeErrorKind {
             Self::NotANumber { input } => write!(f, "{input} is a color, but a number is needed"),
             Self::Range { what, value, range } => {
                 write!(f, "the {what} is {value}, but it must be {range}")
+            }
+            // Past that, a number would be nothing but digits.
+            Self::TooMuch { what, value, limit } if *value >= 1e15 => {
+                write!(
+                    f,
+                    "there would be about {value:.1e} {what}, but the limit is {limit}"
+                )
+            }
+            Self::TooMuch { what, value, limit } => {
+                write!(
+                    f,
+                    "there would be about {value:.0} {what}, but the limit is {limit}"
+                )
             }
             Self::Conflict { rule } => f.write_str(rule),
             Self::NoImage { file } => write!(f, "there is no image `{file}`"),

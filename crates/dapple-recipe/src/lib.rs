@@ -23,6 +23,6 @@ pub use operation::{
     coordinate, distance, levels, maximum, minimum, mix, mix_colors, multiply_colors, power,
     quotient, wave,
 };
-pub use plan::{Images, NodeColors, NodeField, Picture, Plan, Values, Whole};
+pub use plan::{Images, NodeColors, NodeField, Picture, Plan, PlanLimits, Values, Whole};
 pub use recipe::{Material, Recipe, SCHEMA};
 pub use text::MAX_TEXT;

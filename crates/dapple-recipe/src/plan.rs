@@ -11,6 +11,7 @@ mod order;
 mod pups;
 mod step;
 mod whole;
+mod work;
 
 pub use fields::{NodeColors, NodeField};
 pub(crate) use generate::Generator;
@@ -18,6 +19,7 @@ pub(crate) use order::{order, unknown};
 pub(crate) use step::Layers;
 pub use whole::Whole;
 pub(crate) use whole::blend_values;
+pub use work::PlanLimits;
 
 use crate::{Input, Material, Recipe, RecipeError, RecipeErrorKind};
 use dapple_color::LinearRgb;
@@ -26,6 +28,7 @@ use glam::DVec2;
 use indexmap::IndexMap;
 use std::sync::Arc;
 use step::Step;
+use work::{Work, check_steps};
 
 /// What a node makes: numbers or colors, with one value for each position.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +74,7 @@ pub struct Plan {
     names: IndexMap<String, usize>,
     channels: Channels,
     material: Material,
+    limits: PlanLimits,
 }
 
 /// The steps that the maps of the material are made of.
@@ -104,8 +108,23 @@ impl Plan {
     /// # Errors
     ///
     /// What is wrong with the recipe, with the node in which it is: names that do not exist, circles, colors where numbers
-    /// are needed, numbers out of range, and what the crates of the nodes refuse.
+    /// are needed, numbers out of range, and what the crates of the nodes refuse; [`TooMuch`](RecipeErrorKind::TooMuch)
+    /// past the default [`PlanLimits`].
     pub fn new(recipe: &Recipe, images: &Images, time: f64) -> Result<Self, RecipeError> {
+        Self::new_within(recipe, images, time, &PlanLimits::default())
+    }
+
+    /// Makes everything that the recipe names, if that is no more work than the limits allow.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new), with other limits.
+    pub fn new_within(
+        recipe: &Recipe,
+        images: &Images,
+        time: f64,
+        limits: &PlanLimits,
+    ) -> Result<Self, RecipeError> {
         RecipeError::check(time.is_finite(), "time", time, "finite")?;
         for side in recipe.extent {
             RecipeError::check(
@@ -116,20 +135,27 @@ impl Plan {
             )?;
         }
         let mut builder = step::Builder::new(recipe, images, time);
+        let mut work = Work::new(limits);
         let mut names = IndexMap::new();
         for name in order(recipe)? {
-            let step = builder.node(name, &recipe.nodes[name]);
+            let node = &recipe.nodes[name];
+            let step = work
+                .add(builder.generator(), node)
+                .and_then(|()| builder.node(name, node));
             names.insert(name.to_owned(), step.map_err(|error| error.within(name))?);
         }
         let channels = channels(recipe, &mut builder).map_err(|error| error.within("material"))?;
-        Ok(Self {
+        let plan = Self {
             extent: recipe.extent.into(),
             wrap: recipe.wrap,
             steps: builder.into_steps().into(),
             names,
             channels,
             material: recipe.material.clone(),
-        })
+            limits: *limits,
+        };
+        check_steps(&plan.steps, limits).map_err(|(step, error)| plan.within(step, error))?;
+        Ok(plan)
     }
 
     /// The width and height of the tile, in units of the plane.

@@ -148,6 +148,17 @@ mod tests {
     }
 
     #[test]
+    fn json_keeps_every_bit_of_a_number() {
+        let text = STONES.replace(
+            "frequency = 8",
+            "range = [0, 1]\n[nodes.wide.distance]\ncenter = [0.218446744073709551616, 1.3e-7]",
+        );
+        let json = Recipe::from_toml(&text).unwrap().to_json().unwrap();
+        let again = Recipe::from_json(&json).unwrap().to_json().unwrap();
+        assert_eq!(json, again, "written and read again");
+    }
+
+    #[test]
     fn a_wrong_word_is_told_with_its_line_and_the_nearest_valid_one() {
         let cases = [
             ("frequency", "frequenzy", 5, "frequency"),

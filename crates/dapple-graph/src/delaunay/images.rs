@@ -2,7 +2,7 @@
 
 use super::patch::Image;
 use super::star::Star;
-use crate::grid::LazyGrid;
+use crate::grid::{Budget, LazyGrid, TooThin, triangulated_limit};
 use crate::lattice::Lattice;
 use glam::DVec2;
 use robust::{Coord, incircle};
@@ -35,8 +35,17 @@ impl Cover {
     }
 
     /// All images of all points in the rectangle; those in the domain itself have a row.
-    pub(super) fn images(&self, lattice: &Lattice, sites: &[DVec2]) -> Vec<Image> {
+    ///
+    /// Fails for more images than one search may go through.
+    pub(super) fn images(&self, lattice: &Lattice, sites: &[DVec2]) -> Result<Vec<Image>, TooThin> {
         let size = lattice.size;
+        let copies = [0, 1].map(|axis| {
+            let (first, last) = lattice.images(axis, self.low[axis], self.high[axis]);
+            last - first + 1.0
+        });
+        if copies[0] * copies[1] * sites.len() as f64 > triangulated_limit(sites.len()) as f64 {
+            return Err(TooThin);
+        }
         let mut images = Vec::with_capacity(sites.len() + sites.len() / 2);
         for (point, &site) in (0..).zip(sites) {
             images.push(Image::new(site, point, point));
@@ -63,7 +72,7 @@ impl Cover {
                 }
             }
         }
-        images
+        Ok(images)
     }
 }
 
@@ -85,6 +94,9 @@ pub(super) struct Missing<'g, 'a> {
     row: u32,
     /// Whether that star will change.
     changes: bool,
+    budget: Budget,
+    /// Whether there was too much to search.
+    too_thin: bool,
 }
 
 impl<'g, 'a> Missing<'g, 'a> {
@@ -104,6 +116,8 @@ impl<'g, 'a> Missing<'g, 'a> {
             scaffolded: false,
             row: 0,
             changes: false,
+            budget: Budget::new(grid.sites().len()),
+            too_thin: false,
         }
     }
 
@@ -112,6 +126,9 @@ impl<'g, 'a> Missing<'g, 'a> {
     pub(super) fn search(&mut self, row: u32, center: DVec2, star: &Star) -> bool {
         self.row = row;
         self.changes = false;
+        if self.too_thin {
+            return false;
+        }
         if star.wedges().nth(1).is_none() {
             self.scaffold();
         }
@@ -139,13 +156,17 @@ impl<'g, 'a> Missing<'g, 'a> {
         }
         let (low, high) = (p.min(p + vector), p.max(p + vector));
         let mut nearest: Option<(f64, u32, DVec2)> = None;
-        self.grid.get().visit_box(low, high, |point, at| {
-            let between = at.cmpge(low).all() && at.cmple(high).all() && at != p;
-            let distance = (at - p).abs().element_sum();
-            if between && nearest.is_none_or(|(best, ..)| distance < best) {
-                nearest = Some((distance, point, at));
-            }
-        });
+        let visited = self
+            .grid
+            .get()
+            .visit_box(low, high, &mut self.budget, |point, at| {
+                let between = at.cmpge(low).all() && at.cmple(high).all() && at != p;
+                let distance = (at - p).abs().element_sum();
+                if between && nearest.is_none_or(|(best, ..)| distance < best) {
+                    nearest = Some((distance, point, at));
+                }
+            });
+        self.too_thin |= visited.is_err();
         if let Some((_, point, at)) = nearest {
             self.add(point, at);
         }
@@ -200,16 +221,20 @@ impl<'g, 'a> Missing<'g, 'a> {
         let high = (p + self.reach).min(high);
         let mut nearest: Option<(f64, u32, DVec2)> = None;
         let coord = |at: DVec2| Coord { x: at.x, y: at.y };
-        self.grid.get().visit_box(low, high, |point, at| {
-            if self.cover.depth(at) >= 0.0 || self.inserted.contains(&key(at)) {
-                return;
-            }
-            let distance_sq = (at - p - circle.center).length_squared();
-            let nearer = nearest.is_none_or(|(best, ..)| distance_sq < best);
-            if nearer && incircle(coord(p), coord(p + a), coord(p + b), coord(at)) >= 0.0 {
-                nearest = Some((distance_sq, point, at));
-            }
-        });
+        let visited = self
+            .grid
+            .get()
+            .visit_box(low, high, &mut self.budget, |point, at| {
+                if self.cover.depth(at) >= 0.0 || self.inserted.contains(&key(at)) {
+                    return;
+                }
+                let distance_sq = (at - p - circle.center).length_squared();
+                let nearer = nearest.is_none_or(|(best, ..)| distance_sq < best);
+                if nearer && incircle(coord(p), coord(p + a), coord(p + b), coord(at)) >= 0.0 {
+                    nearest = Some((distance_sq, point, at));
+                }
+            });
+        self.too_thin |= visited.is_err();
         if let Some((_, point, at)) = nearest {
             self.add(point, at);
         }
@@ -228,9 +253,15 @@ impl<'g, 'a> Missing<'g, 'a> {
     }
 
     /// Takes the images that were found, to be inserted now.
-    pub(super) fn take(&mut self) -> Vec<(Image, u32)> {
+    ///
+    /// Fails where there was too much to search, or all that was found is more than one search may go through.
+    pub(super) fn take(&mut self) -> Result<Vec<(Image, u32)>, TooThin> {
         self.inserted.append(&mut self.pending);
-        core::mem::take(&mut self.found)
+        if self.too_thin || self.inserted.len() as u64 > triangulated_limit(self.grid.sites().len())
+        {
+            return Err(TooThin);
+        }
+        Ok(core::mem::take(&mut self.found))
     }
 }
 

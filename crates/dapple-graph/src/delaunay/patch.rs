@@ -1,10 +1,11 @@
 //! A triangulated part of the periodic plane, and the rows of the graph for the points that it is made for.
 
+use super::Refusal;
 use super::images::{Cover, Missing};
 use super::order::farthest_first;
 use super::star::Star;
 use crate::Axis;
-use crate::grid::LazyGrid;
+use crate::grid::{LazyGrid, TooThin};
 use crate::lattice::Lattice;
 use glam::DVec2;
 use spade::handles::{FixedVertexHandle, VertexHandle};
@@ -62,19 +63,18 @@ pub(super) struct Patch<'a> {
 
 impl<'a> Patch<'a> {
     /// Triangulates the images, of which `n_rows` have a row; all images in `cover` must be there.
-    ///
-    /// `None` if two of them coincide.
     pub(super) fn new(
         lattice: &'a Lattice,
         cover: Cover,
         images: &[Image],
         n_rows: usize,
-    ) -> Option<Self> {
+    ) -> Result<Self, Refusal> {
         let n_images = images.len();
-        let triangulation =
-            DelaunayTriangulation::<Image>::bulk_load(farthest_first(images)).ok()?;
+        // Sites are finite whole numbers, which are always accepted.
+        let triangulation = DelaunayTriangulation::<Image>::bulk_load(farthest_first(images))
+            .map_err(|_| Refusal::Coincident)?;
         if triangulation.num_vertices() < n_images {
-            return None;
+            return Err(Refusal::Coincident);
         }
         let mut vertices = vec![FixedVertexHandle::from_index(0); n_rows];
         for vertex in triangulation.vertices() {
@@ -83,7 +83,7 @@ impl<'a> Patch<'a> {
                 vertices[row as usize] = vertex.fix();
             }
         }
-        Some(Self {
+        Ok(Self {
             lattice,
             cover,
             triangulation,
@@ -92,7 +92,7 @@ impl<'a> Patch<'a> {
     }
 
     /// The axes of all points that have a row, after inserting the images that are missing for them.
-    pub(super) fn rows(&mut self, grid: &LazyGrid<'a>) -> Rows {
+    pub(super) fn rows(&mut self, grid: &LazyGrid<'a>) -> Result<Rows, TooThin> {
         let mut star = Star::default();
         let mut rows = Rows {
             offsets: Vec::with_capacity(self.vertices.len() + 1),
@@ -110,14 +110,14 @@ impl<'a> Patch<'a> {
             star.push_axes(self.lattice, &mut rows.axes);
             rows.offsets.push(rows.axes.len() as u32);
         }
-        if self.complete(&doubtful, grid) {
+        if self.complete(&doubtful, grid)? {
             rows = self.replaced(&rows, &doubtful);
         }
-        rows
+        Ok(rows)
     }
 
     /// Inserts images until the stars of the given rows are true. Whether there were any to insert.
-    fn complete(&mut self, doubtful: &[u32], grid: &LazyGrid<'a>) -> bool {
+    fn complete(&mut self, doubtful: &[u32], grid: &LazyGrid<'a>) -> Result<bool, TooThin> {
         let mut star = Star::default();
         let mut missing = Missing::new(self.lattice, self.cover, grid);
         let mut changed = false;
@@ -129,9 +129,9 @@ impl<'a> Patch<'a> {
                 star.read(vertex, f64::INFINITY);
                 missing.search(row, at(vertex), &star)
             });
-            let found = missing.take();
+            let found = missing.take()?;
             if found.is_empty() {
-                return changed;
+                return Ok(changed);
             }
             changed = true;
             for (image, row) in found {

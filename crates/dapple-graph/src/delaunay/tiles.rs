@@ -1,5 +1,6 @@
 //! Large sets on a torus, tile by tile: each triangulation stays in the cache, and the tiles are independent.
 
+use super::Refusal;
 use super::images::Cover;
 use super::patch::{Image, Patch, Rows};
 use crate::grid::LazyGrid;
@@ -47,8 +48,8 @@ impl<'a> Tiles<'a> {
         })
     }
 
-    /// The rows of all points; `None` if two sites coincide.
-    pub(super) fn rows(&self, sites: &[DVec2]) -> Option<Rows> {
+    /// The rows of all points.
+    pub(super) fn rows(&self, sites: &[DVec2]) -> Result<Rows, Refusal> {
         let mut tiles = self.fill(sites);
         let grid = LazyGrid::new(self.lattice, sites);
         let rows = |(index, tile): (usize, &mut Tile)| {
@@ -58,13 +59,17 @@ impl<'a> Tiles<'a> {
                 |column: usize, row: usize| DVec2::new(self.starts[0][column], self.starts[1][row]);
             let (low, high) = (corner(column, row), corner(column + 1, row + 1));
             let cover = Cover::new(self.lattice, low, high, self.margin);
-            Some(Patch::new(self.lattice, cover, &images, tile.points.len())?.rows(&grid))
+            let mut patch = Patch::new(self.lattice, cover, &images, tile.points.len())?;
+            Ok(patch.rows(&grid)?)
         };
         #[cfg(feature = "rayon")]
-        let parts: Option<Vec<Rows>> = tiles.par_iter_mut().enumerate().map(rows).collect();
+        let parts: Vec<Result<Rows, Refusal>> =
+            tiles.par_iter_mut().enumerate().map(rows).collect();
         #[cfg(not(feature = "rayon"))]
-        let parts: Option<Vec<Rows>> = tiles.iter_mut().enumerate().map(rows).collect();
-        Some(merged(&tiles, &parts?, sites.len()))
+        let parts: Vec<Result<Rows, Refusal>> = tiles.iter_mut().enumerate().map(rows).collect();
+        // The refusal is that of the first tile that has one, whichever was there first.
+        let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
+        Ok(merged(&tiles, &parts, sites.len()))
     }
 
     fn count(&self, axis: usize) -> usize {

@@ -70,7 +70,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
 ///
 /// # Errors
 ///
-/// As [`read`]; nothing about other files is an error.
+/// As [`read`]; of other files, only a `Kd` beyond single precision is an error.
 pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshError> {
     let mut draft = Draft::default();
     for line in lines(FORMAT, &joined(bytes)) {
@@ -79,7 +79,7 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshErr
     let libraries = core::mem::take(&mut draft.libraries);
     let name = draft.material.take().map(|(name, _)| name);
     let mut model = draft.into_model()?;
-    model.material = mtl::material(&libraries, name.as_deref(), beside);
+    model.material = mtl::material(&libraries, name.as_deref(), beside)?;
     Ok(model)
 }
 

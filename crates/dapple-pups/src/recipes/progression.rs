@@ -139,7 +139,9 @@ pub fn label_ramp(options: &LabelRampOptions, seed: Seed) -> Result<LabelTexture
 }
 
 impl ProgressionOptions {
-    fn spacing(&self) -> Spacing {
+    /// The spacing of the points of a cow, or of the centers of the spots of a giraffe.
+    #[must_use]
+    pub fn spacing(&self) -> Spacing {
         let ramp = left_to_right(&self.domain, self.distances);
         Spacing::Distance(Varying::GeometricRamp(ramp))
     }

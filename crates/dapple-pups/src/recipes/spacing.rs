@@ -10,6 +10,7 @@ use dapple_points::{
     poisson_disk_radius, radius_from_density, variable_poisson_disk,
 };
 use dapple_raster::{Ramp, Varying};
+use glam::DVec2;
 
 /// How far apart control points are; they are always a maximal Poisson-disk set.
 ///
@@ -67,6 +68,35 @@ impl Spacing {
         })
     }
 
+    /// About how many points [`points`](Self::points) makes in the domain, rather too many than too few, without making
+    /// them. It may be infinite.
+    ///
+    /// For distances that are a constant or a ramp it is an upper bound, up to twice the number where there are many points;
+    /// any other variation is read at a few thousand places only. A spacing that is refused counts as none.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_pups::{Spacing, hash::Seed, points::Domain};
+    ///
+    /// let (spacing, domain) = (Spacing::from(0.1), Domain::paper_torus());
+    /// let points = spacing.points(domain, Seed(7))?;
+    /// assert!(spacing.expected_points(domain) >= points.len() as f64);
+    /// # Ok::<(), dapple_pups::PupsError>(())
+    /// ```
+    #[must_use]
+    pub fn expected_points(&self, domain: Domain) -> f64 {
+        let radius = match self {
+            Self::Distance(distance) => distance.clone(),
+            Self::Density(density) => radius_from_density(density),
+            Self::Count(n_points) => return 1.2 * f64::from(*n_points) + 8.0,
+        };
+        match radius {
+            Varying::Constant(radius) => expected_in(domain.size, radius),
+            radius => expected_by_parts(domain, &radius),
+        }
+    }
+
     /// The smallest distance, if it is the same everywhere.
     pub(crate) fn uniform_distance(&self, domain: Domain) -> Result<Option<f64>, PupsError> {
         let distance = match self {
@@ -94,6 +124,47 @@ impl Spacing {
     }
 }
 
+/// The most points per squared smallest distance that are expected: random maximal sets have 0.70.
+const POINTS_PER_SQUARE: f64 = 0.75;
+
+/// Along each axis, the parts of the domain in which a spacing that varies is taken for its smallest.
+const PARTS: u32 = 64;
+
+/// The most points expected in a rectangle, also on its borders.
+fn expected_in(size: DVec2, radius: f64) -> f64 {
+    if radius > 0.0 {
+        let sides = size / radius + 1.0;
+        POINTS_PER_SQUARE * sides.x * sides.y + 1.0
+    } else {
+        0.0
+    }
+}
+
+/// The sum over parts of the domain, in each of which the radius is the smallest of those at its corners.
+fn expected_by_parts(domain: Domain, radius: &Varying) -> f64 {
+    let part = domain.size / f64::from(PARTS);
+    let at = |x: u32, y: u32| {
+        let radius = radius.at(domain.origin + part * DVec2::new(x.into(), y.into()));
+        if radius > 0.0 { radius } else { f64::INFINITY }
+    };
+    let row = |y: u32| (0..=PARTS).map(|x| at(x, y)).collect::<Vec<_>>();
+    // Points on the border of the domain count beyond those of its area.
+    let is_border = |index: u32| f64::from(u8::from(index == 0 || index == PARTS - 1));
+    let mut above = row(0);
+    let mut sum = 1.0;
+    for y in 0..PARTS {
+        let below = row(y + 1);
+        for (x, (above, below)) in (0..).zip(above.windows(2).zip(below.windows(2))) {
+            let corners = above.iter().chain(below).copied();
+            let smallest = corners.fold(f64::INFINITY, f64::min);
+            let sides = part / smallest + DVec2::new(is_border(x), is_border(y));
+            sum += POINTS_PER_SQUARE * sides.x * sides.y;
+        }
+        above = below;
+    }
+    sum
+}
+
 /// A number that varies, multiplied everywhere.
 fn scaled(varying: &Varying, factor: f64) -> Varying {
     let ramp = |ramp: &Ramp| Ramp {
@@ -109,5 +180,79 @@ fn scaled(varying: &Varying, factor: f64) -> Varying {
             let other = other.clone();
             Varying::function(move |position| other.at(position) * factor)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Spacing;
+    use dapple_hash::Seed;
+    use dapple_points::Domain;
+    use dapple_raster::{Ramp, Varying};
+    use glam::DVec2;
+
+    /// Spacings that vary along the diagonal of a domain, and ones that do not.
+    fn spacings(domain: Domain) -> Vec<Spacing> {
+        let ramp = Ramp {
+            from: domain.origin,
+            to: domain.end(),
+            start: 0.01,
+            end: 0.15,
+        };
+        let densities = Ramp {
+            start: 200.0,
+            end: 2000.0,
+            ..ramp
+        };
+        vec![
+            Spacing::from(0.02),
+            Spacing::from(0.4),
+            Spacing::Count(12),
+            Spacing::Count(3000),
+            Spacing::Density(Varying::Constant(500.0)),
+            Spacing::Density(Varying::Ramp(densities)),
+            Spacing::Distance(Varying::Ramp(ramp)),
+            Spacing::Distance(Varying::GeometricRamp(ramp)),
+        ]
+    }
+
+    #[test]
+    fn expected_points_are_never_too_few_and_not_many_times_too_many() {
+        let torus = Domain::torus(DVec2::new(-1.0, 2.0), DVec2::new(2.0, 1.0));
+        let rectangle = Domain {
+            wrap: [false; 2],
+            ..torus
+        };
+        for domain in [torus, rectangle] {
+            for spacing in spacings(rectangle) {
+                // What varies does not repeat, so that it belongs on the rectangle.
+                let varies = matches!(
+                    spacing,
+                    Spacing::Distance(Varying::Ramp(_) | Varying::GeometricRamp(_))
+                        | Spacing::Density(Varying::Ramp(_))
+                );
+                let domain = if varies { rectangle } else { domain };
+                let made = spacing.points(domain, Seed(7)).unwrap().len() as f64;
+                let expected = spacing.expected_points(domain);
+                assert!(expected >= made, "{spacing:?}: {expected} of {made}");
+                assert!(
+                    expected <= 2.0 * made + 20.0,
+                    "{spacing:?}: {expected} of {made}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn expected_points_of_what_is_refused_are_none_or_any_number() {
+        let domain = Domain::paper_torus();
+        for refused in [0.0, -1.0, f64::NAN] {
+            assert_eq!(
+                Spacing::from(refused).expected_points(domain),
+                0.0,
+                "{refused}"
+            );
+        }
+        assert_eq!(Spacing::from(1e-300).expected_points(domain), f64::INFINITY);
     }
 }

@@ -1,6 +1,6 @@
 //! The values of steps at many positions.
 
-use super::step::{Laid, Step};
+use super::step::{Laid, Step, needed};
 use super::{Picture, Values, Whole};
 use crate::{RecipeError, RecipeErrorKind};
 use dapple_color::LinearRgb;
@@ -111,26 +111,6 @@ fn join(chunks: &[Vec<Arc<Values>>]) -> Vec<Values> {
         }
     };
     (0..steps).map(of_step).collect()
-}
-
-/// The steps that are needed for others, in their order. What a warp asks elsewhere is not needed here, and what sees the
-/// whole tile has been evaluated before.
-fn needed(steps: &[Step], wanted: &[usize]) -> Vec<usize> {
-    let mut needed = vec![false; steps.len()];
-    wanted.iter().for_each(|&index| needed[index] = true);
-    for index in (0..steps.len()).rev() {
-        if needed[index] {
-            match &steps[index] {
-                Step::Warp { by, .. } => by.iter().for_each(|&input| needed[input] = true),
-                Step::Global(..) => {}
-                step => step
-                    .inputs()
-                    .into_iter()
-                    .for_each(|input| needed[input] = true),
-            }
-        }
-    }
-    (0..steps.len()).filter(|&index| needed[index]).collect()
 }
 
 fn step(

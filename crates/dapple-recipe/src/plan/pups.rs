@@ -94,7 +94,7 @@ impl Generator<'_> {
     }
 
     /// The tile without its repeat along x, for what changes from the left to the right.
-    fn strip(&self) -> Domain {
+    pub(super) fn strip(&self) -> Domain {
         let tile = self.domain();
         Domain {
             wrap: [false, tile.wrap[1]],

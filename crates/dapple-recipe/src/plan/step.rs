@@ -96,6 +96,26 @@ impl Step {
     }
 }
 
+/// The steps that are needed for others, in their order. What a warp asks elsewhere is not needed here, and what sees the
+/// whole tile has been evaluated before.
+pub(super) fn needed(steps: &[Step], wanted: &[usize]) -> Vec<usize> {
+    let mut needed = vec![false; steps.len()];
+    wanted.iter().for_each(|&index| needed[index] = true);
+    for index in (0..steps.len()).rev() {
+        if needed[index] {
+            match &steps[index] {
+                Step::Warp { by, .. } => by.iter().for_each(|&input| needed[input] = true),
+                Step::Global(..) => {}
+                step => step
+                    .inputs()
+                    .into_iter()
+                    .for_each(|input| needed[input] = true),
+            }
+        }
+    }
+    (0..steps.len()).filter(|&index| needed[index]).collect()
+}
+
 /// Makes steps of nodes, one after the other.
 pub(super) struct Builder<'a> {
     recipe: &'a Recipe,
@@ -120,6 +140,10 @@ impl<'a> Builder<'a> {
 
     pub(super) fn into_steps(self) -> Vec<Step> {
         self.steps
+    }
+
+    pub(super) fn generator(&self) -> &Generator<'a> {
+        &self.generator
     }
 
     /// The step of a node all of whose inputs have steps.

@@ -1,6 +1,6 @@
 //! Tests of what a plan refuses.
 
-use crate::{Images, Plan, Recipe, RecipeError, RecipeErrorKind};
+use crate::{Images, Plan, PlanLimits, Recipe, RecipeError, RecipeErrorKind};
 use dapple_raster::{Field, glam::DVec2};
 
 /// What is wrong with a recipe of these nodes, whose height is the node `a`.
@@ -176,4 +176,131 @@ fn nodes_that_draw_by_one_name_see_the_same_points() {
     let at = |name: &str| plan.field(name).unwrap().sample(DVec2::new(0.3, 0.6));
     assert_eq!(at("a"), at("b"), "by the name of another");
     assert_ne!(at("a"), at("c"), "by their own names");
+}
+
+/// What a recipe of these nodes, within the limits, has too much of, and in which node.
+fn too_much(nodes: &str, limits: &PlanLimits) -> (&'static str, Option<String>) {
+    let text = format!("dapple = 1\n{nodes}\n[material]\n");
+    let recipe = Recipe::from_toml(&text).unwrap_or_else(|error| panic!("{nodes}: {error}"));
+    let error = Plan::new_within(&recipe, &Images::new(), 0.0, limits).expect_err(nodes);
+    let RecipeErrorKind::TooMuch { what, value, limit } = *error.kind() else {
+        panic!("{nodes}: {error}");
+    };
+    assert!(value > limit as f64, "{nodes}: {error}");
+    (what, error.node().map(str::to_owned))
+}
+
+#[test]
+fn a_recipe_that_asks_for_too_much_is_refused_before_the_work() {
+    let (points, cells) = ("control points", "cells of wavelet noise");
+    for (nodes, what) in [
+        ("a.noise.frequency = 100_000", points),
+        ("a.noise.octaves = 16", points),
+        ("a.pups.noise.spacing = 1e-9", points),
+        ("a.pups.octaves = { octaves = 16 }", points),
+        (
+            "a.pups.turbulence = { octaves = 3, lacunarity = 16, spacing = 0.01 }",
+            points,
+        ),
+        ("a.pups.cells.spacing = { count = 4_000_000_000 }", points),
+        ("a.pups.cellular_noise = { layers = 16 }", points),
+        ("a.pups.color_noise.spacing = { density = 1e8 }", points),
+        ("a.pups.cow.spacing = 1e-4", points),
+        (
+            "a.pups.space_giraffe = { spacing = 0.004, pairs = [256, 256] }",
+            points,
+        ),
+        ("a.pups.cow_progression.distances = [1e-4, 1e-4]", points),
+        (
+            "a.pups.giraffe_progression.distances = [1e-3, 1e-3]",
+            points,
+        ),
+        ("a.pups.label_ramp.spacing = 1e-4", points),
+        ("a.wavelet.frequency = 30_000", cells),
+        (
+            "a.noise = { basis = \"wavelet\", frequency = 30_000 }",
+            cells,
+        ),
+    ] {
+        let nodes = format!("[nodes]\n{nodes}");
+        let found = too_much(&nodes, &PlanLimits::default());
+        assert_eq!(found, (what, Some("a".to_owned())), "{nodes}");
+    }
+}
+
+#[test]
+fn the_work_of_all_nodes_counts_together() {
+    let limits = PlanLimits {
+        control_points: 1000,
+        ..PlanLimits::default()
+    };
+    let one = "[nodes]\na.pups.cow.spacing = { count = 600 }\n";
+    let text = format!("dapple = 1\n{one}[material]\n");
+    let recipe = Recipe::from_toml(&text).unwrap();
+    assert!(
+        Plan::new_within(&recipe, &Images::new(), 0.0, &limits).is_ok(),
+        "one alone"
+    );
+    let two = format!("{one}b.pups.cow.spacing = {{ count = 600 }}\n");
+    assert_eq!(
+        too_much(&two, &limits),
+        ("control points", Some("b".to_owned()))
+    );
+}
+
+#[test]
+fn warps_of_warps_are_refused_before_they_take_forever() {
+    // Each warp works out the one before it twice.
+    let chain = |count: u32, shift: fn(u32) -> String| {
+        let warp = |index: u32| {
+            let (before, shift) = (index - 1, shift(index - 1));
+            format!("n{index} = {{ warp = {{ input = \"n{before}\", x = {shift}, y = 0 }} }}\n")
+        };
+        let warps: String = (1..=count).map(warp).collect();
+        format!("[nodes]\nn0 = {{ coordinate = {{}} }}\n{warps}")
+    };
+    let limits = PlanLimits::default();
+    let doubled = chain(30, |before| format!("\"n{before}\""));
+    let (what, node) = too_much(&doubled, &limits);
+    assert_eq!(what, "values for each pixel", "{node:?}");
+    let deep = chain(33, |_| "0".to_owned());
+    let found = too_much(&deep, &limits);
+    assert_eq!(found, ("warps one under another", Some("n33".to_owned())));
+    let many = format!("[nodes]\na = {{ add = {:?} }}\n", vec![1; 5000]);
+    assert_eq!(too_much(&many, &limits).0, "values for each pixel");
+}
+
+#[test]
+fn pictures_that_are_seen_as_a_whole_are_limited_together() {
+    let text = "dapple = 1\n[nodes]\na.noise.octaves = 1\nb.tile = { input = \"a\" }\nc.tile = { input = \"b\" }\n[material]\nheight = \"c\"\n";
+    let recipe = Recipe::from_toml(text).unwrap();
+    let limits = PlanLimits {
+        pixels: 2 * 64 * 64,
+        ..PlanLimits::default()
+    };
+    let plan = Plan::new_within(&recipe, &Images::new(), 0.0, &limits).unwrap();
+    assert!(plan.whole([64, 64]).is_ok(), "two pictures");
+    let error = plan.whole([64, 65]).unwrap_err();
+    assert!(
+        matches!(error.kind(), RecipeErrorKind::TooMuch { limit: 8192, .. }),
+        "{error}"
+    );
+    assert_eq!(error.node(), Some("b"), "the first of them");
+}
+
+#[test]
+fn built_in_recipes_are_far_within_the_limits() {
+    let all = PlanLimits::default();
+    let limits = PlanLimits {
+        control_points: all.control_points / 16,
+        wavelet_cells: all.wavelet_cells / 16,
+        values: all.values / 16,
+        warps: all.warps / 16,
+        pixels: all.pixels / 16,
+    };
+    for name in Recipe::builtin_names() {
+        let recipe = Recipe::builtin(name).unwrap();
+        let plan = Plan::new_within(&recipe, &Images::new(), 0.0, &limits);
+        assert!(plan.is_ok(), "{name}: {:?}", plan.err());
+    }
 }

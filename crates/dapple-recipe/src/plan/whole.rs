@@ -68,7 +68,7 @@ impl Plan {
     }
 
     /// An error in the node of a step.
-    fn within(&self, index: usize, error: RecipeError) -> RecipeError {
+    pub(super) fn within(&self, index: usize, error: RecipeError) -> RecipeError {
         match self.names.iter().find(|&(_, &step)| step == index) {
             Some((name, _)) => error.within(name),
             None => error,
@@ -79,12 +79,16 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// What the crates of the nodes refuse, and [`Raster`](RecipeErrorKind::Raster) for a size that is too large.
+    /// What the crates of the nodes refuse, [`Raster`](RecipeErrorKind::Raster) for a size that is too large, and
+    /// [`TooMuch`](RecipeErrorKind::TooMuch) for more pixels in all than the limits of the plan allow.
     pub fn whole(&self, size: [u32; 2]) -> Result<Whole, RecipeError> {
         let globals = self.needed_globals();
-        if globals.is_empty() {
+        let Some(&first) = globals.first() else {
             return Ok(Whole::default());
-        }
+        };
+        self.limits
+            .check_pixels(globals.len(), size)
+            .map_err(|error| self.within(first, error))?;
         let window = Window::new(DVec2::ZERO, self.extent(), size)?;
         let mut whole = Whole {
             window: Some(window),

@@ -460,3 +460,18 @@ proptest! {
         prop_assert_eq!(back.mesh.faces(), soup.faces());
     }
 }
+
+#[test]
+fn normals_that_were_read_are_written_with_the_same_bits() {
+    let mut model = Model::from(mesh(
+        &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        &[[0, 1, 2]],
+    ));
+    for index in 0..100 {
+        let along = DVec3::new(f64::from(index), 100.0 - f64::from(index), 46.756);
+        model.normals = Some(vec![along; 3]);
+        let once = read(&write(&model).expect("it is valid")).expect("it is valid");
+        let twice = read(&write(&once).expect("it is valid")).expect("it is valid");
+        assert_eq!(once.normals, twice.normals, "{along}");
+    }
+}

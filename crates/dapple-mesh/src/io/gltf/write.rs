@@ -94,7 +94,7 @@ fn primitive(model: &Model, bin: &mut Bin) -> Value {
     if let Some(mut normals) = model.normals.clone().or_else(computed) {
         normals
             .iter_mut()
-            .for_each(|normal| *normal = normal.normalize_or(DVec3::Z));
+            .for_each(|normal| *normal = unit(*normal));
         attributes.insert("NORMAL".into(), bin.floats(&spread(&normals)).into());
     }
     if let Some(colors) = &model.colors {
@@ -158,6 +158,16 @@ fn is_open(mesh: &Mesh) -> bool {
     edges
         .chunk_by(|a, b| a.ends == b.ends)
         .any(|same| same.len() == 1)
+}
+
+/// A normal at unit length. One that is, but for the rounding to single precision, stays as it is, so that what was read is
+/// written with the same bits.
+fn unit(normal: DVec3) -> DVec3 {
+    if (normal.length_squared() - 1.0).abs() < 1e-6 {
+        normal
+    } else {
+        normal.normalize_or(DVec3::Z)
+    }
 }
 
 fn narrow(part: f64) -> f32 {

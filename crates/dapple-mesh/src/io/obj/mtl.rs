@@ -4,8 +4,9 @@ use super::super::Beside;
 use super::super::line::{Line, lines};
 use super::super::text::parse;
 use super::{joined_words, name};
-use crate::{EncodedImage, Material};
+use crate::{EncodedImage, Material, MeshError};
 use dapple_color::{LinearRgb, LinearRgba};
+use glam::DVec3;
 
 #[derive(Default)]
 struct Entry {
@@ -17,31 +18,33 @@ struct Entry {
 }
 
 /// The material of a name, or without a name the first, in the libraries that there are.
+///
+/// Fails for a color that single precision cannot hold, in whichever material of the libraries it is.
 pub(super) fn material(
     libraries: &[String],
     name: Option<&str>,
     beside: &mut Beside<'_>,
-) -> Material {
+) -> Result<Material, MeshError> {
     let mut entries = Vec::new();
     for library in libraries {
         // A name may have spaces, and a line may have several names.
         let found = beside(library).map(|bytes| vec![bytes]);
         let found = found.unwrap_or_else(|| library.split(' ').filter_map(&mut *beside).collect());
         for bytes in found {
-            read(&bytes, &mut entries);
+            read(&bytes, &mut entries)?;
         }
     }
     let entry = match name {
         Some(name) => entries.iter().find(|entry| entry.name == name),
         None => entries.first(),
     };
-    entry
+    Ok(entry
         .map(|entry| entry.material(beside))
-        .unwrap_or_default()
+        .unwrap_or_default())
 }
 
-/// Adds the materials of a library. What is wrong with a line only loses that line.
-fn read(bytes: &[u8], entries: &mut Vec<Entry>) {
+/// Adds the materials of a library. A line that is not understood is passed over.
+fn read(bytes: &[u8], entries: &mut Vec<Entry>) -> Result<(), MeshError> {
     for line in lines("MTL", bytes) {
         if line.words[0] == b"newmtl" {
             let name = name(&line);
@@ -50,17 +53,18 @@ fn read(bytes: &[u8], entries: &mut Vec<Entry>) {
                 ..Entry::default()
             });
         } else if let Some(entry) = entries.last_mut() {
-            entry.add(&line);
+            entry.add(&line)?;
         }
     }
+    Ok(())
 }
 
 impl Entry {
-    fn add(&mut self, line: &Line<'_>) {
+    fn add(&mut self, line: &Line<'_>) -> Result<(), MeshError> {
         match line.words[0] {
             b"Kd" => {
-                let color = line.vector(1).ok().filter(|color| color.is_finite());
-                self.diffuse = color.map(|color| color.as_vec3().to_array().into());
+                let color = line.vector(1).ok().filter(|color| !color.is_nan());
+                self.diffuse = color.map(|color| diffuse(color, line)).transpose()?;
             }
             b"d" => {
                 let alpha = line.number(1).ok().filter(|alpha| !alpha.is_nan());
@@ -70,6 +74,7 @@ impl Entry {
             b"norm" => self.normal_map = file_name(line),
             _ => {}
         }
+        Ok(())
     }
 
     fn material(&self, beside: &mut Beside<'_>) -> Material {
@@ -89,6 +94,20 @@ impl Entry {
             base_color,
             normal,
             ..Material::default()
+        }
+    }
+}
+
+/// The color of a `Kd`, if single precision holds it.
+fn diffuse(color: DVec3, line: &Line<'_>) -> Result<LinearRgb, MeshError> {
+    let parts = color.as_vec3().to_array();
+    match parts.iter().position(|part| !part.is_finite()) {
+        None => Ok(parts.into()),
+        Some(at) => {
+            let (part, limit) = (color[at], f32::MAX);
+            Err(line.error(format!(
+                "a part of Kd is {part:e}, but the limit is {limit:e}"
+            )))
         }
     }
 }

@@ -193,6 +193,24 @@ fn several_libraries_of_one_line_are_found() {
 }
 
 #[test]
+fn a_diffuse_color_beyond_single_precision_is_refused() {
+    let text = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+    let read = |kd: &str| {
+        let library = format!("newmtl a\nKd {kd}\n").into_bytes();
+        read_with(text, &mut |_| Some(library.clone()))
+    };
+    for kd in ["0 1e300 0", "1e39 0 0", "0 0 -inf", "0 0 1e400"] {
+        let error = read(kd).expect_err(kd);
+        assert!(
+            matches!(error.kind(), MeshErrorKind::File { format: "MTL", why } if why.contains("line 2") && why.contains("3.4028235e38")),
+            "{kd}: {error}"
+        );
+    }
+    let model = read("0 3e38 0").expect("it is finite");
+    assert!(model.check().is_ok(), "what is read can be written");
+}
+
+#[test]
 fn files_of_a_model_read_back_as_the_same() {
     let mut model = Model::from(cube());
     let count = model.mesh.positions().len();

@@ -1,0 +1,83 @@
+//! The step `fuzz`: libFuzzer, for some seconds on each target of `tests/fuzz`.
+//!
+//! It needs nightly Rust and cargo-fuzz, and neither is installed here: where one is missing, the step says so and is
+//! skipped. What libFuzzer found and what it learned stays in `target/fuzz`.
+
+use anyhow::Context;
+use std::path::Path;
+use xshell::{Shell, cmd};
+
+/// How long each target runs, in seconds.
+const SECONDS: &str = "10";
+
+/// How long one input may take, in seconds; most take less than a thousandth of that.
+const SECONDS_OF_AN_INPUT: &str = "10";
+
+/// How much memory one input may take, in MiB.
+const MEMORY: &str = "2048";
+
+/// Runs every fuzz target, and stops at the first that finds something.
+pub(super) fn fuzz(shell: &Shell) -> anyhow::Result<()> {
+    if let Some(missing) = missing(shell) {
+        crate::say(&format!("skipped: {missing}"));
+        return Ok(());
+    }
+    let folder = shell.current_dir().join("target/fuzz");
+    let seeds = folder.join("seeds");
+    cmd!(
+        shell,
+        "cargo test --quiet --package dapple-tests --test hostile inputs_are_written"
+    )
+    .env("DAPPLE_FUZZ_SEEDS", &seeds)
+    .run()?;
+    for target in targets(shell)? {
+        run(shell, &folder, &target).with_context(|| format!("the fuzz target `{target}`"))?;
+    }
+    Ok(())
+}
+
+/// What is missing, as a sentence.
+fn missing(shell: &Shell) -> Option<&'static str> {
+    let works = |command: xshell::Cmd<'_>| {
+        let output = command.quiet().ignore_status().ignore_stderr().output();
+        output.is_ok_and(|output| output.status.success())
+    };
+    // Only where rustup is, `+nightly` names a toolchain, and rustup may not fetch it.
+    if !works(cmd!(shell, "cargo +nightly --version").env("RUSTUP_AUTO_INSTALL", "0")) {
+        return Some("there is no nightly Rust");
+    }
+    if !works(cmd!(shell, "cargo fuzz --version")) {
+        return Some("there is no cargo-fuzz");
+    }
+    None
+}
+
+/// The names of the targets: a file for each.
+fn targets(shell: &Shell) -> anyhow::Result<Vec<String>> {
+    let files = shell.read_dir("tests/fuzz/targets")?;
+    let stem = |path: &std::path::PathBuf| Some(path.file_stem()?.to_str()?.to_owned());
+    Ok(files.iter().filter_map(stem).collect())
+}
+
+fn run(shell: &Shell, folder: &Path, target: &str) -> anyhow::Result<()> {
+    crate::say(&format!("-- {target}"));
+    let (learned, seeds) = (
+        folder.join("learned").join(target),
+        folder.join("seeds").join(target),
+    );
+    let findings = folder.join("findings");
+    shell.create_dir(&learned)?;
+    shell.create_dir(&findings)?;
+    let prefix = format!("-artifact_prefix={}/{target}-", findings.display());
+    let built = folder.join("build");
+    // Without a sanitizer of addresses: nothing of ours is unsafe, and it takes half of the time.
+    let fuzz = cmd!(
+        shell,
+        "cargo +nightly fuzz run --fuzz-dir tests/fuzz --target-dir {built} --sanitizer none {target} {learned} {seeds}"
+    )
+    .args(["--", "-max_len=4096", "-print_funcs=0", "-verbosity=0", &prefix])
+    .arg(format!("-max_total_time={SECONDS}"))
+    .arg(format!("-timeout={SECONDS_OF_AN_INPUT}"))
+    .arg(format!("-rss_limit_mb={MEMORY}"));
+    Ok(fuzz.quiet().run()?)
+}
