@@ -24,9 +24,11 @@ pub(super) fn fuzz(shell: &Shell) -> anyhow::Result<()> {
     }
     let folder = shell.current_dir().join("target/fuzz");
     let seeds = folder.join("seeds");
+    // As a part of the whole workspace, so that what its tests have built is used again.
+    let write_seeds = "inputs_are_written";
     cmd!(
         shell,
-        "cargo test --quiet --package dapple-tests --test hostile inputs_are_written"
+        "cargo test --quiet --workspace --test hostile {write_seeds}"
     )
     .env("DAPPLE_FUZZ_SEEDS", &seeds)
     .run()?;
@@ -75,7 +77,7 @@ fn run(shell: &Shell, folder: &Path, target: &str) -> anyhow::Result<()> {
         shell,
         "cargo +nightly fuzz run --fuzz-dir tests/fuzz --target-dir {built} --sanitizer none {target} {learned} {seeds}"
     )
-    .args(["--", "-max_len=4096", "-print_funcs=0", "-verbosity=0", &prefix])
+    .args(["--", "-seed=1996", "-max_len=4096", "-print_funcs=0", "-verbosity=0", &prefix])
     .arg(format!("-max_total_time={SECONDS}"))
     .arg(format!("-timeout={SECONDS_OF_AN_INPUT}"))
     .arg(format!("-rss_limit_mb={MEMORY}"));

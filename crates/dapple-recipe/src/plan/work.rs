@@ -32,8 +32,8 @@ pub struct PlanLimits {
     pub control_points: u64,
     /// Cells of the tiles of all wavelet noise together; 2^24 by default, such as a tile of 4096 × 4096.
     pub wavelet_cells: u64,
-    /// Values that are worked out for each pixel: one for each node and for each number or color that is an input. What is under a warp, or under
-    /// a node that sees the whole tile, counts once more for each of these. 4096 by default.
+    /// Values that are worked out for each pixel: one for each node and for each number or color that is an input. What is
+    /// under a warp, or under a node that sees the whole tile, counts once more for each of these. 4096 by default.
     pub values: u64,
     /// How many warps may lie one under another; 32 by default.
     pub warps: u64,
