@@ -61,6 +61,18 @@ impl RasterError {
         Self { kind }
     }
 
+    /// Refuses memory for another number of values than are needed; for those who write a [`Field`](crate::Field).
+    ///
+    /// # Errors
+    ///
+    /// [`Length`](RasterErrorKind::Length) if the numbers differ.
+    pub fn check_length(length: usize, needed: usize) -> Result<(), Self> {
+        if length == needed {
+            return Ok(());
+        }
+        Err(Self::new(RasterErrorKind::Length { length, needed }))
+    }
+
     /// The limit that was broken.
     #[must_use]
     pub fn kind(&self) -> &RasterErrorKind {

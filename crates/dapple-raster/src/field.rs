@@ -1,6 +1,6 @@
 //! The door that everything with a value at every position shares.
 
-use crate::{Raster, RasterError, RasterErrorKind, RasterViewMut, Window};
+use crate::{Raster, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
 /// A scalar function of the plane that can also fill a window.
@@ -36,10 +36,7 @@ pub trait Field: Send + Sync {
     ///
     /// [`RasterErrorKind::Length`] if the lengths differ.
     fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
-        if positions.len() != values.len() {
-            let (length, needed) = (values.len(), positions.len());
-            return Err(RasterError::new(RasterErrorKind::Length { length, needed }));
-        }
+        RasterError::check_length(values.len(), positions.len())?;
         for (value, &position) in values.iter_mut().zip(positions) {
             *value = self.sample(position);
         }

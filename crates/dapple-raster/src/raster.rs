@@ -23,12 +23,7 @@ impl<T> Raster<T> {
     pub fn from_vec(size: [u32; 2], data: Vec<T>) -> Result<Self, RasterError> {
         check_size(size)?;
         let needed = size[0] as usize * size[1] as usize;
-        if data.len() != needed {
-            return Err(RasterError::new(RasterErrorKind::Length {
-                length: data.len(),
-                needed,
-            }));
-        }
+        RasterError::check_length(data.len(), needed)?;
         Ok(Self { data, size })
     }
 

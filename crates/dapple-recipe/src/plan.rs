@@ -13,6 +13,7 @@ mod step;
 mod whole;
 mod work;
 
+pub(crate) use evaluate::Known;
 pub use fields::{NodeColors, NodeField};
 pub(crate) use generate::Generator;
 pub(crate) use order::{order, unknown};
@@ -26,8 +27,9 @@ use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
 use indexmap::IndexMap;
+use std::ops::Range;
 use std::sync::Arc;
-use step::Step;
+use step::{Step, needed};
 use work::{Work, check_steps};
 
 /// What a node makes: numbers or colors, with one value for each position.
@@ -209,14 +211,30 @@ impl Plan {
     }
 
     /// The values of steps at the pixels of a window, in the order of the steps, on all cores where the feature `rayon` is
-    /// on.
+    /// on. Some steps may be known there.
     pub(crate) fn values(
         &self,
         whole: &Whole,
         window: &Window,
         wanted: &[usize],
+        known: &Known,
     ) -> Result<Vec<Values>, RecipeError> {
-        evaluate::window(&self.steps, whole, window, wanted)
+        evaluate::window(&self.steps, whole, window, wanted, known)
+    }
+
+    /// The steps on the way to `wanted` that the height is made of, too. Who knows them needs nothing of what they have in
+    /// common any more.
+    pub(crate) fn shared_with_height(&self, wanted: &[usize]) -> Vec<usize> {
+        let of_height = needed(&self.steps, &[self.channels.height], |_| false);
+        let is_shared = |index: usize| {
+            // A constant is made as soon as it is copied, and what sees the whole tile lies ready.
+            let step = &self.steps[index];
+            let is_ready = matches!(step, Step::Number(_) | Step::Color(_) | Step::Global(..));
+            !is_ready && of_height.binary_search(&index).is_ok()
+        };
+        let mut steps = needed(&self.steps, wanted, is_shared);
+        steps.retain(|&index| is_shared(index));
+        steps
     }
 
     pub(crate) fn material(&self) -> &Material {
@@ -264,6 +282,23 @@ impl Values {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Some of them.
+    pub(crate) fn part(&self, range: Range<usize>) -> Self {
+        match self {
+            Self::Numbers(numbers) => Self::Numbers(numbers[range].to_vec()),
+            Self::Colors(colors) => Self::Colors(colors[range].to_vec()),
+        }
+    }
+
+    /// These, and more of the same kind behind them.
+    pub(crate) fn append(&mut self, more: &Self) {
+        match (self, more) {
+            (Self::Numbers(numbers), Self::Numbers(more)) => numbers.extend_from_slice(more),
+            (Self::Colors(colors), Self::Colors(more)) => colors.extend_from_slice(more),
+            _ => unreachable!("a step makes numbers or colors, always the same"),
+        }
     }
 }
 

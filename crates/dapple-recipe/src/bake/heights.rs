@@ -1,9 +1,15 @@
-//! The heights of a band and of a margin about it.
+//! The heights of a band and of a margin about it, with what other maps are made of, too.
 
 use super::MapKind;
-use super::maps::{curvature_options, occlusion_options};
+use super::maps::{beside_height, curvature_options, occlusion_options};
+use crate::plan::Known;
 use crate::{Plan, RecipeError, Values, Whole};
-use dapple_raster::{Raster, Window};
+use dapple_raster::{Raster, RasterError, Window};
+use std::sync::Arc;
+
+/// The most pixels of a band with its margin for which more than the heights is kept: eight times those of a usual band,
+/// which take 32 MiB for each step. Past that, the other maps work everything out for themselves.
+const SHARED_PIXELS: usize = 1 << 23;
 
 /// Heights, of which those that two bands share are made once.
 #[derive(Clone, Debug)]
@@ -12,14 +18,25 @@ pub(super) struct Heights {
     wanted: bool,
     /// How far the maps look, in pixels.
     halo: [u32; 2],
-    /// Those of the last band, with their window.
-    last: Option<(Window, Raster<f32>)>,
+    /// The steps on the way to the height that other maps are made of, too.
+    shared: Vec<usize>,
+    /// The lowest rows of the last band, which the margin of the next one begins with.
+    last: Option<Rows>,
+}
+
+/// The values of some steps at the pixels of a window.
+#[derive(Clone, Debug)]
+struct Rows {
+    window: Window,
+    values: Vec<Values>,
 }
 
 /// The heights of a band with a margin.
 pub(super) struct Margined {
     pub(super) raster: Option<Raster<f32>>,
     pub(super) halo: [u32; 2],
+    /// What other maps are made of, too, in the band itself.
+    pub(super) shared: Box<Known>,
 }
 
 impl Heights {
@@ -27,6 +44,7 @@ impl Heights {
         let mut heights = Self {
             wanted: false,
             halo: [0; 2],
+            shared: plan.shared_with_height(&beside_height(plan, maps)),
             last: None,
         };
         for map in maps {
@@ -52,41 +70,131 @@ impl Heights {
     ) -> Result<Margined, RecipeError> {
         let halo = self.halo;
         if !self.wanted {
-            return Ok(Margined { raster: None, halo });
+            return Ok(Margined {
+                raster: None,
+                halo,
+                shared: Box::default(),
+            });
         }
         let window = Window {
             first: [0, 1].map(|axis| band.first[axis].saturating_sub(halo[axis].into())),
             size: [0, 1].map(|axis| band.size[axis].saturating_add(halo[axis].saturating_mul(2))),
             ..*band
         };
-        let shared = self.last.take().map_or_else(Vec::new, |(last, raster)| {
-            let from = window.first[1] - last.first[1];
-            let rows = u32::try_from(from).ok().filter(|&from| from < last.size[1]);
-            rows.map_or_else(Vec::new, |from| {
-                let first = from as usize * last.size[0] as usize;
-                raster.pixels()[first..].to_vec()
-            })
-        });
-        let shared_rows = (shared.len() / window.size[0] as usize) as u32;
-        let rest = Window {
-            first: [window.first[0], window.first[1] + i64::from(shared_rows)],
-            size: [window.size[0], window.size[1] - shared_rows],
-            ..window
-        };
-        let mut pixels = shared;
-        if rest.size[1] > 0 {
-            let made = plan.values(whole, &rest, &[plan.channels().height])?;
-            if let Some(Values::Numbers(numbers)) = made.into_iter().next() {
-                pixels.extend(numbers);
-            }
+        let mut steps = vec![plan.channels().height];
+        if window.n_pixels() <= SHARED_PIXELS {
+            steps.extend(&self.shared);
         }
-        let raster = Raster::from_vec(window.size, pixels)?;
+        let last = self.last.take();
+        let mut rows = last
+            .filter(|last| last.values.len() == steps.len())
+            .and_then(|last| last.rows_from(window.first[1]))
+            .unwrap_or_else(|| Rows::none(&window));
+        rows.complete(plan, whole, &window, &steps)?;
         if halo[1] > 0 {
-            self.last = Some((window, raster.clone()));
+            let next = band.first[1].saturating_add(band.size[1].into());
+            self.last = rows.rows_from(next.saturating_sub(halo[1].into()));
         }
+        let mut values = rows.values.into_iter();
+        let heights = match values.next() {
+            Some(Values::Numbers(heights)) => heights,
+            _ => Vec::new(),
+        };
+        let in_band = |(&step, values)| Ok((step, Arc::new(cropped(values, &window, halo, band)?)));
         Ok(Margined {
-            raster: Some(raster),
+            raster: Some(Raster::from_vec(window.size, heights)?),
             halo,
+            shared: steps[1..]
+                .iter()
+                .zip(values)
+                .map(in_band)
+                .collect::<Result<_, RasterError>>()?,
         })
     }
+}
+
+impl Rows {
+    /// No rows yet, above those of the window.
+    fn none(window: &Window) -> Self {
+        let [width, _] = window.size;
+        Self {
+            window: Window {
+                size: [width, 0],
+                ..*window
+            },
+            values: Vec::new(),
+        }
+    }
+
+    /// The rows from one on, if that is among them.
+    fn rows_from(&self, first: i64) -> Option<Self> {
+        let [width, rows] = self.window.size;
+        let above = u32::try_from(first.checked_sub(self.window.first[1])?).ok()?;
+        let left = rows.checked_sub(above).filter(|&left| left > 0)?;
+        let pixels = above as usize * width as usize..rows as usize * width as usize;
+        Some(Self {
+            window: Window {
+                first: [self.window.first[0], first],
+                size: [width, left],
+                ..self.window
+            },
+            values: self
+                .values
+                .iter()
+                .map(|values| values.part(pixels.clone()))
+                .collect(),
+        })
+    }
+
+    /// Makes the rows of the window that are below these.
+    fn complete(
+        &mut self,
+        plan: &Plan,
+        whole: &Whole,
+        window: &Window,
+        steps: &[usize],
+    ) -> Result<(), RecipeError> {
+        let [width, made] = self.window.size;
+        let rest = Window {
+            first: [window.first[0], window.first[1] + i64::from(made)],
+            size: [width, window.size[1] - made],
+            ..*window
+        };
+        if rest.size[1] > 0 {
+            let below = plan.values(whole, &rest, steps, &[])?;
+            if self.values.is_empty() {
+                self.values = below;
+            } else {
+                for (values, below) in self.values.iter_mut().zip(&below) {
+                    values.append(below);
+                }
+            }
+        }
+        self.window = *window;
+        Ok(())
+    }
+}
+
+/// The values of a window without its margin.
+fn cropped(
+    values: Values,
+    window: &Window,
+    halo: [u32; 2],
+    band: &Window,
+) -> Result<Values, RasterError> {
+    if halo == [0; 2] {
+        return Ok(values);
+    }
+    Ok(match values {
+        Values::Numbers(numbers) => Values::Numbers(
+            Raster::from_vec(window.size, numbers)?
+                .crop(halo, band.size)?
+                .into_pixels(),
+        ),
+        Values::Colors(colors) => Values::Colors(
+            Raster::from_vec(window.size, colors)?
+                .crop(halo, band.size)?
+                .into_pixels(),
+        ),
+    })
 }

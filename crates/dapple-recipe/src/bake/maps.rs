@@ -161,6 +161,19 @@ pub(super) fn curvature_options(plan: &Plan) -> Result<CurvatureOptions, RecipeE
     })
 }
 
+/// The steps that are maps themselves, in the order of the maps: all but those that are made of the height.
+pub(super) fn beside_height(plan: &Plan, kinds: &[MapKind]) -> Vec<usize> {
+    let channels = plan.channels();
+    let of_kind = |kind: &MapKind| match kind {
+        MapKind::Albedo => vec![channels.albedo],
+        MapKind::Roughness => vec![channels.roughness],
+        MapKind::Metallic => vec![channels.metallic],
+        MapKind::Orm => vec![channels.roughness, channels.metallic],
+        MapKind::Height | MapKind::Normal | MapKind::Occlusion | MapKind::Curvature => Vec::new(),
+    };
+    kinds.iter().flat_map(of_kind).collect()
+}
+
 /// The maps of a band, of which the heights are known.
 pub(super) fn maps(
     plan: &Plan,
@@ -170,16 +183,10 @@ pub(super) fn maps(
     heights: &Margined,
     kinds: &[MapKind],
 ) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
-    let channels = plan.channels();
-    let of_kind = |kind: &MapKind| match kind {
-        MapKind::Albedo => vec![channels.albedo],
-        MapKind::Roughness => vec![channels.roughness],
-        MapKind::Metallic => vec![channels.metallic],
-        MapKind::Orm => vec![channels.roughness, channels.metallic],
-        MapKind::Height | MapKind::Normal | MapKind::Occlusion | MapKind::Curvature => Vec::new(),
-    };
-    let wanted: Vec<usize> = kinds.iter().flat_map(of_kind).collect();
-    let mut values = plan.values(whole, band, &wanted)?.into_iter();
+    let wanted = beside_height(plan, kinds);
+    let mut values = plan
+        .values(whole, band, &wanted, &heights.shared)?
+        .into_iter();
     let mut local = || values.next().unwrap_or(Values::Numbers(Vec::new()));
     let mut around = Around {
         plan,

@@ -189,6 +189,24 @@ fn a_wide_bake_in_many_bands_has_the_bits_of_its_regions() {
     }
 }
 
+#[test]
+fn what_maps_share_with_the_height_has_the_bits_that_it_has_alone() {
+    let plan = plan(ALL_NODES);
+    let shared = plan.shared_with_height(&[plan.channels().albedo]);
+    assert!(!shared.is_empty(), "the colors are made of the height");
+    let maps = vec![MapKind::Albedo, MapKind::Roughness, MapKind::Metallic];
+    // In one band, and in several.
+    for size in [[97, 71], [40_000, 60]] {
+        let alone = BakeOptions {
+            maps: maps.clone(),
+            ..options(size)
+        };
+        let mut beside = alone.clone();
+        beside.maps.push(MapKind::Normal);
+        assert!(bake(&plan, &beside)[..3] == bake(&plan, &alone), "{size:?}");
+    }
+}
+
 #[cfg(feature = "rayon")]
 #[test]
 fn a_bake_has_the_same_bits_on_any_number_of_threads() {

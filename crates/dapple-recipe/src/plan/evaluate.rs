@@ -38,16 +38,25 @@ impl Places<'_> {
     }
 }
 
+/// Steps with their values, which were made before.
+pub(crate) type Known = [(usize, Arc<Values>)];
+
 /// The values of the steps `wanted`, in their order.
 pub(super) fn evaluate(
     steps: &[Step],
     whole: Option<&Whole>,
     places: Places<'_>,
     wanted: &[usize],
+    known: &Known,
 ) -> Result<Vec<Arc<Values>>, RecipeError> {
     let mut values: Vec<Option<Arc<Values>>> = vec![None; steps.len()];
-    for index in needed(steps, wanted) {
-        values[index] = Some(Arc::new(step(steps, whole, places, index, &values)?));
+    for (index, known) in known {
+        values[*index] = Some(known.clone());
+    }
+    for index in needed(steps, wanted, |index| values[index].is_some()) {
+        if values[index].is_none() {
+            values[index] = Some(Arc::new(step(steps, whole, places, index, &values)?));
+        }
     }
     let value = |&index: &usize| values[index].clone().expect("what is wanted is needed");
     Ok(wanted.iter().map(value).collect())
@@ -62,6 +71,7 @@ pub(super) fn window(
     whole: &Whole,
     window: &Window,
     wanted: &[usize],
+    known: &Known,
 ) -> Result<Vec<Values>, RecipeError> {
     if wanted.is_empty() {
         return Ok(Vec::new());
@@ -78,7 +88,18 @@ pub(super) fn window(
             size: [width, rows.min(height - first)],
             ..*window
         };
-        evaluate(steps, Some(whole), Places::Window(&part), wanted)
+        let pixels =
+            first as usize * width as usize..(first + part.size[1]) as usize * width as usize;
+        let known = known
+            .iter()
+            .map(|(index, values)| (*index, Arc::new(values.part(pixels.clone()))));
+        evaluate(
+            steps,
+            Some(whole),
+            Places::Window(&part),
+            wanted,
+            &known.collect::<Vec<_>>(),
+        )
     };
     let chunks = 0..height.div_ceil(rows);
     #[cfg(feature = "rayon")]
@@ -88,29 +109,20 @@ pub(super) fn window(
     };
     #[cfg(not(feature = "rayon"))]
     let chunks: Result<Vec<_>, _> = chunks.map(chunk).collect();
-    Ok(join(&chunks?))
+    Ok(join(chunks?))
 }
 
 /// The values of all chunks, one after the other, for each of the steps.
-fn join(chunks: &[Vec<Arc<Values>>]) -> Vec<Values> {
-    let steps = chunks.first().map_or(0, Vec::len);
-    let of_step = |step: usize| {
-        let parts = chunks.iter().map(|chunk| chunk[step].as_ref());
-        let mut numbers = Vec::new();
-        let mut colors = Vec::new();
-        for part in parts {
-            match part {
-                Values::Numbers(more) => numbers.extend_from_slice(more),
-                Values::Colors(more) => colors.extend_from_slice(more),
-            }
+fn join(chunks: Vec<Vec<Arc<Values>>>) -> Vec<Values> {
+    let mut chunks = chunks.into_iter();
+    let first = chunks.next().unwrap_or_default();
+    let mut all: Vec<Values> = first.into_iter().map(Arc::unwrap_or_clone).collect();
+    for chunk in chunks {
+        for (all, more) in all.iter_mut().zip(&chunk) {
+            all.append(more);
         }
-        if colors.is_empty() {
-            Values::Numbers(numbers)
-        } else {
-            Values::Colors(colors)
-        }
-    };
-    (0..steps).map(of_step).collect()
+    }
+    all
 }
 
 fn step(
@@ -158,7 +170,7 @@ fn step(
         } => {
             let [x, y] = [made(&by[0]), made(&by[1])];
             let shifted = shifted(places.positions(), x, y, *amount);
-            let input = evaluate(steps, whole, Places::Positions(&shifted), &[*input])?;
+            let input = evaluate(steps, whole, Places::Positions(&shifted), &[*input], &[])?;
             Ok(Values::clone(&input[0]))
         }
         Step::Global(..) => match whole {

@@ -31,7 +31,7 @@ impl NodeField {
     }
 
     fn values(&self, places: Places<'_>) -> Option<Arc<Values>> {
-        evaluate(&self.steps, None, places, &[self.step])
+        evaluate(&self.steps, None, places, &[self.step], &[])
             .ok()?
             .pop()
     }
@@ -54,10 +54,7 @@ impl Field for NodeField {
     }
 
     fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
-        if positions.len() != values.len() {
-            // The same refusal as that of the trait.
-            return Empty.sample_many(positions, values);
-        }
+        RasterError::check_length(values.len(), positions.len())?;
         self.fill(Places::Positions(positions), values);
         Ok(())
     }
@@ -70,15 +67,6 @@ impl Field for NodeField {
             line.copy_from_slice(values.row(row));
         }
         Ok(())
-    }
-}
-
-/// Nothing, for what the trait does by itself.
-struct Empty;
-
-impl Field for Empty {
-    fn sample(&self, _: DVec2) -> f32 {
-        f32::NAN
     }
 }
 
@@ -112,7 +100,7 @@ impl NodeColors {
     }
 
     fn colors(&self, places: Places<'_>) -> Vec<LinearRgb> {
-        let values = evaluate(&self.steps, None, places, &[self.step])
+        let values = evaluate(&self.steps, None, places, &[self.step], &[])
             .ok()
             .and_then(|mut values| values.pop());
         match values.as_deref() {

@@ -97,12 +97,16 @@ impl Step {
 }
 
 /// The steps that are needed for others, in their order. What a warp asks elsewhere is not needed here, and what sees the
-/// whole tile has been evaluated before.
-pub(super) fn needed(steps: &[Step], wanted: &[usize]) -> Vec<usize> {
+/// whole tile has been evaluated before; nor is what only those need that are known.
+pub(super) fn needed(
+    steps: &[Step],
+    wanted: &[usize],
+    is_known: impl Fn(usize) -> bool,
+) -> Vec<usize> {
     let mut needed = vec![false; steps.len()];
     wanted.iter().for_each(|&index| needed[index] = true);
     for index in (0..steps.len()).rev() {
-        if needed[index] {
+        if needed[index] && !is_known(index) {
             match &steps[index] {
                 Step::Warp { by, .. } => by.iter().for_each(|&input| needed[input] = true),
                 Step::Global(..) => {}

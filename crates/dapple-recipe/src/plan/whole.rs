@@ -117,7 +117,7 @@ impl Plan {
                 rule: "only some nodes see the whole tile",
             }));
         };
-        let made = self.values(whole, window, inputs)?;
+        let made = self.values(whole, window, inputs, &[])?;
         let made: Vec<&Values> = made.iter().collect();
         let values = match global {
             Global::Tile(seamless) => {

@@ -226,7 +226,7 @@ impl Values {
             Step::Global(_, inputs, _) => inputs.clone(),
             _ => Vec::new(),
         };
-        let under = needed(before, &apart);
+        let under = needed(before, &apart, |_| false);
         self.under
             .push(under.iter().map(|&index| 1.0 + self.under[index]).sum());
         let warps = under
