@@ -111,6 +111,9 @@ impl SeamReport {
     /// The seam ratios that a tile needs to [pass](Self::passes).
     pub const ACCEPTED: [f64; 2] = [0.8, 1.25];
 
+    /// How far from the seam, in pixels, the ratios are that a tile needs to [pass](Self::passes).
+    pub const JUDGED: [u32; 2] = [1, 4];
+
     /// The largest ratio that is told: what is larger, or infinite, is told as this.
     pub const MOST: f64 = 1e9;
 
@@ -169,7 +172,7 @@ impl SeamReport {
         let mut judged = self
             .seams
             .iter()
-            .filter(|seam| [1, 4].contains(&seam.width));
+            .filter(|seam| Self::JUDGED.contains(&seam.width));
         judged.all(accepted)
     }
 

@@ -12,12 +12,18 @@ const NOTHING: &str = "-";
 impl fmt::Display for SeamReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;
-        let verdict = if self.passes() {
-            "passes"
+        write!(f, "a tile of {width} × {height} pixels: ")?;
+        if self.passes() {
+            writeln!(f, "passes")?;
         } else {
-            "does not pass"
-        };
-        writeln!(f, "a tile of {width} × {height} pixels: {verdict}")?;
+            let [least, most] = Self::ACCEPTED;
+            let [near, far] = Self::JUDGED;
+            writeln!(f, "does not pass")?;
+            writeln!(
+                f,
+                "  (it would with ratios of both from {least} to {most} at {near} and at {far} px)"
+            )?;
+        }
         write!(f, "{:<22}", "seam ratio")?;
         for axis in ["x", "y", "both"] {
             write!(f, "{axis:>CELL$}")?;
