@@ -45,7 +45,8 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask bench")]
 struct Arguments {
-    /// Groups (pups, points, graph, worley, wavelet, tile, mesh, synth), or parts of the names of cases or peers; all of them by default.
+    /// Groups (pups, points, graph, worley, wavelet, tile, mesh, synth), or parts of the names of cases or peers; all
+    /// of them by default.
     filters: Vec<String>,
     /// Writes the rows as JSON to this file.
     #[arg(long, value_name = "FILE")]

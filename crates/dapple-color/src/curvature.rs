@@ -113,7 +113,8 @@ pub fn curvature(
 
 /// As [`curvature`] for a part of a raster of `whole` pixels, whose extent is that of the options.
 ///
-/// Every pixel that is further from the edges of the part than the [halo](CurvatureOptions::halo) of the whole has the bits that it has in the whole.
+/// Every pixel that is further from the edges of the part than the [halo](CurvatureOptions::halo) of the whole has the
+/// bits that it has in the whole.
 ///
 /// # Errors
 ///

@@ -107,8 +107,8 @@ impl NormalOptions {
 ///
 /// # Errors
 ///
-/// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength is NaN or infinite, [`Extent`](crate::ColorErrorKind::Extent) if the extent is not
-/// above zero and finite.
+/// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength is NaN or infinite,
+/// [`Extent`](crate::ColorErrorKind::Extent) if the extent is not above zero and finite.
 ///
 /// # Examples
 ///
@@ -173,8 +173,8 @@ pub fn normal_map_of_part(
 ///
 /// # Errors
 ///
-/// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength is NaN or infinite, [`Extent`](crate::ColorErrorKind::Extent) if the extent is not
-/// above zero and finite.
+/// [`NotFinite`](crate::ColorErrorKind::NotFinite) if the strength is NaN or infinite,
+/// [`Extent`](crate::ColorErrorKind::Extent) if the extent is not above zero and finite.
 pub fn normal_map_from_gradient(
     gradient: &Raster<[f32; 2]>,
     options: &NormalOptions,

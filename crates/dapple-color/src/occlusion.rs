@@ -140,7 +140,8 @@ pub fn ambient_occlusion(
 
 /// As [`ambient_occlusion`] for a part of a raster of `whole` pixels, whose extent is that of the options.
 ///
-/// Every pixel that is further from the edges of the part than the [halo](OcclusionOptions::halo) of the whole has the bits that it has in the whole.
+/// Every pixel that is further from the edges of the part than the [halo](OcclusionOptions::halo) of the whole has the
+/// bits that it has in the whole.
 ///
 /// # Errors
 ///

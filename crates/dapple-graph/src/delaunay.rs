@@ -5,8 +5,9 @@
 //!
 //! On a domain that wraps, the graph is that of the points and all of their images, seen from the points in the domain.
 //! It needs only few of the images: first those in a margin around the domain, then, disc by disc, the ones that lie in the
-//! circumcircle of a triangle at a point of the domain. When no such circumcircle holds another image, all of these triangles are true ones. So
-//! any number of points is welcome, one or two as well, and points may lead to their own images.
+//! circumcircle of a triangle at a point of the domain. When no such circumcircle holds another image, all of these
+//! triangles are true ones. So any number of points is welcome, one or two as well, and points may lead to their own
+//! images.
 //!
 //! Where four or more points (images counted) lie on one empty circle, the triangulation is not unique; the diagonals
 //! in that circle are dropped, by exact predicates. What is left is unique: the pairs of points whose Voronoi cells

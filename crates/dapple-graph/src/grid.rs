@@ -135,8 +135,8 @@ impl<'a> Grid<'a> {
 
     /// A radius that is large enough for all neighbors that a graph may ask for; within it images are still exact.
     ///
-    /// Without wrapping, all points lie within the domain's diagonal. With it, of each point there are at least ten images within five
-    /// periods, and one in each cone of 1/32 of a turn that has any: 1 / sin(2π / 32) is below 5.2.
+    /// Without wrapping, all points lie within the domain's diagonal. With it, of each point there are at least ten
+    /// images within five periods, and one in each cone of 1/32 of a turn that has any: 1 / sin(2π / 32) is below 5.2.
     pub(crate) fn farthest(&self) -> f64 {
         let size = self.lattice.size;
         if self.lattice.wraps() {

@@ -17,9 +17,9 @@ use glam::DVec2;
 /// # Errors
 ///
 /// [`GraphErrorKind::Neighbors`] for `k = 0` and past 4096, on a rectangle for more neighbors than there are other
-/// points, and on a domain that wraps for more than ten times as many as there are points; [`GraphErrorKind::Coincident`] if two points lie at the same place;
-/// [`GraphErrorKind::TooManyAxes`] past 2^32 axes; [`GraphErrorKind::Thin`] on a domain that wraps and is too thin for
-/// the distance of its points.
+/// points, and on a domain that wraps for more than ten times as many as there are points;
+/// [`GraphErrorKind::Coincident`] if two points lie at the same place; [`GraphErrorKind::TooManyAxes`] past 2^32 axes;
+/// [`GraphErrorKind::Thin`] on a domain that wraps and is too thin for the distance of its points.
 ///
 /// # Examples
 ///

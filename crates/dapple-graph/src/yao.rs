@@ -5,8 +5,8 @@
 //! partition of unity parametrics.
 //!
 //! Cone `i` of `k` has the directions from the angle `2π i / k` (included) to `2π (i + 1) / k`. The borders are vectors
-//! that are computed once, the same for all points and on every machine; which side of a border a neighbor lies on is exact. The borders
-//! in the directions of the axes are exact themselves, the other ones are rounded.
+//! that are computed once, the same for all points and on every machine; which side of a border a neighbor lies on is
+//! exact. The borders in the directions of the axes are exact themselves, the other ones are rounded.
 
 use crate::angle::{by_angle, turn};
 use crate::build::{Choice, Direction, graph_of};
@@ -23,7 +23,8 @@ use glam::DVec2;
 /// begins at the x axis.
 ///
 /// Images count as neighbors of their own, those of the point itself too. Of equally near ones, the one with the
-/// smaller index is taken, then the one with the smaller angle. Where a cone is empty (at the border of a domain that does not wrap) there is no axis.
+/// smaller index is taken, then the one with the smaller angle. Where a cone is empty (at the border of a domain that
+/// does not wrap) there is no axis.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/yao.md"))]
 ///

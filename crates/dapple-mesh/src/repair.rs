@@ -21,8 +21,9 @@
 //!
 //! Step 3 leaves no crack in a closed mesh with a few such faces, as tests show; where many lie on top of each other, it may.
 //!
-//! The result has no face or is a [`Surface`](crate::Surface), and repairing it again changes nothing. Non-manifold edges and vertices
-//! stay (but for the cuts): an edge of three faces is a border, and at a vertex of two fans nothing needs to know.
+//! The result has no face or is a [`Surface`](crate::Surface), and repairing it again changes nothing. Non-manifold
+//! edges and vertices stay (but for the cuts): an edge of three faces is a border, and at a vertex of two fans nothing
+//! needs to know.
 
 mod faces;
 mod winding;

@@ -2,7 +2,8 @@
 //!
 //! A [`Solid`] tells how far a position is from its surface. Shapes are a [`Ball`], an [`Ellipsoid`], a [`RoundCone`], a
 //! [`Tube`] along a curve, a [`Torus`] and a [`RoundBox`]. [`Blend`] joins any of them with rounded seams; [`Placed`],
-//! [`Mirrored`], [`Scaled`], [`Grown`] and [`Bent`] change where and how a solid is. [`polygonize`](crate::polygonize()) makes a mesh.
+//! [`Mirrored`], [`Scaled`], [`Grown`] and [`Bent`] change where and how a solid is.
+//! [`polygonize`](crate::polygonize()) makes a mesh.
 //!
 //! Reference: John C. Hart, "Sphere Tracing: A Geometric Method for the Antialiased Ray Tracing of Implicit Surfaces",
 //! The Visual Computer 12 (1996), doi 10.1007/s003710050084, for distance bounds and how they compose; the formulas of

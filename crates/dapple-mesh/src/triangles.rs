@@ -1,8 +1,8 @@
 //! Triangles of the sites of a level, for export.
 //!
 //! The paper's `M_k` is a graph: stars that disagree about an edge do not fit together, and forcing the edge makes no
-//! triangles. (Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1.) This
-//! is a repair of it that synthesis does not need:
+//! triangles. (Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section
+//! 3.1.) This is a repair of it that synthesis does not need:
 //!
 //! * only edges that are in the stars of both of their sites are kept; where four sites have both diagonals, only the
 //!   shorter one;

@@ -2,10 +2,11 @@
 //!
 //! The distribution is that of random sequential addition: darts fall uniformly at random, one after another, and each
 //! that keeps its distance from all before stays (R. L. Cook, "Stochastic Sampling in Computer Graphics", ACM
-//! Transactions on Graphics 5(1), 1986, <https://doi.org/10.1145/7529.8927>). Going on until nothing fits takes for ever when done
-//! literally. The way here keeps the darts away from covered ground, as M. S. Ebeida, S. A. Mitchell, A. Patney,
-//! A. A. Davidson and J. D. Owens do ("A Simple Algorithm for Maximal Poisson-Disk Sampling in High Dimensions",
-//! Computer Graphics Forum 31, 2012, <https://doi.org/10.1111/j.1467-8659.2012.03059.x>), and departs from them in that order:
+//! Transactions on Graphics 5(1), 1986, <https://doi.org/10.1145/7529.8927>). Going on until nothing fits takes for
+//! ever when done literally. The way here keeps the darts away from covered ground, as M. S. Ebeida, S. A. Mitchell, A.
+//! Patney, A. A. Davidson and J. D. Owens do ("A Simple Algorithm for Maximal Poisson-Disk Sampling in High
+//! Dimensions", Computer Graphics Forum 31, 2012, <https://doi.org/10.1111/j.1467-8659.2012.03059.x>), and departs from
+//! them in that order:
 //!
 //! * time is cut into slices, in which every cell throws at most one dart at the part of it that is not known to be
 //!   covered, and darts of one slice are settled by random ranks. There are no passes over colored cells, which leave

@@ -35,8 +35,8 @@ impl Mesh {
     ///
     /// # Errors
     ///
-    /// [`PreviewErrorKind::Mesh`](crate::PreviewErrorKind::Mesh) if a part of a position is not finite or above 1e30, if an index is
-    /// past the last vertex, or past 2^31 triangles.
+    /// [`PreviewErrorKind::Mesh`](crate::PreviewErrorKind::Mesh) if a part of a position is not finite or above 1e30,
+    /// if an index is past the last vertex, or past 2^31 triangles.
     pub fn smooth(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, PreviewError> {
         let mesh = dapple_mesh::Mesh::new(positions.to_vec(), triangles)?;
         Ok(Self::from_mesh(mesh))

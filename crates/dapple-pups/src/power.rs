@@ -2,7 +2,8 @@
 //!
 //! `w^e = 2^(e · log₂ w)`, with two polynomials whose coefficients minimize the largest error (fitted in double
 //! precision; the errors are stated beside them). Only sums, products and integer operations are used. The result is
-//! within `4e-6 · (1 + e) + 1e-7 · e · |log₂ w|` of the true power, relative to it, where that is above 1e-30 and `w` is a normal number.
+//! within `4e-6 · (1 + e) + 1e-7 · e · |log₂ w|` of the true power, relative to it, where that is above 1e-30 and `w`
+//! is a normal number.
 
 use fearless_simd::prelude::*;
 

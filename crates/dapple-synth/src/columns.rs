@@ -1,4 +1,5 @@
-//! Columns computed row by row, and other tasks, on all cores where the feature `rayon` is on; the bits do not depend on the cores.
+//! Columns computed row by row, and other tasks, on all cores where the feature `rayon` is on; the bits do not depend
+//! on the cores.
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;

@@ -8,8 +8,9 @@
 //! * linear: `Σ w x`, the splatting of Charles Bloom (2000);
 //! * keeping the variance: `Σ w μ + Σ w (x - μ) / sqrt(Σ w²)`, with `μ` the mean of a layer's map over the raster, after
 //!   Eric Heitz and Fabrice Neyret, "High-Performance By-Example Noise using a Histogram-Preserving Blending Operator",
-//!   Proceedings of the ACM on Computer Graphics and Interactive Techniques 1(2), 2018, <https://doi.org/10.1145/3233304>. Theirs works
-//!   on textures whose histograms were made Gaussian first; here the values are taken as they are;
+//!   Proceedings of the ACM on Computer Graphics and Interactive Techniques 1(2), 2018,
+//!   <https://doi.org/10.1145/3233304>. Theirs works on textures whose histograms were made Gaussian first; here the
+//!   values are taken as they are;
 //! * in bands: see [`Pyramid`].
 //!
 //! How much of the fine contrast of two unlike noises of equal contrast is left in the middle of a ramp 128 pixels wide, as

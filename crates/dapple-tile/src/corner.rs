@@ -1,9 +1,9 @@
 //! Corner tiles: sets that fit in any order.
 //!
 //! Ares Lagae and Philip Dutré, "An Alternative for Wang Tiles: Colored Edges versus Colored Corners", ACM Transactions on
-//! Graphics 25(4), 2006, <https://doi.org/10.1145/1183287.1183296>: a square tile has a color at each of its corners, and tiles fit
-//! where the colors of the corners that meet agree, along edges as well as across corners. With C colors there are C⁴
-//! tiles, and a plane of randomly colored corners has exactly one tile for every place.
+//! Graphics 25(4), 2006, <https://doi.org/10.1145/1183287.1183296>: a square tile has a color at each of its corners,
+//! and tiles fit where the colors of the corners that meet agree, along edges as well as across corners. With C colors
+//! there are C⁴ tiles, and a plane of randomly colored corners has exactly one tile for every place.
 //!
 //! Departure: the authors assemble a tile from pieces of an exemplar with a graph cut. Here each color is a source, a tile
 //! that repeats by itself, and near a corner its source is seen. In between the sources are mixed by quintic ramps of the

@@ -3,7 +3,8 @@
 //! A mean of two images that have nothing to do with each other has less contrast than either. Divided by the length of
 //! the vector of weights instead of by their sum, what differs from the mean keeps its variance: Eric Heitz and Fabrice
 //! Neyret, "High-Performance By-Example Noise using a Histogram-Preserving Blending Operator", Proceedings of the ACM on
-//! Computer Graphics and Interactive Techniques 1(2), 2018, <https://doi.org/10.1145/3233304>; here without their change of histogram.
+//! Computer Graphics and Interactive Techniques 1(2), 2018, <https://doi.org/10.1145/3233304>; here without their
+//! change of histogram.
 //!
 //! Departure: the operator takes the two images for independent, and along a cut of least difference they are not. With
 //! weights v and w and correlation r the deviation is divided by sqrt(v² + w² + 2 r v w), which is the operator for r = 0

@@ -2,7 +2,8 @@
 //!
 //! A path visits one cell of every row and steps at most one cell to the side from row to row. Its price is the sum of
 //! the costs of its cells, in the order of the rows. The open path is found by dynamic programming, as in Alexei A. Efros
-//! and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer", SIGGRAPH 2001, <https://doi.org/10.1145/383259.383296>.
+//! and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer", SIGGRAPH 2001,
+//! <https://doi.org/10.1145/383259.383296>.
 //!
 //! A closed path ends in the cell below which it began, or beside it, so that it goes on where the grid repeats. The
 //! cheapest path through each first cell is another problem of the same kind; the cheapest of all comes from halving the

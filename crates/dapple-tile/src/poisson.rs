@@ -1,7 +1,8 @@
 //! The image whose gradients are nearest to those of the source, once around the torus.
 //!
 //! Source: the guided interpolation of Patrick Pérez, Michel Gangnet and Andrew Blake, "Poisson image editing", ACM
-//! Transactions on Graphics 22 (SIGGRAPH 2003), <https://doi.org/10.1145/882262.882269>, here without a boundary: a torus has none.
+//! Transactions on Graphics 22 (SIGGRAPH 2003), <https://doi.org/10.1145/882262.882269>, here without a boundary: a
+//! torus has none.
 //!
 //! The field to be met is that of the differences between neighbors: inside they are those of the source, across the
 //! wrap they are chosen by [`WrapGradient`]. The result is nearest to the field by least squares, and keeps the mean.

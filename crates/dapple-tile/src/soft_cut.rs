@@ -2,7 +2,8 @@
 //!
 //! The last columns are laid over the first ones, and where the two are most alike the picture changes from one to the
 //! other: the cut of Alexei A. Efros and William T. Freeman, "Image Quilting for Texture Synthesis and Transfer",
-//! SIGGRAPH 2001, <https://doi.org/10.1145/383259.383296>. Rows follow in the same way, on the result, which repeats along x already.
+//! SIGGRAPH 2001, <https://doi.org/10.1145/383259.383296>. Rows follow in the same way, on the result, which repeats
+//! along x already.
 //!
 //! * The difference is the sum over all planes of squares, each plane divided by its own variance, so that a height in
 //!   meters counts as much as a color. All planes are cut along the same line.

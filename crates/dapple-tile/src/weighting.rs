@@ -11,9 +11,9 @@
 //!   heights count, so that they may lie in any range; the more they differ, the less of a layer is enough.
 //! * [`Weighting::Mask`]: with the thresholds `T(i) = α(1) + … + α(i)` and a blend tile `m`, `w(i) = s(T(i)) - s(T(i-1))`
 //!   with `s(T) = clamp((T - m) / 2r + ½, 0, 1)` and half the width `r = min(1 / (2 gain), T, 1 - T)` of a ramp, or 0
-//!   for the largest gain. The ramp gets narrower near 0 and 1, where it would reach past the values of the tile. So every layer has exactly its share of
-//!   the area for every gain, if the values of the tile are spread evenly, as those of
-//!   [`rank_equalize`](crate::rank_equalize) are; and a layer without weight is nowhere.
+//!   for the largest gain. The ramp gets narrower near 0 and 1, where it would reach past the values of the tile. So
+//!   every layer has exactly its share of the area for every gain, if the values of the tile are spread evenly, as those
+//!   of [`rank_equalize`](crate::rank_equalize) are; and a layer without weight is nowhere.
 
 use crate::map::check_finite;
 use crate::{Layer, TileError, TileErrorKind};

@@ -159,8 +159,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`NoRange`](crate::WorleyErrorKind::NoRange) for any other, and where a range was set before; use [`measure_range`](Self::measure_range) and
-    /// [`with_range`](Self::with_range) there.
+    /// [`NoRange`](crate::WorleyErrorKind::NoRange) for any other, and where a range was set before; use
+    /// [`measure_range`](Self::measure_range) and [`with_range`](Self::with_range) there.
     pub fn normalized(self) -> Result<Self, WorleyError> {
         let Worley {
             metric, scatter, ..

@@ -2,9 +2,9 @@
 //!
 //! Projecting a line adds to each frequency its alias half the sampling rate away: with `H` the transform of the
 //! refinement filter and `B` that of the Gram filter on the coarse line, frequency `k` becomes
-//! `H(k) (C(k) G(k) + C(k + n/2) G(k + n/2))`, where `C = conj(H) · B(fine) / B(coarse) / 4`. The filters are real, so that two lines go
-//! through one complex transform; columns go through as rows of the transposed raster. Planner, scratch and memory are
-//! kept. The default planner takes the widest vector code of the machine.
+//! `H(k) (C(k) G(k) + C(k + n/2) G(k + n/2))`, where `C = conj(H) · B(fine) / B(coarse) / 4`. The filters are real, so
+//! that two lines go through one complex transform; columns go through as rows of the transposed raster. Planner,
+//! scratch and memory are kept. The default planner takes the widest vector code of the machine.
 
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};

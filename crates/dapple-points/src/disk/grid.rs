@@ -8,9 +8,10 @@
 //! **Units.** A place is a cell and an offset in `[0, 1)²` of the cell, a multiple of 2^-22 ([`LATTICE`] steps per
 //! cell). Differences of offsets across up to three cells are exact in `f32`, in whatever frame they are taken.
 //! Two places conflict if the square of their distance over the reach is below 1: `(dx * scale)² + (dy * scale)²` in
-//! `f32` with [`Grid::scale`], rounded after each operation. It never falls where `|dx|` or `|dy|` grows. The reach is larger than the radius by [`SLACK`], which is more than all rounding together, so the
-//! conflict test needs no second, exact one: points that do not conflict are at least a radius apart as `f64`, and
-//! where everything conflicts no empty circle is larger than the radius times 1 + 1e-6.
+//! `f32` with [`Grid::scale`], rounded after each operation. It never falls where `|dx|` or `|dy|` grows. The reach is
+//! larger than the radius by [`SLACK`], which is more than all rounding together, so the conflict test needs no second,
+//! exact one: points that do not conflict are at least a radius apart as `f64`, and where everything conflicts no empty
+//! circle is larger than the radius times 1 + 1e-6.
 
 use crate::{Domain, PointsError, PointsErrorKind, RSA_DENSITY};
 use dapple_hash::{CellHash, Seed};

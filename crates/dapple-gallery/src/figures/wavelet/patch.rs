@@ -102,7 +102,8 @@ impl Patch {
         Raster::from_window(&self.window, spot)
     }
 
-    /// Changes the spots that are in the box that reaches `reach` from `center` on the torus; `paint` is told how far they are from it.
+    /// Changes the spots that are in the box that reaches `reach` from `center` on the torus; `paint` is told how far
+    /// they are from it.
     pub(super) fn paint(
         &self,
         spots: &mut Raster<Spot>,
