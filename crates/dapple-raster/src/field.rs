@@ -34,7 +34,7 @@ pub trait Field: Send + Sync {
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Length`] if the lengths differ.
+    /// [`Length`](crate::RasterErrorKind::Length) if the lengths differ.
     fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
         RasterError::check_length(values.len(), positions.len())?;
         for (value, &position) in values.iter_mut().zip(positions) {
@@ -47,7 +47,7 @@ pub trait Field: Send + Sync {
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::SizeMismatch`] if `out` has another size than the window.
+    /// [`SizeMismatch`](crate::RasterErrorKind::SizeMismatch) if `out` has another size than the window.
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         window.check_size(out.size())?;
         for (row, values) in (0..).zip(out.rows_mut()) {
@@ -63,7 +63,8 @@ pub trait Field: Send + Sync {
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Empty`] or [`RasterErrorKind::TooLarge`] if the window has a bad size.
+    /// [`Empty`](crate::RasterErrorKind::Empty) or [`TooLarge`](crate::RasterErrorKind::TooLarge) if the window has a bad
+    /// size.
     fn to_raster(&self, window: &Window) -> Result<Raster<f32>, RasterError> {
         let mut raster = Raster::filled(window.size, 0.0)?;
         self.render(window, raster.view_mut())?;
