@@ -7,8 +7,8 @@ use clap::Parser;
 
 /// What `dapple --help` says before the subcommands.
 const ABOUT: &str = "\
-Makes textures: bakes the maps of materials from recipes, draws cells and noise, makes images repeat, blends them, and
-synthesizes more from an example, on the plane and on models.
+Makes textures: bakes the maps of materials from recipes, draws cells and noise, makes
+images repeat, blends them, and synthesizes more from an example, on the plane and on models.
 
 The same options and the same seed give the same bits on every machine, with any number of threads.
 Nothing is overwritten without --force, and what is not done whole leaves nothing behind.";

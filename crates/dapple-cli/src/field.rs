@@ -4,7 +4,7 @@ use crate::args::{Axes, ImageArgs, Region, Size};
 use crate::baking::{self, MapFile, advise};
 use crate::encode::{Format, ramped_recipe};
 use crate::error::{Exit, Hint, usage};
-use crate::job::{Context, Job, say};
+use crate::job::{Context, Job, put_text};
 use crate::output::Target;
 use anyhow::Result;
 use dapple::hash::Seed;
@@ -39,7 +39,7 @@ pub(crate) struct FieldArgs {
     #[arg(long, value_name = "LO,HI|raw", allow_hyphen_values = true)]
     pub(crate) range: Option<RangeArg>,
 
-    /// Print the recipe of the picture as TOML, for `dapple bake`, and draw nothing.
+    /// Write the recipe of the picture as TOML, for `dapple bake`, and draw nothing; without -o it is printed.
     #[arg(long)]
     pub(crate) recipe: bool,
 }
@@ -109,8 +109,7 @@ pub(crate) fn draw(
         let text = recipe(field, args, image, format)?
             .to_toml()
             .map_err(advise)?;
-        say(text.trim_end())?;
-        return Ok(Exit::Done);
+        return put_text(context, field.command, &image.files, &text, options);
     }
     let mut job = Job::new(context, field.command, &image.files);
     let target = image.files.target()?;

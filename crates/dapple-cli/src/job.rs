@@ -2,7 +2,7 @@
 
 use crate::args::{ImageArgs, OutputArgs};
 use crate::encode::{Format, default_format, encode, ramped, range};
-use crate::error::{Hint, usage};
+use crate::error::{Exit, Hint, usage};
 use crate::output::{OutputIdx, Outputs, Target};
 use anyhow::{Context as _, Result};
 use dapple::tile::Map;
@@ -280,6 +280,35 @@ pub(crate) fn say(text: &str) -> Result<()> {
     stdout.write_all(text.as_bytes())?;
     stdout.write_all(b"\n")?;
     Ok(stdout.flush()?)
+}
+
+/// Writes a text to the output, or prints it where there is none.
+///
+/// # Errors
+///
+/// What goes wrong with the output, or if nobody listens.
+pub(crate) fn put_text(
+    context: &Context,
+    command: &'static str,
+    files: &OutputArgs,
+    text: &str,
+    options: &impl Serialize,
+) -> Result<Exit> {
+    if files.output.is_none() {
+        if files.json.is_some() {
+            return Err(
+                usage("there is no output for the JSON file to lie beside").hint("add -o FILE")
+            );
+        }
+        say(text.trim_end())?;
+        return Ok(Exit::Done);
+    }
+    let mut job = Job::new(context, command, files);
+    let output = job.claim_text(&files.target()?)?;
+    job.claim_sidecar()?;
+    job.write(output, text.as_bytes())?;
+    job.finish(options, Value::Null)?;
+    Ok(Exit::Done)
 }
 
 /// Prints to standard error. If nobody listens there, nobody is missed.

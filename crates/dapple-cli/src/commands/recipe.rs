@@ -2,13 +2,13 @@
 
 use crate::args::OutputArgs;
 use crate::baking::{advise, read_images, read_recipe};
-use crate::error::{Exit, Hint, usage};
-use crate::job::{Context, Job, say};
+use crate::error::Exit;
+use crate::job::{Context, put_text, say};
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::recipe::{Plan, Recipe};
 use serde::Serialize;
-use serde_json::Value;
+use std::path::Path;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -16,7 +16,7 @@ Examples:
   dapple recipe giraffe
   dapple recipe giraffe -o my-giraffe.toml
   dapple recipe flagstone --rust
-  dapple recipe flagstone --as json -o flagstone.json
+  dapple recipe flagstone -o flagstone.json
 
 A built-in recipe is printed as it was written, with its comments; change it and give the
 file to `dapple bake`. With --rust it becomes Rust code that needs the crate `dapple` and gives
@@ -38,7 +38,7 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "to")]
     rust: bool,
 
-    /// Rewrite the recipe in this format.
+    /// Rewrite the recipe in this format; by default in JSON if the output ends in .json.
     #[arg(long = "as", value_enum, value_name = "FORMAT")]
     to: Option<Text>,
 
@@ -84,31 +84,27 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         ))?;
         return Ok(Exit::Done);
     }
-    let is_as_written = !args.rust && args.to.is_none() && args.seed.is_none();
+    let is_as_written = !args.rust && args.format().is_none() && args.seed.is_none();
     if let Some(seed) = args.seed {
         recipe.seed = Seed(seed);
     }
-    let text = match (Recipe::builtin_text(name), args.to) {
+    let text = match (Recipe::builtin_text(name), args.format()) {
         (Ok(text), _) if is_as_written && folder.as_os_str().is_empty() => text.to_owned(),
         _ if args.rust => recipe.to_rust().map_err(advise)?,
         (_, Some(Text::Json)) => recipe.to_json().map_err(advise)? + "\n",
         _ => recipe.to_toml().map_err(advise)?,
     };
-    if args.files.output.is_none() {
-        if args.files.json.is_some() {
-            return Err(
-                usage("there is no output for the JSON file to lie beside").hint("add -o FILE")
-            );
-        }
-        say(text.trim_end())?;
-        return Ok(Exit::Done);
+    put_text(context, "recipe", &args.files, &text, args)
+}
+
+impl Args {
+    /// The format that was asked for, by its name or by the ending of the output.
+    fn format(&self) -> Option<Text> {
+        let ending = self.files.output.as_deref().and_then(Path::extension);
+        let is_json = ending.is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+        self.to
+            .or_else(|| (is_json && !self.rust).then_some(Text::Json))
     }
-    let mut job = Job::new(context, "recipe", &args.files);
-    let output = job.claim_text(&args.files.target()?)?;
-    job.claim_sidecar()?;
-    job.write(output, text.as_bytes())?;
-    job.finish(args, Value::Null)?;
-    Ok(Exit::Done)
 }
 
 /// The names of the built-in recipes, with a sentence each.

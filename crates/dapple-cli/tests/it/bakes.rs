@@ -150,7 +150,9 @@ fn what_a_field_prints_as_its_recipe_bakes_to_the_same_bits() {
             assert_done(&output, command);
             output
         };
-        fs::write(folder.path("field.toml"), stdout(&run(&["--recipe"]))).unwrap();
+        run(&["--recipe", "-o", "field.toml", "--force"]);
+        let written = fs::read_to_string(folder.path("field.toml")).unwrap();
+        assert_eq!(written, stdout(&run(&["--recipe"])), "{command}");
         let drawn = run(&["-o", "-"]).stdout;
         let bake = [
             "bake",
@@ -163,6 +165,18 @@ fn what_a_field_prints_as_its_recipe_bakes_to_the_same_bits() {
             "-",
         ];
         assert_eq!(drawn, folder.run(&bake).stdout, "{command}");
+    }
+}
+
+#[test]
+fn a_recipe_is_written_in_the_format_of_its_ending() {
+    let folder = Folder::new("ending");
+    for (file, begins) in [("a.json", "{"), ("b.JSON", "{"), ("c.toml", "dapple = 1")] {
+        let arguments = ["recipe", "giraffe", "--seed", "3", "-o", file];
+        assert_done(&folder.run(&arguments), file);
+        let text = fs::read_to_string(folder.path(file)).unwrap();
+        assert!(text.starts_with(begins), "{file}: {text}");
+        assert_done(&folder.run(&["recipe", file, "--check"]), file);
     }
 }
 
