@@ -290,11 +290,5 @@ fn mix_values(inputs: &[&Values]) -> Values {
 
 /// The values as colors; numbers are grays.
 pub(crate) fn colors(values: &Values) -> Vec<LinearRgb> {
-    match values {
-        Values::Numbers(numbers) => numbers
-            .iter()
-            .map(|&number| LinearRgb::gray(number))
-            .collect(),
-        Values::Colors(colors) => colors.clone(),
-    }
+    values.clone().into_colors()
 }

@@ -284,6 +284,22 @@ impl Values {
         self.len() == 0
     }
 
+    /// The numbers; of colors, the luminance.
+    pub(crate) fn into_grays(self) -> Vec<f32> {
+        match self {
+            Self::Numbers(numbers) => numbers,
+            Self::Colors(colors) => colors.into_iter().map(LinearRgb::luminance).collect(),
+        }
+    }
+
+    /// The colors; of numbers, grays.
+    pub(crate) fn into_colors(self) -> Vec<LinearRgb> {
+        match self {
+            Self::Numbers(numbers) => numbers.into_iter().map(LinearRgb::gray).collect(),
+            Self::Colors(colors) => colors,
+        }
+    }
+
     /// Some of them.
     pub(crate) fn part(&self, range: Range<usize>) -> Self {
         match self {

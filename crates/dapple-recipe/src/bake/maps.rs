@@ -207,31 +207,19 @@ pub(super) fn maps(
             MapKind::Normal => MapRows::Normal(around.normal()?),
             MapKind::Occlusion => MapRows::Gray(around.occlusion()?.clone()),
             MapKind::Curvature => MapRows::Gray(around.curvature()?),
-            MapKind::Albedo => match local() {
-                Values::Colors(colors) => MapRows::Color(Raster::from_vec(band.size, colors)?),
-                Values::Numbers(grays) => {
-                    let colors = grays.into_iter().map(LinearRgb::gray).collect();
-                    MapRows::Color(Raster::from_vec(band.size, colors)?)
-                }
-            },
-            MapKind::Roughness | MapKind::Metallic => MapRows::Gray(numbers(local(), band.size)?),
+            MapKind::Albedo => MapRows::Color(Raster::from_vec(band.size, local().into_colors())?),
+            MapKind::Roughness | MapKind::Metallic => {
+                MapRows::Gray(Raster::from_vec(band.size, local().into_grays())?)
+            }
             MapKind::Orm => {
-                let [roughness, metallic] =
-                    [numbers(local(), band.size)?, numbers(local(), band.size)?];
+                let roughness = Raster::from_vec(band.size, local().into_grays())?;
+                let metallic = Raster::from_vec(band.size, local().into_grays())?;
                 MapRows::Packed(pack(around.occlusion()?, &roughness, &metallic)?)
             }
         };
         maps.push((kind, rows));
     }
     Ok(maps)
-}
-
-fn numbers(values: Values, size: [u32; 2]) -> Result<Raster<f32>, RecipeError> {
-    let numbers = match values {
-        Values::Numbers(numbers) => numbers,
-        Values::Colors(colors) => colors.into_iter().map(LinearRgb::luminance).collect(),
-    };
-    Ok(Raster::from_vec(size, numbers)?)
 }
 
 fn pack(

@@ -132,13 +132,7 @@ impl Plan {
             Global::BlendMap(how, feature_size) => {
                 let mut how = *how;
                 how.feature_size = feature_size / window.pixel.max_element();
-                let gray = match made[0] {
-                    Values::Numbers(numbers) => numbers.clone(),
-                    Values::Colors(colors) => {
-                        colors.iter().map(|color| color.luminance()).collect()
-                    }
-                };
-                let map = how.apply(&Raster::from_vec(window.size, gray)?)?;
+                let map = how.apply(&raster(made[0], window.size)?)?;
                 Values::Numbers(rank_equalize(&map)?.into_pixels())
             }
             Global::Blend(layers) => blend_values(layers, &made, window.size)?,
@@ -233,13 +227,9 @@ pub(crate) fn blend_values(
     values(blended)
 }
 
+/// Numbers as they are, and the luminance of colors.
 fn raster(values: &Values, size: [u32; 2]) -> Result<Raster<f32>, RasterError> {
-    match values {
-        Values::Numbers(numbers) => Raster::from_vec(size, numbers.clone()),
-        Values::Colors(colors) => {
-            Raster::from_vec(size, colors.iter().map(|color| color.luminance()).collect())
-        }
-    }
+    Raster::from_vec(size, values.clone().into_grays())
 }
 
 fn map(values: &Values, size: [u32; 2]) -> Result<Map, RasterError> {

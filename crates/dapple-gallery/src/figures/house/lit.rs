@@ -1,6 +1,5 @@
 //! A baked material in light, seen straight from above, so that the picture repeats as the maps do.
 
-use anyhow::bail;
 use dapple_color::{LinearRgb, Normal};
 use dapple_raster::Raster;
 use dapple_recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
@@ -14,18 +13,15 @@ pub(super) fn lit(recipe: &Recipe, size: u32) -> anyhow::Result<Raster<LinearRgb
     let plan = Plan::new(recipe, &Images::new(), 0.0)?;
     let sides = plan.extent() / plan.extent().max_element() * f64::from(size);
     let sides = <[f64; 2]>::from(sides).map(|side| side.round() as u32);
-    let [normals, packed, albedo] = maps(&plan, sides)?;
-    let (MapRows::Normal(normals), MapRows::Packed(packed), MapRows::Color(albedo)) =
-        (normals, packed, albedo)
-    else {
-        bail!("{} has other maps than were asked for", recipe.name);
-    };
+    let (normals, packed, albedo) = maps(&plan, sides)?;
     let surface = normals.zip_map(&packed, |&normal, &orm| (normal, orm))?;
     Ok(surface.zip_map(&albedo, |&(normal, orm), &color| shaded(normal, orm, color))?)
 }
 
 /// The normals, the occlusion with roughness and metallic, and the colors of the whole tile.
-fn maps(plan: &Plan, size: [u32; 2]) -> anyhow::Result<[MapRows; 3]> {
+type Maps = (Raster<Normal>, Raster<[f32; 3]>, Raster<LinearRgb>);
+
+fn maps(plan: &Plan, size: [u32; 2]) -> anyhow::Result<Maps> {
     let options = BakeOptions {
         size,
         maps: vec![MapKind::Normal, MapKind::Orm, MapKind::Albedo],
@@ -44,11 +40,11 @@ fn maps(plan: &Plan, size: [u32; 2]) -> anyhow::Result<[MapRows; 3]> {
             }
         }
     }
-    Ok([
-        MapRows::Normal(Raster::from_vec(size, normals)?),
-        MapRows::Packed(Raster::from_vec(size, packed)?),
-        MapRows::Color(Raster::from_vec(size, albedo)?),
-    ])
+    Ok((
+        Raster::from_vec(size, normals)?,
+        Raster::from_vec(size, packed)?,
+        Raster::from_vec(size, albedo)?,
+    ))
 }
 
 /// The light that comes from a point: scattered by what is no metal, and mirrored, more blurred on what is rough.
