@@ -45,10 +45,7 @@ pub(crate) fn read_recipe(name: &str) -> Result<(Recipe, &Path)> {
         error.hint("`dapple recipe --list` names the built-in recipes; a recipe of your own ends in .toml or .json")?;
     }
     let text = input::text(path)?;
-    let is_json = path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
-        || (name == "-" && text.trim_start().starts_with('{'));
+    let is_json = is_json(path) || (name == "-" && text.trim_start().starts_with('{'));
     let recipe = if is_json {
         Recipe::from_json(&text)
     } else {
@@ -62,6 +59,12 @@ pub(crate) fn read_recipe(name: &str) -> Result<(Recipe, &Path)> {
         );
     }
     Ok((recipe, path.parent().unwrap_or(Path::new(""))))
+}
+
+/// Whether a recipe in this file is one in JSON.
+pub(crate) fn is_json(path: &Path) -> bool {
+    let ending = path.extension();
+    ending.is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
 }
 
 /// The images that a recipe names, from a folder.

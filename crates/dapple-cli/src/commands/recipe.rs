@@ -1,14 +1,13 @@
 //! `dapple recipe`: recipes listed, checked and printed.
 
 use crate::args::OutputArgs;
-use crate::baking::{advise, read_images, read_recipe};
+use crate::baking::{advise, is_json, read_images, read_recipe};
 use crate::error::Exit;
 use crate::job::{Context, put_text, say};
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::recipe::{Plan, Recipe};
 use serde::Serialize;
-use std::path::Path;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -100,8 +99,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 impl Args {
     /// The format that was asked for, by its name or by the ending of the output.
     fn format(&self) -> Option<Text> {
-        let ending = self.files.output.as_deref().and_then(Path::extension);
-        let is_json = ending.is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+        let is_json = self.files.output.as_deref().is_some_and(is_json);
         self.to
             .or_else(|| (is_json && !self.rust).then_some(Text::Json))
     }
