@@ -22,19 +22,22 @@ pub(crate) enum Step {
     Tidy,
     /// Every library crate alone: without features, and with each of them; its values without threads.
     Features,
+    /// Every published crate as the package that a registry would get.
+    Package,
     /// Each fuzz target for some seconds, where nightly Rust and cargo-fuzz are.
     Fuzz,
 }
 
 impl Step {
     /// The steps, in the order in which CI runs them.
-    pub(crate) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 8] = [
         Self::Test,
         Self::Fmt,
         Self::Clippy,
         Self::Doc,
         Self::Tidy,
         Self::Features,
+        Self::Package,
         Self::Fuzz,
     ];
 
@@ -47,6 +50,7 @@ impl Step {
             Self::Doc => "doc",
             Self::Tidy => "tidy",
             Self::Features => "features",
+            Self::Package => "package",
             Self::Fuzz => "fuzz",
         }
     }
@@ -79,6 +83,7 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
         }
         Step::Tidy => return tidy::tidy(shell),
         Step::Features => return features(shell),
+        Step::Package => return package(shell),
         Step::Fuzz => return fuzz::fuzz(shell),
     };
     Ok(command.run()?)
@@ -105,6 +110,17 @@ fn features(shell: &Shell) -> anyhow::Result<()> {
             .run()?;
         }
     }
+    Ok(())
+}
+
+/// Makes the packages of all published crates, without building them: the step `features` builds each crate alone.
+fn package(shell: &Shell) -> anyhow::Result<()> {
+    let workspace = Workspace::read(shell)?;
+    let published = workspace.members.iter().filter(|member| member.published);
+    let packages = published.flat_map(|member| ["--package", member.name.as_str()]);
+    cmd!(shell, "cargo package --no-verify --allow-dirty --quiet")
+        .args(packages)
+        .run()?;
     Ok(())
 }
 

@@ -16,7 +16,7 @@ use xshell::Shell;
 type Rule = (&'static str, fn(&Workspace) -> Vec<String>);
 
 /// All rules.
-const RULES: [Rule; 10] = [
+const RULES: [Rule; 11] = [
     ("a crate lies in the folder of its name", layers::folders),
     (
         "a crate has a layer, and uses only strictly lower ones",
@@ -24,6 +24,10 @@ const RULES: [Rule; 10] = [
     ),
     ("xtask uses no crate of ours", layers::xtask_alone),
     ("a crate takes the lints of the workspace", layers::lints),
+    (
+        "a published crate has all that a registry shows, and its licenses",
+        layers::packages,
+    ),
     ("a source file begins with `//!`", sources::headers),
     ("a source file has at most 600 lines", sources::lengths),
     (

@@ -81,9 +81,27 @@ pub(super) fn lints(workspace: &Workspace) -> Vec<String> {
         .collect()
 }
 
+/// What a package needs in a registry: words to be found by, documentation of all features, and the license texts.
+pub(super) fn packages(workspace: &Workspace) -> Vec<String> {
+    let mut found = Vec::new();
+    for member in workspace.members.iter().filter(|member| member.published) {
+        let folder = &member.folder;
+        let lines = ["keywords = [", "categories = [", "all-features = true"];
+        let has = |start: &str| member.manifest.lines().any(|line| line.starts_with(start));
+        let missing = lines.into_iter().filter(|start| !has(start));
+        found.extend(missing.map(|start| format!("{folder}/Cargo.toml: no line `{start}`")));
+        let files = ["LICENSE-APACHE", "LICENSE-MIT", "README.md"];
+        let missing = files
+            .into_iter()
+            .filter(|file| !member.files.iter().any(|there| there == file));
+        found.extend(missing.map(|file| format!("{folder}/{file} is missing")));
+    }
+    found
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{folders, layers, lints, xtask_alone};
+    use super::{folders, layers, lints, packages, xtask_alone};
     use crate::tidy::workspace::{Member, Workspace};
 
     fn member(name: &str, folder: &str, dependencies: &[&str]) -> Member {
@@ -182,5 +200,21 @@ mod tests {
             lints(&workspace(vec![member("a", "crates/a", &[])], &[])).is_empty(),
             "a sound manifest is refused"
         );
+    }
+
+    #[test]
+    fn packages_fires_on_what_a_registry_would_miss() {
+        let mut published = member("dapple-a", "crates/dapple-a", &[]);
+        published.published = true;
+        published.manifest =
+            "keywords = []\n[package.metadata.docs.rs]\nall-features = true\n".into();
+        published.files = vec!["LICENSE-MIT".into(), "README.md".into()];
+        let expected = [
+            "crates/dapple-a/Cargo.toml: no line `categories = [`",
+            "crates/dapple-a/LICENSE-APACHE is missing",
+        ];
+        let unpublished = member("dapple-b", "crates/dapple-b", &[]);
+        let broken = workspace(vec![published, unpublished], &[]);
+        assert_eq!(packages(&broken), expected);
     }
 }

@@ -36,6 +36,8 @@ pub(crate) struct Member {
     pub(crate) features: Vec<String>,
     /// Whether it is meant for a registry.
     pub(crate) published: bool,
+    /// The names of the files that lie directly in its folder, sorted.
+    pub(crate) files: Vec<String>,
 }
 
 /// A text file.
@@ -94,7 +96,15 @@ fn member(shell: &Shell, package: &Value) -> anyhow::Result<Member> {
             .collect::<Result<_, _>>()?,
         features: features.map(|(name, _)| name.clone()).collect(),
         published: package["publish"].is_null(),
+        files: files(shell, folder)?,
     })
+}
+
+/// The names of what lies directly in a folder, sorted.
+fn files(shell: &Shell, folder: &Path) -> anyhow::Result<Vec<String>> {
+    let paths = shell.read_dir(folder)?;
+    let name = |path: &PathBuf| Some(path.file_name()?.to_string_lossy().into_owned());
+    Ok(paths.iter().filter_map(name).collect())
 }
 
 fn layers(metadata: &Value) -> anyhow::Result<BTreeMap<String, u64>> {
