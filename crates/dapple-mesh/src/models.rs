@@ -29,8 +29,8 @@ pub use octopus::octopus;
 pub use ray::ray;
 pub use zebra::zebra;
 
-use crate::solid::{Ball, Ellipsoid, Placed, RoundCone};
-use glam::{DQuat, DVec3};
+use crate::solid::{Ball, Ellipsoid, Placed, RoundCone, rotation};
+use glam::DVec3;
 
 fn ball([x, y, z]: [f64; 3], radius: f64) -> Ball {
     let center = DVec3::new(x, y, z);
@@ -51,8 +51,7 @@ fn cone(from: [f64; 4], to: [f64; 4]) -> RoundCone {
 
 /// An ellipsoid turned by angles about z, then y, then x, in radians.
 fn turned(center: [f64; 3], radii: [f64; 3], [x, y, z]: [f64; 3]) -> Placed<Ellipsoid> {
-    let rotation =
-        DQuat::from_rotation_x(x) * DQuat::from_rotation_y(y) * DQuat::from_rotation_z(z);
+    let rotation = rotation(DVec3::X, x) * rotation(DVec3::Y, y) * rotation(DVec3::Z, z);
     Placed {
         solid: ellipsoid([0.0; 3], radii),
         rotation,

@@ -2,7 +2,7 @@
 //!
 //! A [`Solid`] tells how far a position is from its surface. Shapes are a [`Ball`], an [`Ellipsoid`], a [`RoundCone`], a
 //! [`Tube`] along a curve, a [`Torus`] and a [`RoundBox`]. [`Blend`] joins any of them with rounded seams; [`Placed`],
-//! [`Mirrored`], [`Scaled`], [`Grown`] and [`Bent`] change where and how a solid is.
+//! [`Mirrored`], [`Scaled`], [`Grown`] and [`Bent`] change where and how a solid is; [`rotation`] makes the turn of a [`Placed`] one.
 //! [`polygonize`](crate::polygonize()) makes a mesh.
 //!
 //! Reference: John C. Hart, "Sphere Tracing: A Geometric Method for the Antialiased Ray Tracing of Implicit Surfaces",
@@ -29,7 +29,7 @@ mod combine;
 mod shape;
 mod tube;
 
-pub use change::{Bent, Grown, Mirrored, Placed, Scaled};
+pub use change::{Bent, Grown, Mirrored, Placed, Scaled, rotation};
 pub use combine::Blend;
 pub use shape::{Ball, Ellipsoid, RoundBox, RoundCone, Torus};
 pub use tube::Tube;

@@ -9,9 +9,10 @@ use glam::{DMat3, DQuat, DVec3};
 /// # Examples
 ///
 /// ```
-/// use dapple_preview::{Transform, glam::{DQuat, DVec3}};
+/// use dapple_mesh::solid::rotation;
+/// use dapple_preview::{Transform, glam::DVec3};
 ///
-/// let tilted = Transform::from_translation(DVec3::Y).with_rotation(DQuat::from_rotation_x(0.3));
+/// let tilted = Transform::from_translation(DVec3::Y).with_rotation(rotation(DVec3::X, 0.3));
 /// assert_eq!(tilted.scale, 1.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

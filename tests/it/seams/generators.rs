@@ -212,12 +212,12 @@ fn radial(seed: Seed, window: &Window) -> Result<Raster<f32>> {
     };
     let texture = Radial::new(Worley3::new(seed).combine(Combination::F1), cells)?;
     let value = |at: DVec2| {
-        let azimuth = DVec2::from_angle(at.x / cells.polar * TAU);
-        let polar = DVec2::from_angle(at.y / cells.polar * PI);
+        let (sin_azimuth, cos_azimuth) = libm::sincos(at.x / cells.polar * TAU);
+        let (sin_polar, cos_polar) = libm::sincos(at.y / cells.polar * PI);
         texture.value(DVec3::new(
-            azimuth.x * polar.y,
-            azimuth.y * polar.y,
-            polar.x,
+            cos_azimuth * sin_polar,
+            sin_azimuth * sin_polar,
+            cos_polar,
         ))
     };
     Ok(Raster::from_window(window, value)?)

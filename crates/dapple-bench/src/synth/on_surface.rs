@@ -123,9 +123,7 @@ impl Striped<'_> {
             yy += y * y;
         });
         // The direction of most change is P where the texture follows the field.
-        (0.5 * DVec2::new(xx - yy, 2.0 * xy).to_angle())
-            .abs()
-            .to_degrees()
+        (0.5 * libm::atan2(2.0 * xy, xx - yy)).abs().to_degrees()
     }
 
     /// The difference of codes at an edge that is largest beside its bound, and the bound.

@@ -27,6 +27,24 @@ impl<S: Solid> Solid for Placed<S> {
     }
 }
 
+/// The rotation by `angle` radians about a unit `axis`, counterclockwise for whoever the axis points at.
+///
+/// It has the same bits on every platform, which those of `glam`'s own constructors have not.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_mesh::{glam::DVec3, solid::rotation};
+/// use std::f64::consts::FRAC_PI_2;
+///
+/// let turned = rotation(DVec3::Z, FRAC_PI_2) * DVec3::X;
+/// assert!((turned - DVec3::Y).length() < 1e-15);
+/// ```
+pub fn rotation(axis: DVec3, angle: f64) -> DQuat {
+    let (sin, cos) = libm::sincos(0.5 * angle);
+    DQuat::from_vec4((sin * axis).extend(cos))
+}
+
 /// A solid with its left and right exchanged: what was at x is at -x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mirrored<S>(pub S);

@@ -2,10 +2,10 @@
 
 use super::{
     Ball, Bent, Blend, Ellipsoid, Grown, Mirrored, Placed, RoundBox, RoundCone, Scaled, Solid,
-    Torus, Tube,
+    Torus, Tube, rotation,
 };
 use dapple_hash::Seed;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 fn ellipsoid() -> Ellipsoid {
     Ellipsoid {
@@ -40,7 +40,7 @@ fn solids() -> Vec<(&'static str, Box<dyn Solid>)> {
     };
     let placed = Placed {
         solid: ellipsoid(),
-        rotation: DQuat::from_rotation_x(0.7),
+        rotation: rotation(DVec3::X, 0.7),
         offset: DVec3::Z * 0.3,
     };
     let scale = DVec3::new(1.0, 0.3, 0.7);

@@ -6,6 +6,7 @@ use crate::{
 };
 use core::f64::consts::PI;
 use dapple_color::LinearRgb;
+use dapple_mesh::solid::rotation;
 use dapple_raster::Raster;
 use glam::{DQuat, DVec3};
 
@@ -135,7 +136,7 @@ fn bump_is_lit_by_the_tilted_normal_at_every_scale_and_rotation() {
     let large = lit(Transform::default().with_scale(7.0), slope);
     assert!((large - plain).abs() < 1e-6, "{large}");
     // A quarter turn around y takes +z of the object to +x of the world.
-    let turned = Transform::default().with_rotation(DQuat::from_rotation_y(0.5 * PI));
+    let turned = Transform::default().with_rotation(rotation(DVec3::Y, 0.5 * PI));
     let turned = lit(turned, DVec3::new(0.0, 0.0, 0.75));
     assert!((turned - plain).abs() < 1e-6, "{turned}");
 }

@@ -3,8 +3,8 @@
 use super::*;
 use crate::links::{Links, components};
 use crate::shapes::{moved, sites_on, sphere, square, tube, two_squares};
+use dapple_mesh::solid::rotation;
 use dapple_mesh::{Hierarchy, SiteIdx};
-use glam::DQuat;
 use proptest::prelude::*;
 
 /// Rounding of some hundred sums of unit vectors.
@@ -74,7 +74,7 @@ fn orientation_is_constant_on_a_plane_with_one_direction() {
 
 #[test]
 fn orientation_turns_with_the_mesh_and_the_directions() {
-    let turn = DQuat::from_axis_angle(DVec3::new(2.0, 3.0, 6.0) / 7.0, 0.7);
+    let turn = rotation(DVec3::new(2.0, 3.0, 6.0) / 7.0, 0.7);
     let directions = [
         toward(DVec3::X, DVec3::Y),
         toward(DVec3::NEG_Z, DVec3::new(1.0, 1.0, 0.0)),
@@ -100,7 +100,7 @@ fn orientation_turns_with_the_mesh_and_the_directions() {
 #[test]
 fn orientation_follows_a_rotation_of_the_directions() {
     let hierarchy = sites_on(square(), 1000, 3);
-    let turn = DQuat::from_rotation_z(1.1);
+    let turn = rotation(DVec3::Z, 1.1);
     let directions = [
         toward(DVec3::new(0.1, 0.1, 0.0), DVec3::X),
         toward(DVec3::new(0.9, 0.5, 0.0), DVec3::new(1.0, 1.0, 0.0)),
@@ -135,7 +135,7 @@ fn orientation_goes_through_the_directions_at_their_sites() {
         .map(|i| {
             // A spiral of golden angles keeps them apart.
             let z = (f64::from(2 * i) - 11.0) / 12.0;
-            let around = DQuat::from_rotation_z(2.4 * f64::from(i));
+            let around = rotation(DVec3::Z, 2.4 * f64::from(i));
             let at = around * DVec3::new((1.0 - z * z).sqrt(), 0.0, z);
             toward(at, DVec3::new(0.3, f64::from(i % 3) - 0.9, 1.0))
         })

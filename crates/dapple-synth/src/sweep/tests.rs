@@ -5,8 +5,9 @@ use super::*;
 use crate::Direction;
 use crate::shapes::{cap, moved, sites_on, sphere, square, tube, two_squares};
 use dapple_hash::Seed;
+use dapple_mesh::solid::rotation;
 use dapple_mesh::{HierarchyOptions, Mesh, Surface};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use proptest::prelude::*;
 
 fn along(hierarchy: &Hierarchy, vector: DVec3) -> Orientation {
@@ -100,7 +101,7 @@ fn order_takes_the_lowest_of_several_at_one_distance() {
 
 #[test]
 fn sweep_turns_with_the_mesh_and_the_directions() {
-    let turn = DQuat::from_axis_angle(DVec3::new(2.0, 3.0, 6.0) / 7.0, 0.7);
+    let turn = rotation(DVec3::new(2.0, 3.0, 6.0) / 7.0, 0.7);
     let direction = Direction {
         at: DVec3::Z,
         vector: DVec3::new(1.0, 0.5, 0.0),

@@ -9,9 +9,10 @@ use super::photo;
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_color::LinearRgb;
+use dapple_mesh::solid::rotation;
 use dapple_preview::{Camera, Light, Material, Object, Scene, Shape, Surface, Transform};
 use dapple_worley::{Combination, Metric, Profile, Radial, RadialCells, Worley3, hash::Seed};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 pub(super) const FIGURE: Figure = Figure {
     number: "extra",
@@ -60,7 +61,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         }
         Material::matte(LinearRgb::gray(gray)).with_bump(bump)
     };
-    let tilt = DQuat::from_rotation_z(0.2) * DQuat::from_rotation_x(-1.45);
+    let tilt = rotation(DVec3::Z, 0.2) * rotation(DVec3::X, -1.45);
     let scene = Scene::new(Camera::look_at(DVec3::new(0.0, 0.0, 6.4), DVec3::ZERO).with_fov(0.35))
         .with_object(
             Object::new(Shape::sphere(1.0), look)
