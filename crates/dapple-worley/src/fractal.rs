@@ -84,6 +84,8 @@ impl Default for Octaves {
 /// assert!(crumpled.value([0.5, 0.25, 3.0]) > 0.0);
 /// # Ok::<(), dapple_worley::WorleyError>(())
 /// ```
+#[doc(alias = "fBm")]
+#[doc(alias = "turbulence")]
 #[derive(Clone, Debug)]
 pub struct Fractal<const N: usize> {
     octaves: Vec<Octave<N>>,

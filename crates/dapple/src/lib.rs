@@ -45,6 +45,20 @@
 //! All of them speak of [`raster`] (pixels, and where they lie) and [`hash`] (seeds). Vectors are those of `glam`, which is
 //! [`raster::glam`].
 //!
+//! # If you look for …
+//!
+//! | word | here |
+//! |---|---|
+//! | Voronoi or cellular noise | [`worley`]: distances by [`Combination`](worley::Combination), a color for each cell by [`cell_values`](worley::Worley::cell_values) |
+//! | fBm, octaves, turbulence | [`Cellular::fractal`](worley::Cellular::fractal), [`pups::octaves`](pups::octaves()), the `octaves` of a recipe's nodes |
+//! | value or gradient noise | [`pups::noise`](pups::noise()), and [`wavelet::WaveletNoise2`] where nothing may alias |
+//! | domain warping | the `warp` node of a [`recipe`] |
+//! | a heightmap, or the normal map of one | any field through [`to_raster`](raster::Field::to_raster); [`color::normal_map`] |
+//! | tileable or seamless textures | generators repeat exactly with a `period`; [`tile::Seamless`] for images that somebody else made |
+//! | blue noise | [`points::poisson_disk`]: points that keep their distance |
+//! | texture synthesis from a photograph | [`synth::synthesize_plane`] |
+//! | splat maps, terrain blending | [`tile::blend`](tile::blend()) |
+//!
 //! # What holds everywhere
 //!
 //! * The same seed gives the same bits on every machine, with every set of vector instructions and any number of threads.

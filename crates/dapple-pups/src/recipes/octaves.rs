@@ -92,6 +92,7 @@ impl Default for OctavesOptions {
 /// let image = sum.normalized().to_raster(&window)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias = "fBm")]
 pub fn octaves(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, PupsError> {
     options.check()?;
     let scales = core::iter::successors(Some(1.0), |scale| Some(scale * options.lacunarity));

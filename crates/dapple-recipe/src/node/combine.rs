@@ -18,6 +18,7 @@ pub struct Mix {
 }
 
 /// Another node at positions that are shifted by `amount · (x, y)`.
+#[doc(alias = "domain warping")]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Warp {
