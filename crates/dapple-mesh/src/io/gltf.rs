@@ -3,7 +3,7 @@
 //! Reference: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022).
 //!
 //! All triangles of the default scene become one mesh, with the transforms of their nodes applied; without a scene all
-//! nodes count. Triangle strips and fans become triangles, point primitives only vertices; lines, skins, morph targets
+//! nodes count, and each of the copies that `EXT_mesh_gpu_instancing` makes of their meshes. Triangle strips and fans become triangles, point primitives only vertices; lines, skins, morph targets
 //! and animations are left out. Primitives of one node with the same attributes share their vertices. Where only some
 //! primitives have colors or texture coordinates, the others become white and zero; normals are kept only if all have
 //! them. The material is the first that a primitive has. Textures are taken as they are if they are PNG or JPEG and use
@@ -34,8 +34,10 @@ use document::{Document, TextureInfo};
 use std::borrow::Cow;
 
 const FORMAT: &str = "glTF";
-/// Extensions that a file may require: they change nothing here, or only the types of accessors, which are all read.
-const EXTENSIONS: [&str; 4] = [
+/// Extensions that a file may require: copies of meshes are made, and the others change nothing here, or only the types
+/// of accessors, which are all read.
+const EXTENSIONS: [&str; 5] = [
+    "EXT_mesh_gpu_instancing",
     "KHR_mesh_quantization",
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",

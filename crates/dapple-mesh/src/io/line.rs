@@ -7,7 +7,7 @@ use glam::DVec3;
 /// A line that has something to say.
 pub(super) struct Line<'a> {
     format: &'static str,
-    /// From 1.
+    /// From 1; of several lines that go together, the last.
     number: usize,
     /// All of it.
     #[cfg(feature = "obj")]
@@ -52,6 +52,13 @@ impl Line<'_> {
     #[cfg(feature = "obj")]
     pub(super) fn name_words(&self) -> Vec<&[u8]> {
         words(self.text).skip(1).collect()
+    }
+
+    /// Puts the words of a line that goes on with this one behind its own.
+    #[cfg(feature = "off")]
+    pub(super) fn extend(&mut self, next: Self) {
+        self.number = next.number;
+        self.words.extend(next.words);
     }
 
     /// Says what is wrong with the line.

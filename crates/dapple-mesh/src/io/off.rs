@@ -5,12 +5,13 @@
 //! Read are all headers of three dimensions: `OFF` with the letters `ST`, `C` and `N` before it, in this order, for
 //! texture coordinates, colors and normals of the vertices, and none at all, which means `OFF`. The counts may follow
 //! the header on its line, even without a space. Colors are three or four numbers, 0 to 255 if a vertex has only whole
-//! ones and else 0 to 1; those of faces are left out. The four-dimensional, n-dimensional and binary variants are
+//! ones and else 0 to 1; those of faces are left out. A vertex is on one line; a face may go on over several. The four-dimensional, n-dimensional and binary variants are
 //! refused.
 
 use super::colors::{self, Coding};
 use super::line::{Line, lines};
-use super::text::{fan, parse};
+use super::polygon::fan;
+use super::text::parse;
 use crate::{Mesh, MeshError, Model};
 use dapple_color::LinearRgba;
 use glam::{DVec2, DVec3};
@@ -68,8 +69,14 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
     }
     let (mut faces, mut corners) = (Vec::new(), Vec::new());
     for _ in 0..n_faces {
-        let line = lines.next().ok_or_else(|| ended("faces", n_faces))?;
-        take_corners(&line, &mut corners)?;
+        let mut line = lines.next().ok_or_else(|| ended("faces", n_faces))?;
+        // A polygon may go on over several lines, and its color is on the last of them.
+        let count = polygon_count(&line)?;
+        while line.words.len() <= count {
+            let more = lines.next();
+            line.extend(more.ok_or_else(|| line.error("a face has fewer corners than it says"))?);
+        }
+        take_corners(&line, count, &mut corners)?;
         faces.extend(fan(&corners));
     }
     vertices.into_model(header, &faces)
@@ -124,11 +131,13 @@ fn ended(what: &str, count: u64) -> MeshError {
     )
 }
 
-/// The corners of the polygon of a line.
-fn take_corners(line: &Line<'_>, corners: &mut Vec<u32>) -> Result<(), MeshError> {
-    let count = parse::<usize>(line.words[0])
-        .filter(|&count| count < line.words.len())
-        .ok_or_else(|| line.error("a face has fewer corners than it says"))?;
+/// How many corners the polygon has that begins on a line.
+fn polygon_count(line: &Line<'_>) -> Result<usize, MeshError> {
+    parse(line.words[0]).ok_or_else(|| line.error("the number of corners of a face is needed"))
+}
+
+/// The corners of a polygon.
+fn take_corners(line: &Line<'_>, count: usize, corners: &mut Vec<u32>) -> Result<(), MeshError> {
     corners.clear();
     for word in &line.words[1..=count] {
         let corner =
@@ -259,6 +268,15 @@ mod tests {
     }
 
     #[test]
+    fn faces_go_on_over_several_lines() {
+        let text =
+            "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1\n# between\n2\n 3 255 0 0\n3\n0 2 3\n";
+        let model = read(text.as_bytes()).expect("it is valid");
+        let faces = [[0, 1, 2], [0, 2, 3], [0, 2, 3]];
+        assert_eq!(model.mesh.faces(), faces.map(|face| face.map(VertexIdx)));
+    }
+
+    #[test]
     fn what_is_wrong_is_said() {
         assert_eq!(why("\n# nothing\n"), "it is empty");
         for header in ["4OFF", "nOFF", "OFF BINARY", "COF", "ply"] {
@@ -283,6 +301,10 @@ mod tests {
         assert_eq!(
             why("OFF\n1 1 0\n0 0 0\n3 0 0\n"),
             "line 4: a face has fewer corners than it says"
+        );
+        assert_eq!(
+            why("OFF\n1 1 0\n0 0 0\nthree 0 0 0\n"),
+            "line 4: the number of corners of a face is needed"
         );
         assert_eq!(
             why("OFF\n1 1 0\n0 0 0\n3 0 0 -1\n"),

@@ -6,7 +6,8 @@
 //! Read are text and binary files of both byte orders, with any scalar type for any property. Of the element `vertex`:
 //! `x y z`, `nx ny nz`, `red green blue alpha` (also with `diffuse_` before or as `r g b a`) and `s t`, `u v` or
 //! `texture_u texture_v`. Of the element `face`: the list `vertex_indices` or `vertex_index`, and `texcoord` with two
-//! numbers for each corner, which goes before those of vertices. Everything else is passed over. Colors are coded as
+//! numbers for each corner, which goes before those of vertices. Of the element `tristrips`: the list `vertex_indices`,
+//! in which -1 ends a strip. Everything else is passed over. Colors are coded as
 //! sRGB: 0 to 255, for `ushort` 0 to 65535, and for `float` and `double` 0 to 1. Texture coordinates have v up, as OBJ,
 //! so that v becomes 1 - v.
 
@@ -20,7 +21,7 @@ mod tests;
 pub use write::{write, write_text};
 
 use super::colors::{self, Coding};
-use super::text::fan;
+use super::polygon::{fan, strip};
 use crate::{Mesh, MeshError, Model};
 use body::Body;
 use dapple_color::LinearRgba;
@@ -43,6 +44,8 @@ const COLUMNS: [&[&str]; 12] = [
     &["s", "u", "texture_u"],
     &["t", "v", "texture_v"],
 ];
+/// The names of the list of corners of a face or a strip.
+const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 #[derive(Default)]
 struct Draft {
@@ -84,6 +87,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
         match element.name.as_str() {
             "vertex" if draft.positions.is_empty() => draft.read_vertices(element, &mut body)?,
             "face" => draft.read_faces(element, &mut body)?,
+            "tristrips" => draft.read_strips(element, &mut body)?,
             _ => pass_over(element, &mut body)?,
         }
     }
@@ -158,18 +162,10 @@ impl Draft {
     }
 
     fn read_faces(&mut self, element: &Element, body: &mut Body<'_>) -> Result<(), MeshError> {
-        let place = |names: &[&str]| {
-            element
-                .properties
-                .iter()
-                .position(|property| names.contains(&property.name.as_str()))
-        };
-        let (Some(corners), uvs) = (
-            place(&["vertex_indices", "vertex_index"]),
-            place(&["texcoord"]),
-        ) else {
+        let Some(corners) = element.place(&CORNERS) else {
             return pass_over(element, body);
         };
+        let uvs = element.place(&["texcoord"]);
         let mut lists = vec![Vec::new(); element.properties.len()];
         let mut polygon = Vec::new();
         for _ in 0..element.count {
@@ -183,6 +179,27 @@ impl Draft {
             self.faces.extend(fan(&polygon));
             if let Some(uvs) = uvs {
                 self.add_face_uvs(&lists[uvs], &polygon)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn read_strips(&mut self, element: &Element, body: &mut Body<'_>) -> Result<(), MeshError> {
+        let Some(corners) = element.place(&CORNERS) else {
+            return pass_over(element, body);
+        };
+        let (mut list, mut others, mut polygon) = (Vec::new(), Vec::new(), Vec::new());
+        for _ in 0..element.count {
+            for (i, property) in element.properties.iter().enumerate() {
+                let list = if i == corners { &mut list } else { &mut others };
+                body.values(property.kind, list)?;
+            }
+            for numbers in list.split(|&number| number == -1.0) {
+                polygon.clear();
+                for &number in numbers {
+                    polygon.push(vertex(number)?);
+                }
+                self.faces.extend(strip(&polygon));
             }
         }
         Ok(())

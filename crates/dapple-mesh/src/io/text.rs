@@ -1,4 +1,4 @@
-//! Words and numbers of text, and polygons.
+//! Words and numbers of text.
 
 #[cfg(any(feature = "obj", feature = "ply"))]
 use core::fmt::Write as _;
@@ -25,10 +25,4 @@ pub(super) fn shortest(text: &mut String, number: f64) {
     } else {
         write!(text, "{number:e}")
     };
-}
-
-/// The triangles around the first corner of a polygon.
-pub(super) fn fan<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
-    let pairs = corners.iter().skip(1).zip(corners.iter().skip(2));
-    pairs.map(|(&b, &c)| [corners[0], b, c])
 }

@@ -51,6 +51,19 @@ pub(super) struct Node {
     pub(super) translation: Option<Box<[f64; 3]>>,
     pub(super) rotation: Option<Box<[f64; 4]>>,
     pub(super) scale: Option<Box<[f64; 3]>>,
+    pub(super) extensions: Option<Box<NodeExtensions>>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct NodeExtensions {
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub(super) instancing: Option<Instancing>,
+}
+
+/// Accessors with a transform for each copy of the mesh of a node.
+#[derive(Deserialize)]
+pub(super) struct Instancing {
+    pub(super) attributes: std::collections::BTreeMap<String, usize>,
 }
 
 #[derive(Deserialize)]

@@ -110,6 +110,14 @@ impl Header {
     }
 }
 
+impl Element {
+    /// Where the first property is that has one of these names.
+    pub(super) fn place(&self, names: &[&str]) -> Option<usize> {
+        let mut properties = self.properties.iter();
+        properties.position(|property| names.contains(&property.name.as_str()))
+    }
+}
+
 impl Scalar {
     /// How many bytes it has in a binary file.
     pub(super) fn size(self) -> usize {

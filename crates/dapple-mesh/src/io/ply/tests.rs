@@ -39,6 +39,22 @@ fn quad_as_text_becomes_two_triangles_with_linear_colors() {
     assert_eq!((model.normals, model.uvs), (None, None));
 }
 
+/// The head of a text with five vertices on the plane z = 0.
+const FIVE: &str = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n";
+
+#[test]
+fn strips_of_triangles_are_faces_with_one_orientation() {
+    let text = format!(
+        "{FIVE}element tristrips 2\nproperty uchar flags\nproperty list int int vertex_indices\nend_header\n\
+         0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n7 9 0 2 1 3 -1 4 3 2 -1\n7 2 0 1\n"
+    );
+    let model = read(text.as_bytes()).expect("it is valid");
+    assert_eq!(faces(&model), [[0, 2, 1], [2, 3, 1], [4, 3, 2]]);
+    for normal in model.mesh.vertex_normals() {
+        assert_eq!(normal, DVec3::Z, "counterclockwise from above");
+    }
+}
+
 #[test]
 fn both_byte_orders_read_as_the_same() {
     let header = |order: &str| {
