@@ -41,6 +41,8 @@ pub struct Model {
     pub normals: Option<Vec<DVec3>>,
     /// What all faces are made of.
     pub material: Material,
+    /// What a reader had to leave out of a file that contradicts itself, in words for people; no writer writes it.
+    pub left_out: Vec<String>,
 }
 
 /// What a surface is made of: the metallic-roughness material of glTF 2.0.

@@ -5,7 +5,8 @@
 //!
 //! All faces become one mesh, whatever their objects, groups and materials, since a texture is to run across these; the
 //! material is the first that a face has. Of normals, which OBJ gives to corners, those are kept that are the same at
-//! all corners of each vertex; if one vertex has two, as at a crease, the model has none. Lines, points and free-form
+//! all corners of each vertex; if one vertex has two, as at a crease, the model has none. Texture coordinates and normals
+//! that corners name and that there are not are left out, which [`Model::left_out`] says. Lines, points and free-form
 //! surfaces are left out. Of a material its `Kd` (linear, and only without a texture, since with one it is seldom
 //! meant), `d`, `map_Kd` and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is left
 //! out.
@@ -31,6 +32,8 @@ use std::borrow::Cow;
 const FORMAT: &str = "OBJ";
 /// In place of the number of a texture coordinate or normal that a corner does not have.
 const NONE: u32 = u32::MAX;
+/// In place of the number of one that there cannot be: as any number that is too large.
+const MISSING: u32 = u32::MAX - 1;
 
 /// The numbers of the position, texture coordinate and normal of a corner.
 type Corner = [u32; 3];
@@ -166,23 +169,52 @@ impl Draft {
         for (i, count) in counts.into_iter().enumerate() {
             match parts.next() {
                 Some(b"") | None if i > 0 => {}
-                part => corner[i] = index(parse(part?)?, count)?,
+                part => {
+                    let index = index(parse(part?)?, count);
+                    corner[i] = if i == 0 {
+                        index?
+                    } else {
+                        index.unwrap_or(MISSING)
+                    };
+                }
             }
         }
         parts.next().is_none().then_some(corner)
     }
 
+    /// Takes away what corners name and the file does not have, and says so.
+    fn take_away_missing(&mut self) -> Vec<String> {
+        let mut left_out = Vec::new();
+        for (i, count, what) in [
+            (1, self.uvs.len(), "texture coordinates"),
+            (2, self.normals.len(), "normals"),
+        ] {
+            let mut is_missing = false;
+            for corner in self.faces.iter_mut().flatten() {
+                if corner[i] != NONE && corner[i] as usize >= count {
+                    corner[i] = NONE;
+                    is_missing = true;
+                }
+            }
+            if is_missing {
+                left_out.push(format!("{what} that faces name and the file does not have"));
+            }
+        }
+        left_out
+    }
+
     fn into_model(mut self) -> Result<Model, MeshError> {
+        let left_out = self.take_away_missing();
         let faces: Vec<_> = self
             .faces
             .iter()
             .map(|face| face.map(|corner| corner[0]))
             .collect();
-        let uvs = self.face_uvs()?;
+        let uvs = self.face_uvs();
         // The corners name vertices that there are before normals are spread over these.
         let count = self.positions.len();
         let mesh = Mesh::new(core::mem::take(&mut self.positions), &faces)?;
-        let normals = self.vertex_normals(count)?;
+        let normals = self.vertex_normals(count);
         if !self.colors.is_empty() {
             self.colors.resize(count, WHITE);
         }
@@ -192,6 +224,7 @@ impl Draft {
             colors,
             uvs,
             normals,
+            left_out,
             ..Model::default()
         };
         model.check()?;
@@ -199,41 +232,33 @@ impl Draft {
     }
 
     /// The texture coordinates of the corners, zero where there are none, or nothing if no corner has one.
-    fn face_uvs(&self) -> Result<Option<Vec<[DVec2; 3]>>, MeshError> {
+    fn face_uvs(&self) -> Option<Vec<[DVec2; 3]>> {
         if self.faces.iter().flatten().all(|corner| corner[1] == NONE) {
-            return Ok(None);
+            return None;
         }
-        let uv = |[_, uv, _]: Corner| match uv {
-            NONE => Ok(DVec2::ZERO),
-            _ => named("texture coordinate", &self.uvs, uv),
-        };
-        let face = |&[a, b, c]: &[Corner; 3]| Ok([uv(a)?, uv(b)?, uv(c)?]);
-        self.faces
-            .iter()
-            .map(face)
-            .collect::<Result<_, _>>()
-            .map(Some)
+        let uv = |[_, uv, _]: Corner| self.uvs.get(uv as usize).copied().unwrap_or_default();
+        Some(self.faces.iter().map(|face| face.map(uv)).collect())
     }
 
     /// The normals of the vertices, if each vertex of a face has exactly one; those of a cloud of points in their
     /// order.
-    fn vertex_normals(&self, count: usize) -> Result<Option<Vec<DVec3>>, MeshError> {
+    fn vertex_normals(&self, count: usize) -> Option<Vec<DVec3>> {
         if self.faces.is_empty() {
             let whole = count > 0 && self.normals.len() == count;
-            return Ok(whole.then(|| self.normals.clone()));
+            return whole.then(|| self.normals.clone());
         }
         let mut normals = vec![None; count];
         let mut whole = true;
         for &[vertex, _, number] in self.faces.iter().flatten() {
-            if number == NONE {
-                whole = false;
-                continue;
+            match self.normals.get(number as usize) {
+                None => whole = false,
+                Some(&normal) => {
+                    whole &= *normals[vertex as usize].get_or_insert(normal) == normal;
+                }
             }
-            let normal = named("normal", &self.normals, number)?;
-            whole &= *normals[vertex as usize].get_or_insert(normal) == normal;
         }
         let spread = || normals.into_iter().map(Option::unwrap_or_default).collect();
-        Ok(whole.then(spread))
+        whole.then(spread)
     }
 }
 
@@ -259,14 +284,4 @@ fn index(number: i64, count: usize) -> Option<u32> {
     u32::try_from(from_zero)
         .ok()
         .filter(|&index| number != 0 && index != NONE)
-}
-
-fn named<T: Copy>(what: &str, column: &[T], number: u32) -> Result<T, MeshError> {
-    column.get(number as usize).copied().ok_or_else(|| {
-        let (number, count) = (u64::from(number) + 1, column.len());
-        MeshError::file(
-            FORMAT,
-            format!("a corner names {what} {number}, but there are {count}"),
-        )
-    })
 }

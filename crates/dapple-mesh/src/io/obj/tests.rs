@@ -90,6 +90,27 @@ fn normals_are_kept_only_without_creases() {
 }
 
 #[test]
+fn what_corners_name_in_vain_is_left_out() {
+    let head = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt .5 .5\n";
+    let [uvs, normals] = ["texture coordinates", "normals"]
+        .map(|what| format!("{what} that faces name and the file does not have"));
+    for (face, left_out) in [
+        ("f 1/1 2/1 3", vec![]),
+        ("f 1/1/1 2/1/1 3", vec![normals.clone()]),
+        ("f 1/1/-1 2/1/-1 3//-1", vec![normals.clone()]),
+        ("f 1/1 2/1 3/2", vec![uvs.clone()]),
+        ("f 1/1 2/1 3/-2", vec![uvs.clone()]),
+        ("f 1/1/0 2/1/9 3/99999999999/9", vec![uvs, normals]),
+    ] {
+        let model = read(format!("{head}{face}\n").as_bytes()).expect(face);
+        let half = DVec2::splat(0.5);
+        assert_eq!(model.uvs, Some(vec![[half, half, DVec2::ZERO]]), "{face}");
+        assert_eq!(model.normals, None, "{face}");
+        assert_eq!(model.left_out, left_out, "{face}");
+    }
+}
+
+#[test]
 fn what_is_wrong_is_named_with_its_line() {
     assert_eq!(
         why("v 0 0 0\nv 1 x 0\n"),
@@ -119,14 +140,6 @@ fn what_is_wrong_is_named_with_its_line() {
             );
         }
     }
-    assert_eq!(
-        why("v 0 0 0\nvt 0 0\nf 1/1 1/2 1/1"),
-        "a corner names texture coordinate 2, but there are 1"
-    );
-    assert_eq!(
-        why("v 0 0 0\nf 1//1 1 1"),
-        "a corner names normal 1, but there are 0"
-    );
     let kind = read(b"v 0 0 0\nf 1 2 1")
         .expect_err("no such vertex")
         .kind()
