@@ -23,7 +23,7 @@ use super::Beside;
 use super::colors::{self, Coding};
 use super::line::{Line, lines};
 use super::polygon::fan;
-use super::text::parse;
+use super::text::{no_vertex, parse};
 use crate::{Mesh, MeshError, Model};
 use dapple_color::{LinearRgb, LinearRgba};
 use glam::{DVec2, DVec3};
@@ -77,9 +77,17 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
 /// As [`read`]; of other files, only a `Kd` beyond single precision is an error.
 pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshError> {
     let mut draft = Draft::default();
-    for line in lines(FORMAT, &joined(bytes)) {
+    let text = joined(bytes);
+    for line in lines(FORMAT, &text) {
         draft.add(&line)?;
     }
+    if draft.positions.is_empty() && draft.faces.is_empty() {
+        return Err(MeshError::file(
+            FORMAT,
+            "it has neither a vertex nor a face",
+        ));
+    }
+    draft.check_vertices(&text)?;
     let libraries = core::mem::take(&mut draft.libraries);
     let name = draft.material.take().map(|(name, _)| name);
     let mut model = draft.into_model()?;
@@ -87,21 +95,31 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshErr
     Ok(model)
 }
 
-/// The text with lines joined that end with a backslash, but for comments, where that is often the end of a path.
+/// The text with lines joined that end with a backslash, but for comments, where that is often the end of a path. Where
+/// a joined line ends there are as many ends of lines as before, so that all others keep their numbers.
 fn joined(bytes: &[u8]) -> Cow<'_, [u8]> {
     let continued = |pair: &[u8]| pair[0] == b'\\' && matches!(pair[1], b'\n' | b'\r');
     if !bytes.windows(2).any(continued) {
         return Cow::Borrowed(bytes);
     }
-    let mut text = bytes.to_vec();
-    let mut comment = text[0] == b'#';
-    for i in 1..text.len() {
-        if text[i - 1] == b'\n' {
-            comment = text[i] == b'#';
-        }
-        if !comment && continued(&text[i - 1..=i]) {
-            let crlf = text[i..].starts_with(b"\r\n");
-            text[i - 1..=i + usize::from(crlf)].fill(b' ');
+    let mut text = Vec::with_capacity(bytes.len());
+    let mut n_joined = 0;
+    for line in bytes.split_inclusive(|&byte| byte == b'\n') {
+        let content = line.trim_ascii_end();
+        let is_comment = n_joined == 0 && line.starts_with(b"#");
+        match content.strip_suffix(b"\\") {
+            // The backslash is the very last before the end of the line.
+            Some(start)
+                if !is_comment && matches!(line[content.len()..], [b'\n'] | [b'\r', b'\n']) =>
+            {
+                text.extend(start);
+                text.push(b' ');
+                n_joined += 1;
+            }
+            _ => {
+                text.extend(line);
+                text.resize(text.len() + core::mem::take(&mut n_joined), b'\n');
+            }
         }
     }
     Cow::Owned(text)
@@ -113,13 +131,13 @@ impl Draft {
             b"v" => self.add_vertex(line)?,
             b"vt" => {
                 let v = if line.words.len() > 2 {
-                    line.number(2)?
+                    line.part(2)?
                 } else {
                     0.0
                 };
-                self.uvs.push(DVec2::new(line.number(1)?, 1.0 - v));
+                self.uvs.push(DVec2::new(line.part(1)?, 1.0 - v));
             }
-            b"vn" => self.normals.push(line.vector(1)?),
+            b"vn" => self.normals.push(line.position(1)?),
             b"f" => self.add_face(line)?,
             // Some programs repeat it for each object.
             b"mtllib" if self.libraries.last() != Some(&name(line)) => {
@@ -141,7 +159,7 @@ impl Draft {
             self.colors.resize(self.positions.len(), WHITE);
             self.colors.push(colors::decode(parts, [Coding::Unit; 4]));
         }
-        self.positions.push(line.vector(1)?);
+        self.positions.push(line.position(1)?);
         Ok(())
     }
 
@@ -180,6 +198,27 @@ impl Draft {
             }
         }
         parts.next().is_none().then_some(corner)
+    }
+
+    /// Refuses a face that names a vertex which the file does not have.
+    fn check_vertices(&self, text: &[u8]) -> Result<(), MeshError> {
+        let count = self.positions.len();
+        let missing = |corner: &&Corner| corner[0] as usize >= count;
+        let corners = self.faces.iter().enumerate();
+        let mut first =
+            corners.filter_map(|(face, corners)| Some((face, corners.iter().find(missing)?)));
+        let Some((face, corner)) = first.next() else {
+            return Ok(());
+        };
+        // Vertices may come after the faces, so that only now the line is looked for.
+        let mut n_faces = 0;
+        for line in lines(FORMAT, text).filter(|line| line.words[0] == b"f") {
+            n_faces += line.words.len().saturating_sub(3);
+            if n_faces > face {
+                return Err(line.error(no_vertex(u64::from(corner[0]) + 1, count)));
+            }
+        }
+        Ok(())
     }
 
     /// Takes away what corners name and the file does not have, and says so.

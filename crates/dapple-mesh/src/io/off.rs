@@ -11,7 +11,7 @@
 use super::colors::{self, Coding};
 use super::line::{Line, lines};
 use super::polygon::fan;
-use super::text::parse;
+use super::text::{no_vertex, parse};
 use crate::{Mesh, MeshError, Model};
 use dapple_color::LinearRgba;
 use glam::{DVec2, DVec3};
@@ -76,7 +76,10 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
             let more = lines.next();
             line.extend(more.ok_or_else(|| line.error("a face has fewer corners than it says"))?);
         }
-        take_corners(&line, count, &mut corners)?;
+        corners.clear();
+        for word in &line.words[1..=count] {
+            corners.push(corner(&line, word, n_vertices)?);
+        }
         faces.extend(fan(&corners));
     }
     vertices.into_model(header, &faces)
@@ -136,24 +139,23 @@ fn polygon_count(line: &Line<'_>) -> Result<usize, MeshError> {
     parse(line.words[0]).ok_or_else(|| line.error("the number of corners of a face is needed"))
 }
 
-/// The corners of a polygon.
-fn take_corners(line: &Line<'_>, count: usize, corners: &mut Vec<u32>) -> Result<(), MeshError> {
-    corners.clear();
-    for word in &line.words[1..=count] {
-        let corner =
-            parse(word).ok_or_else(|| line.error("a corner is not the number of a vertex"))?;
-        corners.push(corner);
+/// The corner that a word is, which is the number of a vertex, from 0.
+fn corner(line: &Line<'_>, word: &[u8], n_vertices: u64) -> Result<u32, MeshError> {
+    let corner: u32 =
+        parse(word).ok_or_else(|| line.error("a corner is not the number of a vertex"))?;
+    if u64::from(corner) < n_vertices {
+        return Ok(corner);
     }
-    Ok(())
+    Err(line.error(format!("{}, counted from 0", no_vertex(corner, n_vertices))))
 }
 
 impl Vertices {
     /// Adds the vertex of a line: position, normal, color, texture coordinates.
     fn add(&mut self, header: Header, line: &Line<'_>) -> Result<(), MeshError> {
-        self.positions.push(line.vector(0)?);
+        self.positions.push(line.position(0)?);
         let mut at = 3;
         if header.normal {
-            self.normals.push(line.vector(at)?);
+            self.normals.push(line.position(at)?);
             at += 3;
         }
         if header.color {
@@ -170,8 +172,8 @@ impl Vertices {
         }
         if header.texture {
             // Here v goes up.
-            let v = 1.0 - line.number(at + 1)?;
-            self.uvs.push(DVec2::new(line.number(at)?, v));
+            let v = 1.0 - line.part(at + 1)?;
+            self.uvs.push(DVec2::new(line.part(at)?, v));
         }
         Ok(())
     }
@@ -309,6 +311,14 @@ mod tests {
         assert_eq!(
             why("OFF\n1 1 0\n0 0 0\n3 0 0 -1\n"),
             "line 4: a corner is not the number of a vertex"
+        );
+        assert_eq!(
+            why("OFF\n1 1 0\n0 0 0\n\n3 0 1 0\n"),
+            "line 5: a corner of a face is vertex 1, but there are 1, counted from 0"
+        );
+        assert_eq!(
+            why("OFF\n2 0 0\n0 0 0\n0 1e31 0\n"),
+            "line 4: a number is 1e31, but it must be between -1e30 and 1e30"
         );
         assert_eq!(
             why("COFF\n1 0 0\n0 0 0\n"),

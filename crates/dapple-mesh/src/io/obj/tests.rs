@@ -140,23 +140,38 @@ fn what_is_wrong_is_named_with_its_line() {
             );
         }
     }
-    let kind = read(b"v 0 0 0\nf 1 2 1")
-        .expect_err("no such vertex")
-        .kind()
-        .clone();
     assert_eq!(
-        kind,
-        MeshErrorKind::Corner {
-            face: 0,
-            vertex: 1,
-            count: 1
-        }
+        why("v 0 0 0\n\nf 1 1 1 1 \\\n 1\nf 1 1 \\\r\n1\nf 1 1 2\nf 1 1 1\nv 0 nan 0\n"),
+        "line 9: a number is NaN, but it must be between -1e30 and 1e30",
+        "lines that go on keep the numbers of those behind"
     );
-    let kind = read(b"v 0 nan 0").expect_err("no number").kind().clone();
-    assert!(
-        matches!(kind, MeshErrorKind::Position { vertex: 0, .. }),
-        "{kind:?}"
+    assert_eq!(
+        why("v 0 0 0\nf 1 1 1 1 \\\n 1\nf 1 2 1\nf 1 1 1\n"),
+        "line 4: a corner of a face is vertex 2, but there are 1"
     );
+    for number in ["vt 0 inf", "vn 0 -1e31 0"] {
+        let text = format!("v 0 0 0\n# here\n{number}\n");
+        assert!(why(&text).starts_with("line 3: a number is "), "{number}");
+    }
+}
+
+#[test]
+fn what_has_neither_vertices_nor_faces_is_no_obj() {
+    let wide: Vec<u8> = "v 0 0 0\n"
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    for bytes in [
+        b"".as_slice(),
+        b"Dear Sir,\nf you\n",
+        &[7, 200, 0, 255, 10, 3],
+        &wide,
+    ] {
+        let error = read(bytes).expect_err("it is no OBJ file");
+        let text = error.to_string();
+        assert!(text.starts_with("this is not a valid OBJ file: "), "{text}");
+    }
+    assert!(read(b"v 0 0 0\n").is_ok(), "a cloud of one point");
 }
 
 #[test]
