@@ -27,10 +27,11 @@ mod tests;
 pub use write::write;
 
 use super::Beside;
-use crate::{EncodedImage, Material, MeshError, Model};
+use crate::{EncodedImage, Material, MeshError, MeshErrorKind, Model};
 use container::{Container, percent_decoded};
 use dapple_color::LinearRgba;
-use document::{Document, TextureInfo};
+use document::{Document, Head, TextureInfo};
+use serde::Deserialize;
 use std::borrow::Cow;
 
 const FORMAT: &str = "glTF";
@@ -54,8 +55,8 @@ struct Source<'a> {
 ///
 /// # Errors
 ///
-/// [`MeshErrorKind::File`](crate::MeshErrorKind::File) if the bytes are not a glTF 2.0 file, or it requires an
-/// extension or another file; and what [`Mesh::new`](crate::Mesh::new) and [`Model::check`] refuse.
+/// [`MeshErrorKind::File`] if the bytes are not a glTF file, or it requires another file;
+/// [`MeshErrorKind::Unsupported`] if its version is not 2, or it requires an extension; and what [`Mesh::new`](crate::Mesh::new) and [`Model::check`] refuse.
 ///
 /// # Examples
 ///
@@ -78,17 +79,15 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
 /// As [`read`]. A missing texture is no error.
 pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshError> {
     let container = Container::read(bytes)?;
-    let document: Document =
-        serde_json::from_slice(container.json).map_err(|error| wrong(error.to_string()))?;
-    if !document.asset.version.starts_with("2.") {
-        return Err(wrong(format!(
-            "its version is {}, and only 2 is read",
-            document.asset.version
-        )));
+    // Other versions have other types in the same places, so that this has to be asked first.
+    let Head { asset } = parse(container.json)?;
+    if !asset.version.starts_with("2.") {
+        return Err(unsupported(format!("glTF {}", asset.version)));
     }
+    let document: Document = parse(container.json)?;
     let unknown = |name: &&String| !EXTENSIONS.contains(&name.as_str());
     if let Some(name) = document.extensions_required.iter().find(unknown) {
-        return Err(wrong(format!("it requires the extension {name}")));
+        return Err(unsupported(format!("the glTF extension {name}")));
     }
     let buffers = container.buffers(&document, beside)?;
     let source = Source { document, buffers };
@@ -104,6 +103,14 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshErr
     }
     model.check()?;
     Ok(model)
+}
+
+fn parse<'a, T: Deserialize<'a>>(json: &'a [u8]) -> Result<T, MeshError> {
+    serde_json::from_slice(json).map_err(|error| wrong(error.to_string()))
+}
+
+fn unsupported(feature: String) -> MeshError {
+    MeshError::new(MeshErrorKind::Unsupported { feature })
 }
 
 fn wrong(why: impl Into<String>) -> MeshError {

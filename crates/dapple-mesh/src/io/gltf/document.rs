@@ -4,10 +4,15 @@
 
 use serde::Deserialize;
 
+/// What all versions have.
+#[derive(Deserialize)]
+pub(super) struct Head {
+    pub(super) asset: Asset,
+}
+
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Document {
-    pub(super) asset: Asset,
     #[serde(default)]
     pub(super) extensions_required: Vec<String>,
     pub(super) scene: Option<usize>,
