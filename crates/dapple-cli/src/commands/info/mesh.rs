@@ -44,9 +44,10 @@ pub(super) fn findings(path: &Path) -> Result<Findings> {
     let area = surface.as_ref().ok().map(Surface::area);
     text += &match &surface {
         Ok(surface) => format!("\n  an area of {:.6}; ready for a texture", surface.area()),
-        Err(error) => {
+        Err(error) if Surface::new(model.mesh.repair().0).is_ok() => {
             format!("\n  not ready for a texture as it is: {error}; dapple synth repairs it")
         }
+        Err(error) => format!("\n  not fit for a texture: {error}"),
     };
     let counts = counts
         .iter()
