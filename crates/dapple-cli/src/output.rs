@@ -300,6 +300,10 @@ fn place(target: &Target) -> Result<Place> {
                 path.with_context(|| format!("{target} cannot be written"))?,
             ))
         }
+        // The temporary name is shorter, so that only this would be found out at the end.
+        Err(error) if error.kind() == io::ErrorKind::InvalidFilename => {
+            Err(error).with_context(|| format!("{target} cannot be written"))
+        }
         Err(_) if path.file_name().is_none() => {
             Err(anyhow!("{:?} is not the name of a file", path.display()))
         }
