@@ -109,8 +109,11 @@ pub(crate) fn bake(
     let mut rows = Vec::new();
     for file in files {
         let (content, encoding) = (content(file.kind), file.format.encoding());
+        let target = job.target(file.output).clone();
+        let writer = RowWriter::new(job.writer(file.output)?, size, content, encoding);
         rows.push(Rows {
-            writer: RowWriter::new(job.writer(file.output)?, size, content, encoding)?,
+            writer: writer.with_context(|| cannot_be_written(&target))?,
+            target,
             range: [f32::INFINITY, f32::NEG_INFINITY],
         });
     }
@@ -123,7 +126,9 @@ pub(crate) fn bake(
         progress.set(u64::from(band.first_row) + u64::from(height));
     }
     for (rows, file) in rows.into_iter().zip(files) {
-        rows.writer.finish()?.flush()?;
+        let ended = rows.writer.finish().map_err(Error::from);
+        let flushed = ended.and_then(|mut file| Ok(file.flush()?));
+        flushed.with_context(|| cannot_be_written(&rows.target))?;
         job.note(file.output, file.format, size, rows.range);
     }
     Ok(())
@@ -151,6 +156,7 @@ pub(crate) fn advise(error: RecipeError) -> Error {
 
 /// A map on its way into a file.
 struct Rows {
+    target: Target,
     writer: RowWriter<BufWriter<File>>,
     /// The smallest and the largest number so far.
     range: [f32; 2],
@@ -158,15 +164,20 @@ struct Rows {
 
 impl Rows {
     fn write(&mut self, map: &MapRows) -> Result<()> {
-        match map {
-            MapRows::Gray(raster) => self.writer.write_gray(raster.view())?,
-            MapRows::Color(raster) => self.writer.write_color(raster.view())?,
-            MapRows::Normal(raster) => self.writer.write_normals(raster.view())?,
-            MapRows::Packed(raster) => self.writer.write_packed(raster.view())?,
-        }
+        let written = match map {
+            MapRows::Gray(raster) => self.writer.write_gray(raster.view()),
+            MapRows::Color(raster) => self.writer.write_color(raster.view()),
+            MapRows::Normal(raster) => self.writer.write_normals(raster.view()),
+            MapRows::Packed(raster) => self.writer.write_packed(raster.view()),
+        };
+        written.with_context(|| cannot_be_written(&self.target))?;
         self.range = map.range(self.range);
         Ok(())
     }
+}
+
+fn cannot_be_written(target: &Target) -> String {
+    format!("{target} cannot be written")
 }
 
 fn content(kind: MapKind) -> Content {

@@ -122,12 +122,19 @@ pub(crate) fn name(path: &Path) -> String {
 pub(crate) fn model(path: &Path) -> Result<Model> {
     check_file(path, "a mesh")?;
     read_model(path).map_err(|error| {
-        let is_unknown = matches!(error.kind(), MeshErrorKind::Format { .. });
+        let hint = match error.kind() {
+            MeshErrorKind::Format { .. } => {
+                Some("a mesh is a file in .obj, .ply, .glb, .gltf or .off")
+            }
+            MeshErrorKind::Unsupported { .. } => {
+                Some("export it again without that, or as .obj or .ply")
+            }
+            _ => None,
+        };
         let error = Error::new(error).context(format!("{}: no mesh was read", path.display()));
-        if is_unknown {
-            error.hint("a mesh is a file in .obj, .ply, .glb, .gltf or .off")
-        } else {
-            error
+        match hint {
+            Some(hint) => error.hint(hint),
+            None => error,
         }
     })
 }

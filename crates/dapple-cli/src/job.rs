@@ -161,6 +161,11 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
+    /// The target of a file that was claimed.
+    pub(crate) fn target(&self, output: OutputIdx) -> &Target {
+        self.outputs.target(output)
+    }
+
     /// What writes a file that was claimed, from its start. It has to be flushed before the job is finished.
     ///
     /// # Errors

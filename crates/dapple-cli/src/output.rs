@@ -285,6 +285,9 @@ impl Pending {
 /// Where the bytes of a target go, as far as can be seen now.
 fn place(target: &Target) -> Result<Place> {
     let Target::Path(path) = target else {
+        if is_stdout_closed() {
+            return Err(anyhow!("standard output is closed").hint("give a file with -o"));
+        }
         return Ok(Place::Stdout);
     };
     match fs::metadata(path) {
@@ -300,11 +303,33 @@ fn place(target: &Target) -> Result<Place> {
                 path.with_context(|| format!("{target} cannot be written"))?,
             ))
         }
+        // The temporary name is shorter, so that only this would be found out at the end.
+        Err(error) if error.kind() == io::ErrorKind::InvalidFilename => {
+            Err(error).with_context(|| format!("{target} cannot be written"))
+        }
         Err(_) if path.file_name().is_none() => {
             Err(anyhow!("{:?} is not the name of a file", path.display()))
         }
         Err(_) => Ok(Place::File(path.clone())),
     }
+}
+
+/// Whether standard output was closed when the process began. The null device is opened in its place then, also for
+/// reading, which it is not where somebody throws the output away.
+#[cfg(unix)]
+fn is_stdout_closed() -> bool {
+    use std::os::{fd::AsFd, unix::fs::MetadataExt};
+    let is_readable_null = || -> io::Result<bool> {
+        let mut file = File::from(io::stdout().as_fd().try_clone_to_owned()?);
+        let is_null = file.metadata()?.rdev() == fs::metadata("/dev/null")?.rdev();
+        Ok(is_null && file.read(&mut [0]).is_ok())
+    };
+    is_readable_null().unwrap_or(false)
+}
+
+#[cfg(not(unix))]
+fn is_stdout_closed() -> bool {
+    false
 }
 
 fn exists(target: &Target) -> Error {

@@ -95,7 +95,8 @@ impl PngImage {
 
 impl ExrImage {
     fn channels(&self) -> Channels {
-        let has = |name: &str| self.planes.iter().any(|plane| plane.name == name);
+        let layer = self.color_layer();
+        let has = |channel: &str| self.has(&format!("{layer}{channel}"));
         let has_alpha = has("A");
         if ["R", "G", "B"].iter().all(|name| has(name)) {
             if has_alpha {

@@ -64,7 +64,7 @@ impl ExrPlane {
 /// What an OpenEXR file holds: its planes, in the order of the file (by name, within each part).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExrImage {
-    /// The planes. Those of a named part are named `part.channel`.
+    /// The planes. Those of a named part are named `part.channel`, unless it is the only part of the file.
     pub planes: Vec<ExrPlane>,
 }
 
@@ -102,7 +102,8 @@ impl ExrImage {
 
     /// The colors of the planes `R`, `G`, `B` with the alpha of `A` divided out, or 1 where there is no plane `A`.
     ///
-    /// A gray image gives grays. Where alpha is 0, the color is as in the file.
+    /// Without a plane `R`, those of the only layer that has one are taken, as of `beauty.R`. A gray image gives grays.
+    /// Where alpha is 0, the color is as in the file.
     ///
     /// # Errors
     ///
@@ -112,8 +113,10 @@ impl ExrImage {
         if let Ok(gray) = self.gray() {
             return Ok(gray.map(|&value| LinearRgba::opaque(LinearRgb::gray(value))));
         }
-        let [red, green, blue] = [self.plane("R")?, self.plane("G")?, self.plane("B")?];
-        let alpha = self.plane("A").ok();
+        let layer = self.color_layer();
+        let part = |channel: &str| self.plane(&format!("{layer}{channel}"));
+        let [red, green, blue] = [part("R")?, part("G")?, part("B")?];
+        let alpha = part("A").ok();
         for plane in [Some(green), Some(blue), alpha].into_iter().flatten() {
             check_size(plane.size(), red.size())?;
         }
@@ -125,7 +128,19 @@ impl ExrImage {
         Raster::from_vec(red.size(), pixels).map_err(|error| ImageError::damaged("OpenEXR", error))
     }
 
-    fn has(&self, name: &str) -> bool {
+    /// What the names of the planes of color begin with: nothing, or the only layer of color with its dot.
+    pub(crate) fn color_layer(&self) -> &str {
+        let layers = self.planes.iter().filter_map(|plane| {
+            let layer = plane.name.strip_suffix("R")?;
+            (layer.is_empty() || layer.ends_with('.')).then_some(layer)
+        });
+        match layers.collect::<Vec<_>>().as_slice() {
+            [layer] => layer,
+            _ => "",
+        }
+    }
+
+    pub(crate) fn has(&self, name: &str) -> bool {
         self.planes.iter().any(|plane| plane.name == name)
     }
 }

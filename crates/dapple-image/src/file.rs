@@ -9,11 +9,10 @@
 )]
 
 use crate::{ImageError, ImageErrorKind};
-use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::path::Path;
+use tempfile::Builder;
 
 /// All bytes of a file, if there are at most `limit`.
 pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
@@ -31,34 +30,25 @@ pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
 }
 
 /// Makes `bytes` the content of the file at `path`, which is new or the old one until all of it is written.
+///
+/// A file that is there keeps its permissions, and one that a link leads to, the link.
 pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
-    let temporary = temporary_beside(path);
-    write_and_rename(&temporary, path, bytes).map_err(|error| {
-        // What remains is of no use, and the first error is the one to report.
-        let _ = fs::remove_file(&temporary);
-        ImageError::new(ImageErrorKind::Io).because(error).at(path)
-    })
+    write_and_rename(path, bytes)
+        .map_err(|error| ImageError::new(ImageErrorKind::Io).because(error).at(path))
 }
 
-fn write_and_rename(temporary: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = File::options()
-        .write(true)
-        .create_new(true)
-        .open(temporary)?;
-    file.write_all(bytes)?;
-    // Closed first, since not every system renames an open file.
-    drop(file);
-    fs::rename(temporary, path)
-}
-
-/// A name in the same folder that no other call, in this process or another, has at the same time.
-fn temporary_beside(path: &Path) -> PathBuf {
-    static COUNT: AtomicU64 = AtomicU64::new(0);
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let mut name = OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(format!(".{}-{count}.tmp", std::process::id()));
-    path.with_file_name(name)
+fn write_and_rename(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let folder = path.parent().unwrap_or(Path::new(""));
+    // Made here, so that its permissions are those of any new file.
+    let create = |path: &Path| File::options().write(true).create_new(true).open(path);
+    let mut file = Builder::new().prefix(".dapple-").make_in(folder, create)?;
+    file.as_file_mut().write_all(bytes)?;
+    if let Ok(found) = fs::metadata(&path) {
+        file.as_file().set_permissions(found.permissions())?;
+    }
+    file.persist(path)?;
+    Ok(())
 }
 
 #[cfg(test)]
@@ -87,6 +77,32 @@ mod tests {
             assert_eq!(read(&path, 100).unwrap(), content, "the content");
         }
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "one file");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn the_longest_name_of_a_file_system_can_be_written() {
+        let folder = folder("long");
+        let path = folder.join(format!("{}.png", "n".repeat(251)));
+        replace(&path, b"content").unwrap();
+        assert_eq!(read(&path, 10).unwrap(), b"content", "255 bytes");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn permissions_and_links_are_kept() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = folder("kept");
+        let (file, link) = (folder.join("a.png"), folder.join("link.png"));
+        fs::write(&file, b"old").unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+        symlink(&file, &link).unwrap();
+        replace(&link, b"new").unwrap();
+        assert!(link.is_symlink(), "the link stays");
+        assert_eq!(read(&file, 10).unwrap(), b"new", "where it leads to");
+        let mode = fs::metadata(&file).unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o640, "the permissions stay");
         fs::remove_dir_all(folder).unwrap();
     }
 

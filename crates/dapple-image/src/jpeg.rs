@@ -3,7 +3,7 @@
 //! Reference: ITU-T T.81, "Digital compression and coding of continuous-tone still images", 1992, with JFIF (ITU-T T.871)
 //! and Exif. The codec is the crate `zune-jpeg`, without its SIMD, so that a file gives the same pixels on every machine.
 //! Profiles are ignored, and the codes are sRGB. An image with an Exif orientation is turned the way that it is meant to be
-//! seen, as browsers and editors do. CMYK is refused.
+//! seen, as browsers and editors do. Other codings, other depths and CMYK are refused by name.
 //!
 //! Where a program unwinds on panic (the default), a panic of the codec is caught here and becomes
 //! [`ImageErrorKind::Damaged`].
@@ -40,7 +40,7 @@ const SAMPLE_BYTES: u64 = 3;
 /// # Errors
 ///
 /// [`ImageErrorKind::UnknownFormat`] if the bytes do not begin like JPEG, [`ImageErrorKind::Damaged`] if they break its
-/// rules or end too soon, [`ImageErrorKind::Unsupported`] for CMYK and for arithmetic or lossless coding,
+/// rules or end too soon, [`ImageErrorKind::Unsupported`] for CMYK, for arithmetic, lossless or hierarchical coding, and for other than 8 bits,
 /// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit, where each sample counts for three
 /// bytes, since decoding may take as much.
 pub fn decode_jpeg(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
@@ -54,6 +54,9 @@ pub fn decode_jpeg(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError
 
 fn decode(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
     check_end(bytes)?;
+    if let Some(feature) = frame(bytes).and_then(unread_feature) {
+        return Err(ImageError::new(ImageErrorKind::Unsupported { feature }));
+    }
     let options = DecoderOptions::default()
         .set_strict_mode(true)
         .set_max_width(SIDE_LIMIT)
@@ -103,6 +106,52 @@ fn check_end(bytes: &[u8]) -> Result<(), ImageError> {
     } else {
         Err(ImageError::damaged("JPEG", "the end is missing"))
     }
+}
+
+/// What a file says of its coding: a marker, the bits of a sample, and the number of channels.
+///
+/// It stands in the header of the frame (T.81, B.2.2), before the first scan.
+fn frame(bytes: &[u8]) -> Option<[u8; 3]> {
+    let mut rest = bytes.get(2..)?;
+    loop {
+        match *rest {
+            // A marker may have any number of these before it.
+            [0xff, 0xff, ..] => rest = &rest[1..],
+            // Tables of Huffman and arithmetic codes, and what is reserved, are no frames.
+            [
+                0xff,
+                marker @ (0xc0..=0xcf | 0xf7),
+                _,
+                _,
+                bits,
+                _,
+                _,
+                _,
+                _,
+                channels,
+                ..,
+            ] if !matches!(marker, 0xc4 | 0xc8 | 0xcc) => {
+                return Some([marker, bits, channels]);
+            }
+            [0xff, marker, high, low, ..] if marker != START_OF_SCAN => {
+                rest = rest.get(2 + usize::from(u16::from_be_bytes([high, low]))..)?;
+            }
+            _ => return None,
+        }
+    }
+}
+
+/// What of a frame is not read (T.81, table B.1; T.87 for JPEG-LS).
+fn unread_feature([marker, bits, channels]: [u8; 3]) -> Option<&'static str> {
+    Some(match marker {
+        0xc3 | 0xc7 | 0xcb | 0xcf => "lossless JPEG",
+        0xf7 => "JPEG-LS",
+        0xc5 | 0xc6 | 0xcd | 0xce => "hierarchical JPEG",
+        0xc9 | 0xca => "JPEG with arithmetic coding",
+        _ if bits != 8 => "JPEG with other than 8 bits per channel",
+        _ if channels == 4 => "CMYK in JPEG",
+        _ => return None,
+    })
 }
 
 fn refusal(error: DecodeErrors) -> ImageError {

@@ -66,6 +66,11 @@ pub enum MeshErrorKind {
         /// What is wrong, and where.
         why: String,
     },
+    /// A file is valid, but uses a feature that is not read.
+    Unsupported {
+        /// What is not read.
+        feature: String,
+    },
     /// A file cannot be read or written.
     Io {
         /// The path of the file.
@@ -150,6 +155,7 @@ impl fmt::Display for MeshError {
             MeshErrorKind::File { format, why } => {
                 write!(f, "this is not a valid {format} file: {why}")
             }
+            MeshErrorKind::Unsupported { feature } => write!(f, "{feature} is not supported"),
             MeshErrorKind::Io { path, why } => write!(f, "{path}: {why}"),
             MeshErrorKind::Format { name, known } => {
                 write!(f, "no mesh format is named `{name}`; there are {known}")

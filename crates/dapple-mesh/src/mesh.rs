@@ -4,7 +4,7 @@ use crate::{MeshError, MeshErrorKind, VertexIdx};
 use glam::DVec3;
 
 /// The largest part of a position, so that squares and their sums stay finite.
-const POSITION_MAX: f64 = 1e30;
+pub(crate) const POSITION_MAX: f64 = 1e30;
 /// The most vertices and the most faces: indices and twice their number fit 32 bits.
 const COUNT_MAX: usize = 1 << 31;
 

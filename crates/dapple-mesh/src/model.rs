@@ -3,12 +3,11 @@
 //! Colors are linear light. Texture coordinates have v down: (0, 0) is the top left corner of the first row of the
 //! texture, as in glTF; the readers and writers of formats in which v goes up turn it over.
 
+use crate::mesh::POSITION_MAX;
 use crate::{Mesh, MeshError, MeshErrorKind};
 use dapple_color::{LinearRgb, LinearRgba};
 use glam::{DVec2, DVec3};
 
-/// The largest part of a texture coordinate or a normal, as of a position.
-const PART_MAX: f64 = 1e30;
 /// The first bytes of every PNG file.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// The first bytes of every JPEG file.
@@ -41,6 +40,8 @@ pub struct Model {
     pub normals: Option<Vec<DVec3>>,
     /// What all faces are made of.
     pub material: Material,
+    /// What a reader had to leave out of a file that contradicts itself, in words for people; no writer writes it.
+    pub left_out: Vec<String>,
 }
 
 /// What a surface is made of: the metallic-roughness material of glTF 2.0.
@@ -202,7 +203,12 @@ fn check_color(what: &'static str, color: LinearRgba) -> Result<(), MeshError> {
 }
 
 fn check_part(what: &'static str, part: f64) -> Result<(), MeshError> {
-    MeshError::check(part.abs() <= PART_MAX, what, part, "between -1e30 and 1e30")
+    MeshError::check(
+        part.abs() <= POSITION_MAX,
+        what,
+        part,
+        "between -1e30 and 1e30",
+    )
 }
 
 #[cfg(test)]

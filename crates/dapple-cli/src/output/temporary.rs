@@ -1,8 +1,8 @@
-//! A file under a temporary name, beside the one that it is to become.
+//! A file under a temporary name, in the folder of the one that it is to become.
 //!
-//! `height.png` is written as `.height.png.<process>-<count>.part`. As long as its process lives, that holds a lock on it,
-//! which the operating system gives up however the process ends. So a file that nobody has a lock on was left behind, as by
-//! `kill -9`, and the next run that writes the same name takes it away.
+//! It is named `.dapple-` and six letters and `.part`. As long as its process lives, that holds a lock on it, which the
+//! operating system gives up however the process ends. So a file that nobody has a lock on was left behind, as by
+//! `kill -9`, and the next run that writes into the same folder takes it away.
 
 #![expect(
     clippy::disallowed_methods,
@@ -10,96 +10,75 @@
 )]
 
 use super::registry::{self, Held};
-use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
 use std::io;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::path::Path;
+use tempfile::{Builder, NamedTempFile};
 
-/// How the temporary names end.
-const ENDING: &str = ".part";
-/// How many names are tried.
-const ATTEMPTS: usize = 16;
+/// How the temporary names begin.
+const PREFIX: &str = ".dapple-";
+/// How they end.
+const SUFFIX: &str = ".part";
 
 /// An open temporary file with a lock on it.
 #[derive(Debug)]
-pub(super) struct Temporary {
-    path: PathBuf,
-    file: File,
-}
+pub(super) struct Temporary(NamedTempFile);
 
 impl Temporary {
     /// A new file in the folder of `path`.
     pub(super) fn beside(path: &Path) -> io::Result<Self> {
         let mut held = registry::hold();
-        for _ in 0..ATTEMPTS {
-            let path = temporary_name(path);
-            let file = File::options()
-                .read(true)
-                .write(true)
-                .create_new(true)
-                .open(&path);
-            match file {
-                Ok(file) if keeps(&file, &path) => {
-                    held.push(path.clone());
-                    return Ok(Self { path, file });
-                }
-                // Another process took it for one that was left behind.
-                Ok(_) => {}
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-                Err(error) => return Err(error),
-            }
-        }
-        Err(io::Error::other("no temporary name is free"))
+        let mut builder = Builder::new();
+        let file = builder.prefix(PREFIX).suffix(SUFFIX);
+        let file = file.make_in(folder(path), create_locked)?;
+        held.push(file.path().to_owned());
+        Ok(Self(file))
     }
 
     /// The file.
     pub(super) fn file(&self) -> &File {
-        &self.file
+        self.0.as_file()
     }
 
-    /// Makes it the file at `path`, and replaces one that is there only if it may.
+    /// Makes it the file at `path`, and replaces one that is there only if it may; that one leaves its permissions.
     pub(super) fn put(self, held: &mut Held, path: &Path, force: bool) -> io::Result<()> {
-        let put = if force {
-            fs::rename(&self.path, path)
-        } else {
-            rename_if_new(&self.path, path)
-        };
-        if put.is_err() {
-            self.remove(held);
-        } else {
-            registry::forget(held, &self.path);
+        registry::forget(held, self.0.path());
+        if force {
+            if let Ok(found) = fs::metadata(path) {
+                self.file().set_permissions(found.permissions())?;
+            }
+            self.0.persist(path)?;
+            return Ok(());
         }
-        put
+        if let Err(refused) = self.0.persist_noclobber(path) {
+            // Not every file system can rename only to a new name. What is left then is a look before the rename.
+            if refused.error.kind() == io::ErrorKind::AlreadyExists {
+                return Err(refused.error);
+            }
+            if path.symlink_metadata().is_ok() {
+                return Err(io::ErrorKind::AlreadyExists.into());
+            }
+            refused.file.persist(path)?;
+        }
+        Ok(())
     }
 
     /// Takes it away.
     pub(super) fn remove(self, held: &mut Held) {
-        // If somebody took it away before, all the better.
-        let _ = fs::remove_file(&self.path);
-        registry::forget(held, &self.path);
+        registry::forget(held, self.0.path());
     }
 }
 
-/// Takes away what processes that are no more have left of the file at `path`.
+/// Takes away what processes that are no more have left in the folder of `path`.
 pub(super) fn remove_left_behind(path: &Path) {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut start = prefix(path);
-    start.push(".");
     // What cannot be read here is of no harm, and will be said where it is written.
-    let Ok(entries) = fs::read_dir(folder) else {
+    let Ok(entries) = fs::read_dir(folder(path)) else {
         return;
     };
     for entry in entries.flatten() {
         let name = entry.file_name();
-        let [name, start] = [&name, &start].map(|name| name.as_encoded_bytes());
-        let middle = name
-            .strip_prefix(start)
-            .and_then(|rest| rest.strip_suffix(ENDING.as_bytes()));
-        if !middle.is_some_and(is_process_and_count) {
+        let name = name.as_encoded_bytes();
+        if !name.starts_with(PREFIX.as_bytes()) || !name.ends_with(SUFFIX.as_bytes()) {
             continue;
         }
         // Opened for writing, since some file systems lock nothing else.
@@ -113,49 +92,22 @@ pub(super) fn remove_left_behind(path: &Path) {
     }
 }
 
-/// Locks a new file, and says whether it is still there.
-fn keeps(file: &File, path: &Path) -> bool {
+/// The folder that a file lies in.
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Makes a file and locks it. Its permissions are those of any new file.
+fn create_locked(path: &Path) -> io::Result<File> {
+    let mut options = File::options();
+    let file = options.read(true).write(true).create_new(true).open(path)?;
     match file.try_lock() {
-        Err(TryLockError::WouldBlock) => false,
         // Where there are no locks, nobody takes a file for one that was left behind.
-        Ok(()) | Err(TryLockError::Error(_)) => path.exists(),
+        Ok(()) | Err(TryLockError::Error(_)) if path.exists() => Ok(file),
+        // Another process took it for one, so that another name is tried.
+        _ => Err(io::ErrorKind::AlreadyExists.into()),
     }
-}
-
-/// A rename that fails if the new name is taken.
-fn rename_if_new(from: &Path, to: &Path) -> io::Result<()> {
-    match fs::hard_link(from, to) {
-        Ok(()) => {
-            // The file has its name; should this fail, the next run does it.
-            let _ = fs::remove_file(from);
-            Ok(())
-        }
-        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(error),
-        // Not every file system has links. What is left then is a look before the rename.
-        Err(_) if to.symlink_metadata().is_ok() => Err(io::ErrorKind::AlreadyExists.into()),
-        Err(_) => fs::rename(from, to),
-    }
-}
-
-/// A name in the same folder that nothing else in this process has.
-fn temporary_name(path: &Path) -> PathBuf {
-    static COUNT: AtomicU64 = AtomicU64::new(0);
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let mut name = prefix(path);
-    name.push(format!(".{}-{count}{ENDING}", std::process::id()));
-    path.with_file_name(name)
-}
-
-/// What the temporary names of a file begin with.
-fn prefix(path: &Path) -> OsString {
-    let mut name = OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name
-}
-
-/// Whether it is two numbers with a dash between, as `4711-0`.
-fn is_process_and_count(middle: &[u8]) -> bool {
-    let numbers: Vec<_> = middle.split(|&byte| byte == b'-').collect();
-    let is_number = |digits: &&[u8]| !digits.is_empty() && digits.iter().all(u8::is_ascii_digit);
-    numbers.len() == 2 && numbers.iter().all(is_number)
 }

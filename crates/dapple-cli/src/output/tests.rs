@@ -113,12 +113,7 @@ fn a_file_that_came_meanwhile_is_kept() {
 #[test]
 fn what_a_dead_process_left_is_taken_away_and_nothing_else_is() {
     let folder = folder("stale");
-    for name in [
-        ".a.4711-0.part",
-        ".a.b.4711-0.part",
-        ".a.x-0.part",
-        ".a.1-2",
-    ] {
+    for name in [".dapple-a1b2c3.part", ".dapple-a1b2c3", "dapple.part"] {
         fs::write(folder.join(name), b"half").unwrap();
     }
     let mut living = Outputs::new(false);
@@ -128,11 +123,56 @@ fn what_a_dead_process_left_is_taken_away_and_nothing_else_is() {
     outputs.write(output, b"whole").unwrap();
     outputs.commit().unwrap();
     let kept = names(&folder);
-    assert!(!kept.contains(&".a.4711-0.part".to_owned()), "{kept:?}");
-    // Of another file, of no process, no temporary file at all; and that of a run that still goes on.
-    assert_eq!(kept.len(), 5, "{kept:?}");
+    assert!(
+        !kept.contains(&".dapple-a1b2c3.part".to_owned()),
+        "{kept:?}"
+    );
+    // No temporary files of ours; that of a run that still goes on; and the new one.
+    assert_eq!(kept.len(), 4, "{kept:?}");
     drop(living);
-    assert_eq!(names(&folder).len(), 4, "it took its own away");
+    assert_eq!(names(&folder).len(), 3, "it took its own away");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn names_may_be_as_long_as_the_file_system_has_them() {
+    let folder = folder("long");
+    for length in [244, 255] {
+        let path = folder.join("n".repeat(length));
+        let mut outputs = Outputs::new(false);
+        let output = claim(&mut outputs, &path);
+        outputs.write(output, b"whole").unwrap();
+        outputs.commit().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"whole", "{length} bytes");
+    }
+    let path = folder.join("n".repeat(256));
+    let error = Outputs::new(false).claim(&Target::from(path.as_path()));
+    let error = error.unwrap_err().to_string();
+    assert!(
+        error.contains("cannot be written"),
+        "before the work: {error}"
+    );
+    assert_eq!(names(&folder).len(), 2, "and nothing else");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn permissions_of_a_replaced_file_are_kept() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = folder("permissions");
+    let path = folder.join("a");
+    fs::write(&path, b"old").unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
+    let mut outputs = Outputs::new(true);
+    let output = claim(&mut outputs, &path);
+    outputs.write(output, b"new").unwrap();
+    outputs.commit().unwrap();
+    let mode = fs::metadata(&path).unwrap().permissions().mode();
+    assert_eq!(
+        (fs::read(&path).unwrap(), mode & 0o777),
+        (b"new".to_vec(), 0o640)
+    );
     fs::remove_dir_all(folder).unwrap();
 }
 

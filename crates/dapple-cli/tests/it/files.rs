@@ -184,3 +184,30 @@ fn a_reader_that_goes_away_is_no_error() {
     );
     assert_eq!(folder.names(), Vec::<String>::new(), "nothing is left");
 }
+
+#[cfg(unix)]
+#[test]
+fn a_closed_standard_output_is_no_place_for_a_picture() {
+    let folder = Folder::with_inputs("closed");
+    let closed = folder.shell("dapple tile photo.png -o - >&-");
+    assert_refused(&closed, 1, "standard output is closed", "closed");
+    let away = folder.shell("dapple tile photo.png -o - >/dev/null");
+    assert_done(&away, "thrown away");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_is_told_with_the_name_of_the_file() {
+    let folder = Folder::new("full");
+    // No file may have more than a few blocks; without the signal, writing fails as on a full disk.
+    let line = "trap '' XFSZ; ulimit -f 8; dapple bake flagstone --size 256 --maps height -o h.exr";
+    for line in [
+        line,
+        &line
+            .replace("bake flagstone", "worley")
+            .replace("--maps height", ""),
+    ] {
+        assert_refused(&folder.shell(line), 1, "h.exr cannot be written", line);
+        assert_eq!(folder.names(), [""; 0], "{line} leaves nothing");
+    }
+}

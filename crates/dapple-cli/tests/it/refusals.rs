@@ -1,6 +1,6 @@
 //! Inputs that are missing, empty, folders, unreadable or of another kind; and outputs that cannot be.
 
-use crate::support::{Folder, assert_refused, stderr};
+use crate::support::{Folder, assert_refused, stderr, stdout};
 use std::fs;
 
 /// Each subcommand that reads something, with `INPUT` for the file that is tried. Every other input is there.
@@ -180,4 +180,37 @@ fn limits_of_the_library_are_told_with_exit_code_1() {
     for (line, part) in LIMITS {
         assert_refused(&folder.run(&words(line)), 1, part, line);
     }
+}
+
+#[test]
+fn a_repair_is_promised_only_where_synth_makes_one() {
+    let folder = Folder::with_inputs("promise");
+    let points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (faces, is_promised) in [
+        ("", false),
+        ("f 1 2 1\n", false),
+        ("f 1 2 3\nf 1 2 3\n", true),
+    ] {
+        fs::write(folder.path("a.obj"), format!("{points}{faces}")).unwrap();
+        let text = stdout(&folder.run(&["info", "a.obj"]));
+        assert_eq!(text.contains("synth repairs it"), is_promised, "{text}");
+        let line = "synth checker.png --mesh a.obj --sites 500 --force -o out.glb";
+        let is_made = folder.run(&words(line)).status.success();
+        assert_eq!(is_made, is_promised, "{faces:?}");
+    }
+    fs::write(folder.path("a.obj"), "Dear Sir,\n").unwrap();
+    let output = folder.run(&["info", "a.obj"]);
+    assert_refused(&output, 1, "not a valid OBJ file", "a letter");
+}
+
+#[test]
+fn info_says_what_was_left_out_of_a_mesh() {
+    let folder = Folder::new("left-out");
+    fs::write(
+        folder.path("a.obj"),
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//2 3//3\n",
+    )
+    .unwrap();
+    let text = stdout(&folder.run(&["info", "a.obj"]));
+    assert!(text.contains("without normals that faces name"), "{text}");
 }

@@ -46,8 +46,13 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
         .map_err(refusal)?;
+    let mut layers = image.layer_data;
+    if let [layer] = layers.as_mut_slice() {
+        // There is nothing that its name would tell it from.
+        layer.attributes.layer_name = None;
+    }
     let mut planes = Vec::new();
-    for layer in image.layer_data {
+    for layer in layers {
         push_planes(layer, &mut planes)?;
     }
     Ok(ExrImage { planes })

@@ -180,6 +180,62 @@ fn parts_tiles_and_other_numbers_are_read() {
     }
 }
 
+/// A file of named parts, each with the colors 1, 2, 3.
+fn colored_parts(names: &[&str]) -> Vec<u8> {
+    let part = |name: &&str| {
+        let plane = |(channel, value)| AnyChannel::new(channel, FlatSamples::F32(vec![value; 2]));
+        let channels = [("B", 3.0), ("G", 2.0), ("R", 1.0)].map(plane);
+        let channels = AnyChannels::sort(channels.into_iter().collect());
+        let attributes = LayerAttributes::named(*name);
+        Layer::new((2, 1), attributes, Encoding::default(), channels)
+    };
+    let parts: Vec<_> = names.iter().map(part).collect();
+    let attributes = exr::meta::header::ImageAttributes::with_size((2, 1));
+    let mut bytes = Vec::new();
+    let image = Image::from_layers(attributes, parts);
+    let sink = Cursor::new(&mut bytes);
+    image.write().non_parallel().to_buffered(sink).unwrap();
+    bytes
+}
+
+#[test]
+fn the_only_part_is_read_whatever_its_name() {
+    for name in ["", "rgba", "View Layer.Combined"] {
+        let image = decode(&colored_parts(&[name]));
+        let names: Vec<_> = image.planes.iter().map(|plane| &plane.name).collect();
+        assert_eq!(names, ["B", "G", "R"], "{name:?}");
+        let image = crate::Image::Exr(image);
+        assert_eq!(image.channels(), crate::Channels::Rgb, "{name:?}");
+        let colors = image.color().unwrap();
+        assert_eq!(colors.pixels(), [LinearRgb::new(1.0, 2.0, 3.0); 2]);
+    }
+}
+
+#[test]
+fn of_several_parts_the_only_one_of_color_is_read() {
+    let planes = |names: &[&str]| {
+        let plane = |name: &&str| ExrPlane::new(*name, Raster::filled([1, 1], 0.5).unwrap());
+        ExrImage {
+            planes: names.iter().map(plane).collect(),
+        }
+    };
+    let image = planes(&["depth.Z", "beauty.A", "beauty.B", "beauty.G", "beauty.R"]);
+    let half = LinearRgba {
+        color: LinearRgb::gray(1.0),
+        alpha: 0.5,
+    };
+    assert_eq!(image.color_alpha().unwrap().pixels(), [half]);
+    let channels = crate::Image::Exr(image).channels();
+    assert_eq!(channels, crate::Channels::Rgba, "as it is read");
+    let two = decode(&colored_parts(&["left", "right"]));
+    let name = "R".to_owned();
+    assert_eq!(
+        two.color_alpha().unwrap_err().kind(),
+        &ImageErrorKind::MissingPlane { name },
+        "nobody says which of the two"
+    );
+}
+
 #[test]
 fn limits_are_kept_to_the_pixel_and_the_byte() {
     let bytes = encode_exr(&small()).unwrap();

@@ -122,13 +122,31 @@ fn an_exif_orientation_turns_the_picture() {
 }
 
 #[test]
-fn cmyk_is_refused() {
-    let bytes = encode([8, 8], ColorType::Cmyk, |_| ());
-    let error = decode_jpeg(&bytes, &Limits::default()).unwrap_err();
-    assert!(
-        matches!(error.kind(), ImageErrorKind::Unsupported { .. }),
-        "{error}"
-    );
+fn what_is_not_read_is_named() {
+    let refusal = |bytes: &[u8]| {
+        let error = decode_jpeg(bytes, &Limits::default()).unwrap_err();
+        error.to_string()
+    };
+    let cmyk = encode([8, 8], ColorType::Cmyk, |_| ());
+    assert_eq!(refusal(&cmyk), "CMYK in JPEG is not supported");
+    let plain = encode([8, 8], ColorType::Rgb, |_| ());
+    let frame = plain.windows(2).position(|pair| pair == [0xff, 0xc0]);
+    let frame = frame.unwrap();
+    for (marker, feature) in [
+        (0xc3, "lossless JPEG"),
+        (0xc5, "hierarchical JPEG"),
+        (0xc9, "JPEG with arithmetic coding"),
+        (0xcb, "lossless JPEG"),
+        (0xf7, "JPEG-LS"),
+    ] {
+        let mut bytes = plain.clone();
+        bytes[frame + 1] = marker;
+        assert_eq!(refusal(&bytes), format!("{feature} is not supported"));
+    }
+    let mut deep = plain;
+    deep[frame + 4] = 12;
+    let expected = "JPEG with other than 8 bits per channel is not supported";
+    assert_eq!(refusal(&deep), expected);
 }
 
 #[test]

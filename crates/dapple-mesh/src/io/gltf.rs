@@ -3,7 +3,7 @@
 //! Reference: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022).
 //!
 //! All triangles of the default scene become one mesh, with the transforms of their nodes applied; without a scene all
-//! nodes count. Triangle strips and fans become triangles, point primitives only vertices; lines, skins, morph targets
+//! nodes count, and each of the copies that `EXT_mesh_gpu_instancing` makes of their meshes. Triangle strips and fans become triangles, point primitives only vertices; lines, skins, morph targets
 //! and animations are left out. Primitives of one node with the same attributes share their vertices. Where only some
 //! primitives have colors or texture coordinates, the others become white and zero; normals are kept only if all have
 //! them. The material is the first that a primitive has. Textures are taken as they are if they are PNG or JPEG and use
@@ -27,15 +27,18 @@ mod tests;
 pub use write::write;
 
 use super::Beside;
-use crate::{EncodedImage, Material, MeshError, Model};
+use crate::{EncodedImage, Material, MeshError, MeshErrorKind, Model};
 use container::{Container, percent_decoded};
 use dapple_color::LinearRgba;
-use document::{Document, TextureInfo};
+use document::{Document, Head, TextureInfo};
+use serde::Deserialize;
 use std::borrow::Cow;
 
 const FORMAT: &str = "glTF";
-/// Extensions that a file may require: they change nothing here, or only the types of accessors, which are all read.
-const EXTENSIONS: [&str; 4] = [
+/// Extensions that a file may require: copies of meshes are made, and the others change nothing here, or only the types
+/// of accessors, which are all read.
+const EXTENSIONS: [&str; 5] = [
+    "EXT_mesh_gpu_instancing",
     "KHR_mesh_quantization",
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",
@@ -52,8 +55,8 @@ struct Source<'a> {
 ///
 /// # Errors
 ///
-/// [`MeshErrorKind::File`](crate::MeshErrorKind::File) if the bytes are not a glTF 2.0 file, or it requires an
-/// extension or another file; and what [`Mesh::new`](crate::Mesh::new) and [`Model::check`] refuse.
+/// [`MeshErrorKind::File`] if the bytes are not a glTF file, or it requires another file;
+/// [`MeshErrorKind::Unsupported`] if its version is not 2, or it requires an extension; and what [`Mesh::new`](crate::Mesh::new) and [`Model::check`] refuse.
 ///
 /// # Examples
 ///
@@ -76,17 +79,15 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
 /// As [`read`]. A missing texture is no error.
 pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshError> {
     let container = Container::read(bytes)?;
-    let document: Document =
-        serde_json::from_slice(container.json).map_err(|error| wrong(error.to_string()))?;
-    if !document.asset.version.starts_with("2.") {
-        return Err(wrong(format!(
-            "its version is {}, and only 2 is read",
-            document.asset.version
-        )));
+    // Other versions have other types in the same places, so that this has to be asked first.
+    let Head { asset } = parse(container.json)?;
+    if !asset.version.starts_with("2.") {
+        return Err(unsupported(format!("glTF {}", asset.version)));
     }
+    let document: Document = parse(container.json)?;
     let unknown = |name: &&String| !EXTENSIONS.contains(&name.as_str());
     if let Some(name) = document.extensions_required.iter().find(unknown) {
-        return Err(wrong(format!("it requires the extension {name}")));
+        return Err(unsupported(format!("the glTF extension {name}")));
     }
     let buffers = container.buffers(&document, beside)?;
     let source = Source { document, buffers };
@@ -102,6 +103,14 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshErr
     }
     model.check()?;
     Ok(model)
+}
+
+fn parse<'a, T: Deserialize<'a>>(json: &'a [u8]) -> Result<T, MeshError> {
+    serde_json::from_slice(json).map_err(|error| wrong(error.to_string()))
+}
+
+fn unsupported(feature: String) -> MeshError {
+    MeshError::new(MeshErrorKind::Unsupported { feature })
 }
 
 fn wrong(why: impl Into<String>) -> MeshError {

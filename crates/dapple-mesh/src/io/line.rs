@@ -1,13 +1,13 @@
 //! Lines of text, for formats in which a line says one thing.
 
-use super::text::{parse, words};
+use super::text::{in_range, parse, words};
 use crate::MeshError;
 use glam::DVec3;
 
 /// A line that has something to say.
 pub(super) struct Line<'a> {
     format: &'static str,
-    /// From 1.
+    /// From 1; of several lines that go together, the last.
     number: usize,
     /// All of it.
     #[cfg(feature = "obj")]
@@ -39,7 +39,19 @@ impl Line<'_> {
             .ok_or_else(|| self.error(format!("a number is needed in place {}", at + 1)))
     }
 
-    /// The three numbers from a place on.
+    /// The part of a position, a normal or a texture coordinate at a place.
+    pub(super) fn part(&self, at: usize) -> Result<f64, MeshError> {
+        in_range(self.number(at)?).map_err(|why| self.error(why))
+    }
+
+    /// The position or normal in the three numbers from a place on.
+    pub(super) fn position(&self, at: usize) -> Result<DVec3, MeshError> {
+        let [x, y, z] = [at, at + 1, at + 2].map(|at| self.part(at));
+        Ok(DVec3::new(x?, y?, z?))
+    }
+
+    /// The three numbers from a place on, whatever they are.
+    #[cfg(feature = "obj")]
     pub(super) fn vector(&self, at: usize) -> Result<DVec3, MeshError> {
         Ok(DVec3::new(
             self.number(at)?,
@@ -52,6 +64,13 @@ impl Line<'_> {
     #[cfg(feature = "obj")]
     pub(super) fn name_words(&self) -> Vec<&[u8]> {
         words(self.text).skip(1).collect()
+    }
+
+    /// Puts the words of a line that goes on with this one behind its own.
+    #[cfg(feature = "off")]
+    pub(super) fn extend(&mut self, next: Self) {
+        self.number = next.number;
+        self.words.extend(next.words);
     }
 
     /// Says what is wrong with the line.

@@ -5,7 +5,8 @@
 //!
 //! All faces become one mesh, whatever their objects, groups and materials, since a texture is to run across these; the
 //! material is the first that a face has. Of normals, which OBJ gives to corners, those are kept that are the same at
-//! all corners of each vertex; if one vertex has two, as at a crease, the model has none. Lines, points and free-form
+//! all corners of each vertex; if one vertex has two, as at a crease, the model has none. Texture coordinates and normals
+//! that corners name and that there are not are left out, which [`Model::left_out`] says. Lines, points and free-form
 //! surfaces are left out. Of a material its `Kd` (linear, and only without a texture, since with one it is seldom
 //! meant), `d`, `map_Kd` and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is left
 //! out.
@@ -21,7 +22,8 @@ pub use write::{NamedFile, write, write_files};
 use super::Beside;
 use super::colors::{self, Coding};
 use super::line::{Line, lines};
-use super::text::{fan, parse};
+use super::polygon::fan;
+use super::text::{no_vertex, parse};
 use crate::{Mesh, MeshError, Model};
 use dapple_color::{LinearRgb, LinearRgba};
 use glam::{DVec2, DVec3};
@@ -30,6 +32,8 @@ use std::borrow::Cow;
 const FORMAT: &str = "OBJ";
 /// In place of the number of a texture coordinate or normal that a corner does not have.
 const NONE: u32 = u32::MAX;
+/// In place of the number of one that there cannot be: as any number that is too large.
+const MISSING: u32 = u32::MAX - 1;
 
 /// The numbers of the position, texture coordinate and normal of a corner.
 type Corner = [u32; 3];
@@ -73,9 +77,17 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
 /// As [`read`]; of other files, only a `Kd` beyond single precision is an error.
 pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshError> {
     let mut draft = Draft::default();
-    for line in lines(FORMAT, &joined(bytes)) {
+    let text = joined(bytes);
+    for line in lines(FORMAT, &text) {
         draft.add(&line)?;
     }
+    if draft.positions.is_empty() && draft.faces.is_empty() {
+        return Err(MeshError::file(
+            FORMAT,
+            "it has neither a vertex nor a face",
+        ));
+    }
+    draft.check_vertices(&text)?;
     let libraries = core::mem::take(&mut draft.libraries);
     let name = draft.material.take().map(|(name, _)| name);
     let mut model = draft.into_model()?;
@@ -83,21 +95,31 @@ pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshErr
     Ok(model)
 }
 
-/// The text with lines joined that end with a backslash, but for comments, where that is often the end of a path.
+/// The text with lines joined that end with a backslash, but for comments, where that is often the end of a path. Where
+/// a joined line ends there are as many ends of lines as before, so that all others keep their numbers.
 fn joined(bytes: &[u8]) -> Cow<'_, [u8]> {
     let continued = |pair: &[u8]| pair[0] == b'\\' && matches!(pair[1], b'\n' | b'\r');
     if !bytes.windows(2).any(continued) {
         return Cow::Borrowed(bytes);
     }
-    let mut text = bytes.to_vec();
-    let mut comment = text[0] == b'#';
-    for i in 1..text.len() {
-        if text[i - 1] == b'\n' {
-            comment = text[i] == b'#';
-        }
-        if !comment && continued(&text[i - 1..=i]) {
-            let crlf = text[i..].starts_with(b"\r\n");
-            text[i - 1..=i + usize::from(crlf)].fill(b' ');
+    let mut text = Vec::with_capacity(bytes.len());
+    let mut n_joined = 0;
+    for line in bytes.split_inclusive(|&byte| byte == b'\n') {
+        let content = line.trim_ascii_end();
+        let is_comment = n_joined == 0 && line.starts_with(b"#");
+        match content.strip_suffix(b"\\") {
+            // The backslash is the very last before the end of the line.
+            Some(start)
+                if !is_comment && matches!(line[content.len()..], [b'\n'] | [b'\r', b'\n']) =>
+            {
+                text.extend(start);
+                text.push(b' ');
+                n_joined += 1;
+            }
+            _ => {
+                text.extend(line);
+                text.resize(text.len() + core::mem::take(&mut n_joined), b'\n');
+            }
         }
     }
     Cow::Owned(text)
@@ -109,13 +131,13 @@ impl Draft {
             b"v" => self.add_vertex(line)?,
             b"vt" => {
                 let v = if line.words.len() > 2 {
-                    line.number(2)?
+                    line.part(2)?
                 } else {
                     0.0
                 };
-                self.uvs.push(DVec2::new(line.number(1)?, 1.0 - v));
+                self.uvs.push(DVec2::new(line.part(1)?, 1.0 - v));
             }
-            b"vn" => self.normals.push(line.vector(1)?),
+            b"vn" => self.normals.push(line.position(1)?),
             b"f" => self.add_face(line)?,
             // Some programs repeat it for each object.
             b"mtllib" if self.libraries.last() != Some(&name(line)) => {
@@ -137,7 +159,7 @@ impl Draft {
             self.colors.resize(self.positions.len(), WHITE);
             self.colors.push(colors::decode(parts, [Coding::Unit; 4]));
         }
-        self.positions.push(line.vector(1)?);
+        self.positions.push(line.position(1)?);
         Ok(())
     }
 
@@ -165,23 +187,73 @@ impl Draft {
         for (i, count) in counts.into_iter().enumerate() {
             match parts.next() {
                 Some(b"") | None if i > 0 => {}
-                part => corner[i] = index(parse(part?)?, count)?,
+                part => {
+                    let index = index(parse(part?)?, count);
+                    corner[i] = if i == 0 {
+                        index?
+                    } else {
+                        index.unwrap_or(MISSING)
+                    };
+                }
             }
         }
         parts.next().is_none().then_some(corner)
     }
 
+    /// Refuses a face that names a vertex which the file does not have.
+    fn check_vertices(&self, text: &[u8]) -> Result<(), MeshError> {
+        let count = self.positions.len();
+        let missing = |corner: &&Corner| corner[0] as usize >= count;
+        let corners = self.faces.iter().enumerate();
+        let mut first =
+            corners.filter_map(|(face, corners)| Some((face, corners.iter().find(missing)?)));
+        let Some((face, corner)) = first.next() else {
+            return Ok(());
+        };
+        // Vertices may come after the faces, so that only now the line is looked for.
+        let mut n_faces = 0;
+        for line in lines(FORMAT, text).filter(|line| line.words[0] == b"f") {
+            n_faces += line.words.len().saturating_sub(3);
+            if n_faces > face {
+                return Err(line.error(no_vertex(u64::from(corner[0]) + 1, count)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes away what corners name and the file does not have, and says so.
+    fn take_away_missing(&mut self) -> Vec<String> {
+        let mut left_out = Vec::new();
+        for (i, count, what) in [
+            (1, self.uvs.len(), "texture coordinates"),
+            (2, self.normals.len(), "normals"),
+        ] {
+            let mut is_missing = false;
+            for corner in self.faces.iter_mut().flatten() {
+                if corner[i] != NONE && corner[i] as usize >= count {
+                    corner[i] = NONE;
+                    is_missing = true;
+                }
+            }
+            if is_missing {
+                left_out.push(format!("{what} that faces name and the file does not have"));
+            }
+        }
+        left_out
+    }
+
     fn into_model(mut self) -> Result<Model, MeshError> {
+        let left_out = self.take_away_missing();
         let faces: Vec<_> = self
             .faces
             .iter()
             .map(|face| face.map(|corner| corner[0]))
             .collect();
-        let uvs = self.face_uvs()?;
+        let uvs = self.face_uvs();
         // The corners name vertices that there are before normals are spread over these.
         let count = self.positions.len();
         let mesh = Mesh::new(core::mem::take(&mut self.positions), &faces)?;
-        let normals = self.vertex_normals(count)?;
+        let normals = self.vertex_normals(count);
         if !self.colors.is_empty() {
             self.colors.resize(count, WHITE);
         }
@@ -191,6 +263,7 @@ impl Draft {
             colors,
             uvs,
             normals,
+            left_out,
             ..Model::default()
         };
         model.check()?;
@@ -198,41 +271,33 @@ impl Draft {
     }
 
     /// The texture coordinates of the corners, zero where there are none, or nothing if no corner has one.
-    fn face_uvs(&self) -> Result<Option<Vec<[DVec2; 3]>>, MeshError> {
+    fn face_uvs(&self) -> Option<Vec<[DVec2; 3]>> {
         if self.faces.iter().flatten().all(|corner| corner[1] == NONE) {
-            return Ok(None);
+            return None;
         }
-        let uv = |[_, uv, _]: Corner| match uv {
-            NONE => Ok(DVec2::ZERO),
-            _ => named("texture coordinate", &self.uvs, uv),
-        };
-        let face = |&[a, b, c]: &[Corner; 3]| Ok([uv(a)?, uv(b)?, uv(c)?]);
-        self.faces
-            .iter()
-            .map(face)
-            .collect::<Result<_, _>>()
-            .map(Some)
+        let uv = |[_, uv, _]: Corner| self.uvs.get(uv as usize).copied().unwrap_or_default();
+        Some(self.faces.iter().map(|face| face.map(uv)).collect())
     }
 
     /// The normals of the vertices, if each vertex of a face has exactly one; those of a cloud of points in their
     /// order.
-    fn vertex_normals(&self, count: usize) -> Result<Option<Vec<DVec3>>, MeshError> {
+    fn vertex_normals(&self, count: usize) -> Option<Vec<DVec3>> {
         if self.faces.is_empty() {
             let whole = count > 0 && self.normals.len() == count;
-            return Ok(whole.then(|| self.normals.clone()));
+            return whole.then(|| self.normals.clone());
         }
         let mut normals = vec![None; count];
         let mut whole = true;
         for &[vertex, _, number] in self.faces.iter().flatten() {
-            if number == NONE {
-                whole = false;
-                continue;
+            match self.normals.get(number as usize) {
+                None => whole = false,
+                Some(&normal) => {
+                    whole &= *normals[vertex as usize].get_or_insert(normal) == normal;
+                }
             }
-            let normal = named("normal", &self.normals, number)?;
-            whole &= *normals[vertex as usize].get_or_insert(normal) == normal;
         }
         let spread = || normals.into_iter().map(Option::unwrap_or_default).collect();
-        Ok(whole.then(spread))
+        whole.then(spread)
     }
 }
 
@@ -258,14 +323,4 @@ fn index(number: i64, count: usize) -> Option<u32> {
     u32::try_from(from_zero)
         .ok()
         .filter(|&index| number != 0 && index != NONE)
-}
-
-fn named<T: Copy>(what: &str, column: &[T], number: u32) -> Result<T, MeshError> {
-    column.get(number as usize).copied().ok_or_else(|| {
-        let (number, count) = (u64::from(number) + 1, column.len());
-        MeshError::file(
-            FORMAT,
-            format!("a corner names {what} {number}, but there are {count}"),
-        )
-    })
 }

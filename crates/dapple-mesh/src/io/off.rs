@@ -5,12 +5,13 @@
 //! Read are all headers of three dimensions: `OFF` with the letters `ST`, `C` and `N` before it, in this order, for
 //! texture coordinates, colors and normals of the vertices, and none at all, which means `OFF`. The counts may follow
 //! the header on its line, even without a space. Colors are three or four numbers, 0 to 255 if a vertex has only whole
-//! ones and else 0 to 1; those of faces are left out. The four-dimensional, n-dimensional and binary variants are
+//! ones and else 0 to 1; those of faces are left out. A vertex is on one line; a face may go on over several. The four-dimensional, n-dimensional and binary variants are
 //! refused.
 
 use super::colors::{self, Coding};
 use super::line::{Line, lines};
-use super::text::{fan, parse};
+use super::polygon::fan;
+use super::text::{no_vertex, parse};
 use crate::{Mesh, MeshError, Model};
 use dapple_color::LinearRgba;
 use glam::{DVec2, DVec3};
@@ -68,8 +69,17 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
     }
     let (mut faces, mut corners) = (Vec::new(), Vec::new());
     for _ in 0..n_faces {
-        let line = lines.next().ok_or_else(|| ended("faces", n_faces))?;
-        take_corners(&line, &mut corners)?;
+        let mut line = lines.next().ok_or_else(|| ended("faces", n_faces))?;
+        // A polygon may go on over several lines, and its color is on the last of them.
+        let count = polygon_count(&line)?;
+        while line.words.len() <= count {
+            let more = lines.next();
+            line.extend(more.ok_or_else(|| line.error("a face has fewer corners than it says"))?);
+        }
+        corners.clear();
+        for word in &line.words[1..=count] {
+            corners.push(corner(&line, word, n_vertices)?);
+        }
         faces.extend(fan(&corners));
     }
     vertices.into_model(header, &faces)
@@ -124,27 +134,28 @@ fn ended(what: &str, count: u64) -> MeshError {
     )
 }
 
-/// The corners of the polygon of a line.
-fn take_corners(line: &Line<'_>, corners: &mut Vec<u32>) -> Result<(), MeshError> {
-    let count = parse::<usize>(line.words[0])
-        .filter(|&count| count < line.words.len())
-        .ok_or_else(|| line.error("a face has fewer corners than it says"))?;
-    corners.clear();
-    for word in &line.words[1..=count] {
-        let corner =
-            parse(word).ok_or_else(|| line.error("a corner is not the number of a vertex"))?;
-        corners.push(corner);
+/// How many corners the polygon has that begins on a line.
+fn polygon_count(line: &Line<'_>) -> Result<usize, MeshError> {
+    parse(line.words[0]).ok_or_else(|| line.error("the number of corners of a face is needed"))
+}
+
+/// The corner that a word is, which is the number of a vertex, from 0.
+fn corner(line: &Line<'_>, word: &[u8], n_vertices: u64) -> Result<u32, MeshError> {
+    let corner: u32 =
+        parse(word).ok_or_else(|| line.error("a corner is not the number of a vertex"))?;
+    if u64::from(corner) < n_vertices {
+        return Ok(corner);
     }
-    Ok(())
+    Err(line.error(format!("{}, counted from 0", no_vertex(corner, n_vertices))))
 }
 
 impl Vertices {
     /// Adds the vertex of a line: position, normal, color, texture coordinates.
     fn add(&mut self, header: Header, line: &Line<'_>) -> Result<(), MeshError> {
-        self.positions.push(line.vector(0)?);
+        self.positions.push(line.position(0)?);
         let mut at = 3;
         if header.normal {
-            self.normals.push(line.vector(at)?);
+            self.normals.push(line.position(at)?);
             at += 3;
         }
         if header.color {
@@ -161,8 +172,8 @@ impl Vertices {
         }
         if header.texture {
             // Here v goes up.
-            let v = 1.0 - line.number(at + 1)?;
-            self.uvs.push(DVec2::new(line.number(at)?, v));
+            let v = 1.0 - line.part(at + 1)?;
+            self.uvs.push(DVec2::new(line.part(at)?, v));
         }
         Ok(())
     }
@@ -259,6 +270,15 @@ mod tests {
     }
 
     #[test]
+    fn faces_go_on_over_several_lines() {
+        let text =
+            "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1\n# between\n2\n 3 255 0 0\n3\n0 2 3\n";
+        let model = read(text.as_bytes()).expect("it is valid");
+        let faces = [[0, 1, 2], [0, 2, 3], [0, 2, 3]];
+        assert_eq!(model.mesh.faces(), faces.map(|face| face.map(VertexIdx)));
+    }
+
+    #[test]
     fn what_is_wrong_is_said() {
         assert_eq!(why("\n# nothing\n"), "it is empty");
         for header in ["4OFF", "nOFF", "OFF BINARY", "COF", "ply"] {
@@ -285,8 +305,20 @@ mod tests {
             "line 4: a face has fewer corners than it says"
         );
         assert_eq!(
+            why("OFF\n1 1 0\n0 0 0\nthree 0 0 0\n"),
+            "line 4: the number of corners of a face is needed"
+        );
+        assert_eq!(
             why("OFF\n1 1 0\n0 0 0\n3 0 0 -1\n"),
             "line 4: a corner is not the number of a vertex"
+        );
+        assert_eq!(
+            why("OFF\n1 1 0\n0 0 0\n\n3 0 1 0\n"),
+            "line 5: a corner of a face is vertex 1, but there are 1, counted from 0"
+        );
+        assert_eq!(
+            why("OFF\n2 0 0\n0 0 0\n0 1e31 0\n"),
+            "line 4: a number is 1e31, but it must be between -1e30 and 1e30"
         );
         assert_eq!(
             why("COFF\n1 0 0\n0 0 0\n"),

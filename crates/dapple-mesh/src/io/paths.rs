@@ -129,39 +129,29 @@ fn failed(path: &Path, error: &io::Error) -> MeshError {
 }
 
 /// Makes `bytes` the content of the file at `path`, which is new or the old one until all of it is written.
+///
+/// A file that is there keeps its permissions, and one that a link leads to, the link.
 #[cfg(any(feature = "obj", feature = "ply", feature = "gltf"))]
 fn replace(path: &Path, bytes: &[u8]) -> Result<(), MeshError> {
-    let temporary = temporary_beside(path);
-    write_and_rename(&temporary, path, bytes).map_err(|error| {
-        // What remains is of no use, and the first error is the one to report.
-        let _ = std::fs::remove_file(&temporary);
-        failed(path, &error)
-    })
+    write_and_rename(path, bytes).map_err(|error| failed(path, &error))
 }
 
 #[cfg(any(feature = "obj", feature = "ply", feature = "gltf"))]
-fn write_and_rename(temporary: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn write_and_rename(path: &Path, bytes: &[u8]) -> io::Result<()> {
     use std::io::Write as _;
-    let mut file = File::options()
-        .write(true)
-        .create_new(true)
-        .open(temporary)?;
-    file.write_all(bytes)?;
-    // Closed first, since not every system renames an open file.
-    drop(file);
-    std::fs::rename(temporary, path)
-}
-
-/// A name in the same folder that no other call, in this process or another, has at the same time.
-#[cfg(any(feature = "obj", feature = "ply", feature = "gltf"))]
-fn temporary_beside(path: &Path) -> std::path::PathBuf {
-    use std::sync::atomic::{AtomicU64, Ordering};
-    static COUNT: AtomicU64 = AtomicU64::new(0);
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let mut name = std::ffi::OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(format!(".{}-{count}.tmp", std::process::id()));
-    path.with_file_name(name)
+    let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let folder = path.parent().unwrap_or(Path::new(""));
+    // Made here, so that its permissions are those of any new file.
+    let create = |path: &Path| File::options().write(true).create_new(true).open(path);
+    let mut file = tempfile::Builder::new()
+        .prefix(".dapple-")
+        .make_in(folder, create)?;
+    file.as_file_mut().write_all(bytes)?;
+    if let Ok(found) = std::fs::metadata(&path) {
+        file.as_file().set_permissions(found.permissions())?;
+    }
+    file.persist(path)?;
+    Ok(())
 }
 
 #[cfg(all(test, feature = "obj", feature = "ply", feature = "gltf"))]

@@ -6,7 +6,8 @@
 //! Read are text and binary files of both byte orders, with any scalar type for any property. Of the element `vertex`:
 //! `x y z`, `nx ny nz`, `red green blue alpha` (also with `diffuse_` before or as `r g b a`) and `s t`, `u v` or
 //! `texture_u texture_v`. Of the element `face`: the list `vertex_indices` or `vertex_index`, and `texcoord` with two
-//! numbers for each corner, which goes before those of vertices. Everything else is passed over. Colors are coded as
+//! numbers for each corner, which goes before those of vertices. Of the element `tristrips`: the list `vertex_indices`,
+//! in which -1 ends a strip. Everything else is passed over. Colors are coded as
 //! sRGB: 0 to 255, for `ushort` 0 to 65535, and for `float` and `double` 0 to 1. Texture coordinates have v up, as OBJ,
 //! so that v becomes 1 - v.
 
@@ -20,7 +21,8 @@ mod tests;
 pub use write::{write, write_text};
 
 use super::colors::{self, Coding};
-use super::text::fan;
+use super::polygon::{fan, strip};
+use super::text::no_vertex;
 use crate::{Mesh, MeshError, Model};
 use body::Body;
 use dapple_color::LinearRgba;
@@ -43,9 +45,13 @@ const COLUMNS: [&[&str]; 12] = [
     &["s", "u", "texture_u"],
     &["t", "v", "texture_v"],
 ];
+/// The names of the list of corners of a face or a strip.
+const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 #[derive(Default)]
 struct Draft {
+    /// How many the header says, also where faces come before them.
+    n_vertices: u64,
     positions: Vec<DVec3>,
     normals: Vec<DVec3>,
     colors: Vec<LinearRgba>,
@@ -65,7 +71,7 @@ struct Target {
 /// # Errors
 ///
 /// [`MeshErrorKind::File`](crate::MeshErrorKind::File) if the bytes are not a PLY file, or have fewer elements than the
-/// header says; and what [`Mesh::new`] and [`Model::check`] refuse.
+/// header says, with the line in the header and in a body of text; and what [`Mesh::new`] and [`Model::check`] refuse.
 ///
 /// # Examples
 ///
@@ -77,13 +83,21 @@ struct Target {
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Model, MeshError> {
     let (header, rest) = Header::read(bytes)?;
-    let mut body = Body::new(header.encoding, rest);
-    let mut draft = Draft::default();
+    let mut body = Body::new(header.encoding, bytes, rest);
+    let vertices = header
+        .elements
+        .iter()
+        .find(|element| element.name == "vertex");
+    let mut draft = Draft {
+        n_vertices: vertices.map_or(0, |element| element.count),
+        ..Draft::default()
+    };
     for element in &header.elements {
         body.check_room(element)?;
         match element.name.as_str() {
             "vertex" if draft.positions.is_empty() => draft.read_vertices(element, &mut body)?,
             "face" => draft.read_faces(element, &mut body)?,
+            "tristrips" => draft.read_strips(element, &mut body)?,
             _ => pass_over(element, &mut body)?,
         }
     }
@@ -122,7 +136,8 @@ impl Draft {
         };
         let [normal, color, uv] = [3..6, 6..9, 10..12].map(|mut columns| columns.all(has));
         if !(0..3).all(has) {
-            return Err(MeshError::file(FORMAT, "a vertex has no x, y or z"));
+            let why = format!("line {}: a vertex has no x, y or z", element.line);
+            return Err(MeshError::file(FORMAT, why));
         }
         let (mut row, mut codings) = ([0.0; COLUMNS.len()], [Coding::Unit; 4]);
         // The alpha of a color without one.
@@ -139,7 +154,12 @@ impl Draft {
             for (target, property) in targets.iter().zip(&element.properties) {
                 body.values(property.kind, &mut list)?;
                 if let Some(target) = target {
-                    row[target.column] = list[0];
+                    let is_color = (6..10).contains(&target.column);
+                    row[target.column] = if is_color {
+                        list[0]
+                    } else {
+                        body.in_range(list[0])?
+                    };
                 }
             }
             let [x, y, z, nx, ny, nz, r, g, b, alpha, u, v] = row;
@@ -158,18 +178,10 @@ impl Draft {
     }
 
     fn read_faces(&mut self, element: &Element, body: &mut Body<'_>) -> Result<(), MeshError> {
-        let place = |names: &[&str]| {
-            element
-                .properties
-                .iter()
-                .position(|property| names.contains(&property.name.as_str()))
-        };
-        let (Some(corners), uvs) = (
-            place(&["vertex_indices", "vertex_index"]),
-            place(&["texcoord"]),
-        ) else {
+        let Some(corners) = element.place(&CORNERS) else {
             return pass_over(element, body);
         };
+        let uvs = element.place(&["texcoord"]);
         let mut lists = vec![Vec::new(); element.properties.len()];
         let mut polygon = Vec::new();
         for _ in 0..element.count {
@@ -178,31 +190,66 @@ impl Draft {
             }
             polygon.clear();
             for &number in &lists[corners] {
-                polygon.push(vertex(number)?);
+                polygon.push(self.vertex(number, body)?);
             }
             self.faces.extend(fan(&polygon));
             if let Some(uvs) = uvs {
-                self.add_face_uvs(&lists[uvs], &polygon)?;
+                self.add_face_uvs(&lists[uvs], &polygon, body)?;
             }
         }
         Ok(())
     }
 
-    fn add_face_uvs(&mut self, list: &[f64], polygon: &[u32]) -> Result<(), MeshError> {
+    fn read_strips(&mut self, element: &Element, body: &mut Body<'_>) -> Result<(), MeshError> {
+        let Some(corners) = element.place(&CORNERS) else {
+            return pass_over(element, body);
+        };
+        let (mut list, mut others, mut polygon) = (Vec::new(), Vec::new(), Vec::new());
+        for _ in 0..element.count {
+            for (i, property) in element.properties.iter().enumerate() {
+                let list = if i == corners { &mut list } else { &mut others };
+                body.values(property.kind, list)?;
+            }
+            for numbers in list.split(|&number| number == -1.0) {
+                polygon.clear();
+                for &number in numbers {
+                    polygon.push(self.vertex(number, body)?);
+                }
+                self.faces.extend(strip(&polygon));
+            }
+        }
+        Ok(())
+    }
+
+    fn add_face_uvs(
+        &mut self,
+        list: &[f64],
+        polygon: &[u32],
+        body: &Body<'_>,
+    ) -> Result<(), MeshError> {
+        let mut uvs = Vec::new();
+        for &[u, v] in list.as_chunks().0 {
+            uvs.push(DVec2::new(body.in_range(u)?, 1.0 - body.in_range(v)?));
+        }
         // A face without a texture may have an empty list.
-        let uv = |pair: &[f64]| DVec2::new(pair[0], 1.0 - pair[1]);
-        let mut uvs: Vec<_> = list.chunks_exact(2).map(uv).collect();
         if list.is_empty() {
             uvs.resize(polygon.len(), DVec2::ZERO);
         }
         if uvs.len() != polygon.len() {
-            return Err(MeshError::file(
-                FORMAT,
-                "a face has not two texcoord for each corner",
-            ));
+            return Err(body.error("a face has not two texcoord for each corner"));
         }
         self.face_uvs.extend(fan(&uvs));
         Ok(())
+    }
+
+    /// The vertex that a number is.
+    fn vertex(&self, number: f64, body: &Body<'_>) -> Result<u32, MeshError> {
+        let vertex = number as u32;
+        if f64::from(vertex) == number && u64::from(vertex) < self.n_vertices {
+            return Ok(vertex);
+        }
+        let why = no_vertex(number, self.n_vertices);
+        Err(body.error(format!("{why}, counted from 0")))
     }
 
     fn into_model(self) -> Result<Model, MeshError> {
@@ -232,16 +279,4 @@ fn target(name: &str, kind: Kind) -> Option<Target> {
         _ => Coding::Byte,
     };
     Some(Target { column, coding })
-}
-
-/// The number of a vertex.
-fn vertex(number: f64) -> Result<u32, MeshError> {
-    let vertex = number as u32;
-    if f64::from(vertex) == number {
-        return Ok(vertex);
-    }
-    Err(MeshError::file(
-        FORMAT,
-        format!("a corner of a face is {number}, which is not the number of a vertex"),
-    ))
 }

@@ -1,5 +1,7 @@
-//! Words and numbers of text, and polygons.
+//! Words and numbers of text.
 
+use crate::mesh::POSITION_MAX;
+use core::fmt::Display;
 #[cfg(any(feature = "obj", feature = "ply"))]
 use core::fmt::Write as _;
 use core::str::FromStr;
@@ -15,6 +17,21 @@ pub(super) fn parse<T: FromStr>(word: &[u8]) -> Option<T> {
     core::str::from_utf8(word).ok()?.parse().ok()
 }
 
+/// A part of a position, a normal or a texture coordinate, or why it can be none.
+pub(super) fn in_range(part: f64) -> Result<f64, String> {
+    if part.abs() <= POSITION_MAX {
+        return Ok(part);
+    }
+    Err(format!(
+        "a number is {part:e}, but it must be between -1e30 and 1e30"
+    ))
+}
+
+/// Why a corner of a face is no vertex.
+pub(super) fn no_vertex(vertex: impl Display, count: impl Display) -> String {
+    format!("a corner of a face is vertex {vertex}, but there are {count}")
+}
+
 /// Appends the shortest text that reads back as the same number, with an exponent where zeros would be many.
 #[cfg(any(feature = "obj", feature = "ply"))]
 pub(super) fn shortest(text: &mut String, number: f64) {
@@ -25,10 +42,4 @@ pub(super) fn shortest(text: &mut String, number: f64) {
     } else {
         write!(text, "{number:e}")
     };
-}
-
-/// The triangles around the first corner of a polygon.
-pub(super) fn fan<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
-    let pairs = corners.iter().skip(1).zip(corners.iter().skip(2));
-    pairs.map(|(&b, &c)| [corners[0], b, c])
 }

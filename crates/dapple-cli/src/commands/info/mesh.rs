@@ -38,12 +38,16 @@ pub(super) fn findings(path: &Path) -> Result<Findings> {
     if !columns.is_empty() {
         text += &format!("\n  with {}", columns.join(", "));
     }
+    for what in &model.left_out {
+        text += &format!("\n  without {what}");
+    }
     let area = surface.as_ref().ok().map(Surface::area);
     text += &match &surface {
         Ok(surface) => format!("\n  an area of {:.6}; ready for a texture", surface.area()),
-        Err(error) => {
+        Err(error) if Surface::new(model.mesh.repair().0).is_ok() => {
             format!("\n  not ready for a texture as it is: {error}; dapple synth repairs it")
         }
+        Err(error) => format!("\n  not fit for a texture: {error}"),
     };
     let counts = counts
         .iter()
@@ -51,7 +55,7 @@ pub(super) fn findings(path: &Path) -> Result<Findings> {
     let json = json!({
         "file": path.display().to_string(), "kind": "mesh", "counts": Value::Object(counts.collect()),
         "bounds": bounds(&model).map(|ends| ends.map(|end| end.to_array())), "columns": columns,
-        "area": area, "is_surface": surface.is_ok(),
+        "left_out": model.left_out, "area": area, "is_surface": surface.is_ok(),
     });
     Ok(Findings {
         text: text + "\n",

@@ -47,6 +47,10 @@ fn point(text: &str) -> Result<ControlPoint> {
         .map(|part| part.trim().parse())
         .collect::<Result<_, _>>()
         .with_context(|| format!("{text:?}"))?;
+    // Values are in single precision.
+    if !numbers.iter().all(|&number| (number as f32).is_finite()) {
+        bail!("{text:?} has a number that is not finite");
+    }
     let (x, y, value, orientation) = match numbers[..] {
         [x, y, value] => (x, y, value, None),
         [x, y, value, ox, oy] => (x, y, value, Some([ox, oy])),
@@ -79,7 +83,13 @@ mod tests {
 
     #[test]
     fn a_line_that_is_no_control_point_is_named() {
-        for text in ["0,0,0\n1,2\n", "0,0,0\n1,2,x\n", "0,0,0\n1,2,3,4\n"] {
+        for text in [
+            "0,0,0\n1,2\n",
+            "0,0,0\n1,2,x\n",
+            "0,0,0\n1,2,3,4\n",
+            "0,0,0\nnan,2,3\n",
+            "0,0,0\n1,2,1e39\n",
+        ] {
             let error = csv(text).unwrap_err();
             assert!(
                 format!("{error:#}").contains("line 2"),

@@ -2,7 +2,7 @@
 
 use super::super::Beside;
 use super::document::Document;
-use super::wrong;
+use super::{unsupported, wrong};
 use crate::MeshError;
 use std::borrow::Cow;
 
@@ -26,8 +26,8 @@ impl<'a> Container<'a> {
             return Ok(Self { json, bin: None });
         }
         let (version, length) = (word(bytes, 4), word(bytes, 8));
-        if version != Some(2) {
-            return Err(wrong("its version is not 2"));
+        if let Some(version) = version.filter(|&version| version != 2) {
+            return Err(unsupported(format!("version {version} of binary glTF")));
         }
         let bytes = length.and_then(|length| bytes.get(12..length));
         let bytes = bytes.ok_or_else(|| wrong("it is shorter than it says"))?;

@@ -4,10 +4,15 @@
 
 use serde::Deserialize;
 
+/// What all versions have.
+#[derive(Deserialize)]
+pub(super) struct Head {
+    pub(super) asset: Asset,
+}
+
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Document {
-    pub(super) asset: Asset,
     #[serde(default)]
     pub(super) extensions_required: Vec<String>,
     pub(super) scene: Option<usize>,
@@ -51,6 +56,19 @@ pub(super) struct Node {
     pub(super) translation: Option<Box<[f64; 3]>>,
     pub(super) rotation: Option<Box<[f64; 4]>>,
     pub(super) scale: Option<Box<[f64; 3]>>,
+    pub(super) extensions: Option<Box<NodeExtensions>>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct NodeExtensions {
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub(super) instancing: Option<Instancing>,
+}
+
+/// Accessors with a transform for each copy of the mesh of a node.
+#[derive(Deserialize)]
+pub(super) struct Instancing {
+    pub(super) attributes: std::collections::BTreeMap<String, usize>,
 }
 
 #[derive(Deserialize)]

@@ -1,8 +1,9 @@
 //! The scene of a glTF file as one mesh.
 
+use super::super::polygon::{fan, strip};
 use super::accessor::{Budget, Column};
-use super::document::Primitive;
-use super::transform::{cofactors, local};
+use super::document::{Instancing, Primitive};
+use super::transform::{cofactors, local, trs};
 use super::{Source, wrong};
 use crate::{Mesh, MeshError, Model};
 use dapple_color::{LinearRgb, LinearRgba};
@@ -57,8 +58,17 @@ pub(super) fn read(
         }
         let transform = parent * local(node);
         open.extend(node.children.iter().rev().map(|&child| (child, transform)));
-        if let Some(mesh) = node.mesh {
-            draft.add_mesh(mesh, transform)?;
+        let Some(mesh) = node.mesh else {
+            continue;
+        };
+        let extensions = node.extensions.as_deref();
+        match extensions.and_then(|extensions| extensions.instancing.as_ref()) {
+            None => draft.add_mesh(mesh, transform)?,
+            Some(instancing) => {
+                for copy in draft.copies(instancing)? {
+                    draft.add_mesh(mesh, transform * copy)?;
+                }
+            }
         }
     }
     draft.into_model()
@@ -85,6 +95,33 @@ fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshError> {
 }
 
 impl Draft<'_> {
+    /// The transforms of the copies of a mesh.
+    fn copies(
+        &mut self,
+        instancing: &Instancing,
+    ) -> Result<impl Iterator<Item = DMat4> + use<>, MeshError> {
+        let mut column = |name: &str, width: usize| {
+            let accessor = instancing.attributes.get(name).copied();
+            self.column(accessor, width..=width, false)
+        };
+        let translations = column("TRANSLATION", 3)?;
+        let rotations = column("ROTATION", 4)?;
+        let scales = column("SCALE", 3)?;
+        let count = |column: &Column| column.values.len() / column.width;
+        let columns = [&translations, &rotations, &scales];
+        let counts: Vec<_> = columns.into_iter().flatten().map(count).collect();
+        let Some(&n_copies) = counts.first() else {
+            return Err(wrong("instances have no translation, rotation or scale"));
+        };
+        if counts.iter().any(|&count| count != n_copies) {
+            return Err(wrong("attributes of instances have different counts"));
+        }
+        Ok((0..n_copies).map(move |i| {
+            let (translation, scale) = (element(&translations, i), element(&scales, i));
+            trs(translation, element(&rotations, i), scale)
+        }))
+    }
+
     fn add_mesh(&mut self, index: usize, transform: DMat4) -> Result<(), MeshError> {
         let mesh = self.source.document.meshes.get(index);
         let mesh = mesh.ok_or_else(|| wrong(format!("there is no mesh {index}")))?;
@@ -225,21 +262,9 @@ impl Draft<'_> {
             self.faces.push([a, b, c].map(|index| first + index));
         };
         match primitive.mode {
-            // In a strip every second triangle goes the other way around.
-            Some(5) => indices.windows(3).enumerate().for_each(|(i, w)| {
-                add(if i % 2 == 0 {
-                    [w[0], w[1], w[2]]
-                } else {
-                    [w[0], w[2], w[1]]
-                });
-            }),
-            Some(6) => indices
-                .windows(2)
-                .skip(1)
-                .for_each(|w| add([indices[0], w[0], w[1]])),
-            _ => indices
-                .chunks_exact(3)
-                .for_each(|w| add([w[0], w[1], w[2]])),
+            Some(5) => strip(&indices).for_each(&mut add),
+            Some(6) => fan(&indices).for_each(&mut add),
+            _ => indices.as_chunks().0.iter().copied().for_each(&mut add),
         }
         Ok(())
     }
@@ -262,6 +287,12 @@ impl Draft<'_> {
         }
         Ok((model, self.material))
     }
+}
+
+/// The numbers of an element, if there is such a column.
+fn element<const N: usize>(column: &Option<Column>, index: usize) -> Option<[f64; N]> {
+    let (elements, _) = column.as_ref()?.values.as_chunks();
+    elements.get(index).copied()
 }
 
 fn color(parts: &[f64]) -> LinearRgba {

@@ -118,6 +118,52 @@ fn strip_with_bytes_of_colors_becomes_triangles() {
 }
 
 #[test]
+fn instances_are_copies_of_the_mesh() {
+    let mut document = square();
+    // Two steps, the second with a mirror at x.
+    let steps = [
+        0.0, 0.0, 5.0, 0.0, 0.0, 7.0, 1.0, 1.0, 1.0, -1.0, 1.0, 1.0f32,
+    ];
+    let bytes: Vec<u8> = steps.iter().flat_map(|part| part.to_le_bytes()).collect();
+    let uri = format!("data:;base64,{}", base64(&bytes));
+    let add = |list: &mut Value, item: Value| list.as_array_mut().expect("a list").push(item);
+    add(
+        &mut document["buffers"],
+        json!({ "byteLength": 48, "uri": uri }),
+    );
+    for offset in [0, 24] {
+        let view = json!({ "buffer": 1, "byteOffset": offset, "byteLength": 24 });
+        add(&mut document["bufferViews"], view);
+    }
+    for view in [3, 4] {
+        let accessor =
+            json!({ "bufferView": view, "componentType": 5126, "count": 2, "type": "VEC3" });
+        add(&mut document["accessors"], accessor);
+    }
+    let attributes = json!({ "TRANSLATION": 3, "SCALE": 4, "_ID": 1 });
+    document["nodes"][0]["translation"] = json!([100, 0, 0]);
+    document["nodes"][0]["extensions"] =
+        json!({ "EXT_mesh_gpu_instancing": { "attributes": attributes } });
+    document["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
+    let model = read_json(&document).expect("it is valid");
+    let positions = model.mesh.positions();
+    assert_eq!(positions[1], DVec3::new(101.0, 0.0, 5.0), "the first copy");
+    assert_eq!(positions[5], DVec3::new(99.0, 0.0, 7.0), "the mirrored one");
+    let both = [[0, 1, 2], [1, 3, 2], [4, 6, 5], [5, 6, 7]];
+    assert_eq!(faces(&model), both, "turned over in the mirror");
+    document["accessors"][4]["count"] = 1.into();
+    assert_eq!(
+        why(&document),
+        "attributes of instances have different counts"
+    );
+    document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = json!({});
+    assert_eq!(
+        why(&document),
+        "instances have no translation, rotation or scale"
+    );
+}
+
+#[test]
 fn transforms_of_nodes_are_applied_and_mirrors_turn_faces_over() {
     let mut document = square();
     // A quarter turn about z, then a mirror at x and a step.
@@ -243,16 +289,23 @@ fn lies_about_counts_and_cycles_of_nodes_are_refused() {
         changed("/accessors/2/count", 3.into()),
         "attributes of a primitive have different counts"
     );
-    assert_eq!(
-        changed("/asset/version", "1.0".into()),
-        "its version is 1.0, and only 2 is read"
-    );
+}
+
+#[test]
+fn what_is_not_read_is_named() {
+    let feature = |bytes: &[u8]| match read(bytes).expect_err("it is refused").kind() {
+        MeshErrorKind::Unsupported { feature } => feature.clone(),
+        kind => panic!("{kind:?}"),
+    };
+    // In the first version things have names in place of numbers.
+    let first =
+        br#"{"asset": {"version": "1.0"}, "meshes": {"a": {}}, "nodes": {"b": {"meshes": ["a"]}}}"#;
+    assert_eq!(feature(first), "glTF 1.0");
+    assert_eq!(feature(b"glTF\x01\0\0\0"), "version 1 of binary glTF");
     let mut draco = square();
     draco["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
-    assert_eq!(
-        why(&draco),
-        "it requires the extension KHR_draco_mesh_compression"
-    );
+    let named = "the glTF extension KHR_draco_mesh_compression";
+    assert_eq!(feature(draco.to_string().as_bytes()), named);
 }
 
 #[test]

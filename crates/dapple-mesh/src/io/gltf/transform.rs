@@ -8,18 +8,23 @@ pub(super) fn local(node: &Node) -> DMat4 {
     if let Some(matrix) = &node.matrix {
         return DMat4::from_cols_array(matrix);
     }
-    let vector = |parts: &Option<Box<[f64; 3]>>, default| {
-        parts
-            .as_deref()
-            .map_or(default, |&parts| DVec3::from_array(parts))
-    };
-    let scale = vector(&node.scale, DVec3::ONE);
-    let rotation = node
-        .rotation
-        .as_deref()
-        .map_or(DQuat::IDENTITY, |&parts| DQuat::from_array(parts));
+    trs(
+        node.translation.as_deref().copied(),
+        node.rotation.as_deref().copied(),
+        node.scale.as_deref().copied(),
+    )
+}
+
+/// A scale, then a rotation by a quaternion, then a translation; what is missing changes nothing.
+pub(super) fn trs(
+    translation: Option<[f64; 3]>,
+    rotation: Option<[f64; 4]>,
+    scale: Option<[f64; 3]>,
+) -> DMat4 {
+    let scale = scale.map_or(DVec3::ONE, DVec3::from_array);
+    let rotation = rotation.map_or(DQuat::IDENTITY, DQuat::from_array);
     let [x, y, z] = axes(rotation);
-    let translation = vector(&node.translation, DVec3::ZERO);
+    let translation = translation.map_or(DVec3::ZERO, DVec3::from_array);
     DMat4::from_cols(
         (x * scale.x).extend(0.0),
         (y * scale.y).extend(0.0),

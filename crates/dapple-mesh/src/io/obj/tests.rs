@@ -90,6 +90,27 @@ fn normals_are_kept_only_without_creases() {
 }
 
 #[test]
+fn what_corners_name_in_vain_is_left_out() {
+    let head = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt .5 .5\n";
+    let [uvs, normals] = ["texture coordinates", "normals"]
+        .map(|what| format!("{what} that faces name and the file does not have"));
+    for (face, left_out) in [
+        ("f 1/1 2/1 3", vec![]),
+        ("f 1/1/1 2/1/1 3", vec![normals.clone()]),
+        ("f 1/1/-1 2/1/-1 3//-1", vec![normals.clone()]),
+        ("f 1/1 2/1 3/2", vec![uvs.clone()]),
+        ("f 1/1 2/1 3/-2", vec![uvs.clone()]),
+        ("f 1/1/0 2/1/9 3/99999999999/9", vec![uvs, normals]),
+    ] {
+        let model = read(format!("{head}{face}\n").as_bytes()).expect(face);
+        let half = DVec2::splat(0.5);
+        assert_eq!(model.uvs, Some(vec![[half, half, DVec2::ZERO]]), "{face}");
+        assert_eq!(model.normals, None, "{face}");
+        assert_eq!(model.left_out, left_out, "{face}");
+    }
+}
+
+#[test]
 fn what_is_wrong_is_named_with_its_line() {
     assert_eq!(
         why("v 0 0 0\nv 1 x 0\n"),
@@ -120,30 +141,37 @@ fn what_is_wrong_is_named_with_its_line() {
         }
     }
     assert_eq!(
-        why("v 0 0 0\nvt 0 0\nf 1/1 1/2 1/1"),
-        "a corner names texture coordinate 2, but there are 1"
+        why("v 0 0 0\n\nf 1 1 1 1 \\\n 1\nf 1 1 \\\r\n1\nf 1 1 2\nf 1 1 1\nv 0 nan 0\n"),
+        "line 9: a number is NaN, but it must be between -1e30 and 1e30",
+        "lines that go on keep the numbers of those behind"
     );
     assert_eq!(
-        why("v 0 0 0\nf 1//1 1 1"),
-        "a corner names normal 1, but there are 0"
+        why("v 0 0 0\nf 1 1 1 1 \\\n 1\nf 1 2 1\nf 1 1 1\n"),
+        "line 4: a corner of a face is vertex 2, but there are 1"
     );
-    let kind = read(b"v 0 0 0\nf 1 2 1")
-        .expect_err("no such vertex")
-        .kind()
-        .clone();
-    assert_eq!(
-        kind,
-        MeshErrorKind::Corner {
-            face: 0,
-            vertex: 1,
-            count: 1
-        }
-    );
-    let kind = read(b"v 0 nan 0").expect_err("no number").kind().clone();
-    assert!(
-        matches!(kind, MeshErrorKind::Position { vertex: 0, .. }),
-        "{kind:?}"
-    );
+    for number in ["vt 0 inf", "vn 0 -1e31 0"] {
+        let text = format!("v 0 0 0\n# here\n{number}\n");
+        assert!(why(&text).starts_with("line 3: a number is "), "{number}");
+    }
+}
+
+#[test]
+fn what_has_neither_vertices_nor_faces_is_no_obj() {
+    let wide: Vec<u8> = "v 0 0 0\n"
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    for bytes in [
+        b"".as_slice(),
+        b"Dear Sir,\nf you\n",
+        &[7, 200, 0, 255, 10, 3],
+        &wide,
+    ] {
+        let error = read(bytes).expect_err("it is no OBJ file");
+        let text = error.to_string();
+        assert!(text.starts_with("this is not a valid OBJ file: "), "{text}");
+    }
+    assert!(read(b"v 0 0 0\n").is_ok(), "a cloud of one point");
 }
 
 #[test]

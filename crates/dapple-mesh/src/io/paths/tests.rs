@@ -52,6 +52,35 @@ fn models_are_written_and_read_by_extension() {
 }
 
 #[test]
+fn the_longest_name_of_a_file_system_can_be_written() {
+    let folder = folder("long");
+    let path = folder.join(format!("{}.glb", "n".repeat(251)));
+    write_model(&path, &textured()).expect("255 bytes");
+    assert!(read_model(&path).is_ok(), "it is whole");
+    fs::remove_dir_all(folder).expect("it is there");
+}
+
+#[cfg(unix)]
+#[test]
+fn permissions_and_links_are_kept() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = folder("kept");
+    let (file, link) = (folder.join("a.ply"), folder.join("link.ply"));
+    fs::write(&file, "old").expect("it is written");
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).expect("it is ours");
+    symlink(&file, &link).expect("it is made");
+    write_model(&link, &textured()).expect("it is written");
+    assert!(link.is_symlink(), "the link stays");
+    assert!(read_model(&file).is_ok(), "where it leads to");
+    let mode = fs::metadata(&file)
+        .expect("it is there")
+        .permissions()
+        .mode();
+    assert_eq!(mode & 0o777, 0o640, "the permissions stay");
+    fs::remove_dir_all(folder).expect("it is there");
+}
+
+#[test]
 fn unknown_extensions_and_missing_files_are_refused() {
     let folder = folder("refused");
     let kind = |result: Result<(), MeshError>| result.expect_err("it is refused").kind().clone();

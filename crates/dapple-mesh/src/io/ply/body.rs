@@ -1,19 +1,36 @@
 //! The numbers after the header of a PLY file.
 
-use super::super::text::parse;
+use super::super::text::{in_range, parse};
 use super::FORMAT;
 use super::header::{Element, Encoding, Kind, Scalar};
 use crate::MeshError;
+use core::fmt::Display;
 
 /// What is still to be read.
 pub(super) struct Body<'a> {
     encoding: Encoding,
+    /// All of the file, with its header.
+    bytes: &'a [u8],
     rest: &'a [u8],
 }
 
 impl<'a> Body<'a> {
-    pub(super) fn new(encoding: Encoding, rest: &'a [u8]) -> Self {
-        Self { encoding, rest }
+    pub(super) fn new(encoding: Encoding, bytes: &'a [u8], rest: &'a [u8]) -> Self {
+        Self {
+            encoding,
+            bytes,
+            rest,
+        }
+    }
+
+    /// Says what is wrong with what was read last, in text with its line.
+    pub(super) fn error(&self, why: impl Display) -> MeshError {
+        if self.encoding != Encoding::Text {
+            return MeshError::file(FORMAT, why.to_string());
+        }
+        let read = &self.bytes[..self.bytes.len() - self.rest.len()];
+        let ends = read.trim_ascii_end().iter().filter(|&&byte| byte == b'\n');
+        MeshError::file(FORMAT, format!("line {}: {why}", ends.count() + 1))
     }
 
     /// Refuses an element of which there are said to be more than the bytes that are left can hold.
@@ -34,9 +51,19 @@ impl<'a> Body<'a> {
         }
         let (name, count, left) = (&element.name, element.count, self.rest.len());
         let why = format!(
-            "the header says {count} of the element {name}, but there are only {left} bytes left"
+            "line {}: the header says {count} of the element {name}, but there are only {left} bytes left",
+            element.line
         );
         Err(MeshError::file(FORMAT, why))
+    }
+
+    /// A part of a position, a normal or a texture coordinate that was read last. Those of binary files are looked at
+    /// when all are there, with the number of the vertex in place of a line.
+    pub(super) fn in_range(&self, part: f64) -> Result<f64, MeshError> {
+        if self.encoding == Encoding::Text {
+            return in_range(part).map_err(|why| self.error(why));
+        }
+        Ok(part)
     }
 
     /// Reads the numbers of a property, in place of what was in the list.
@@ -61,10 +88,8 @@ impl<'a> Body<'a> {
             return Ok(count as usize);
         }
         let left = self.rest.len();
-        Err(MeshError::file(
-            FORMAT,
-            format!("a list says it has {count} items, but there are only {left} bytes left"),
-        ))
+        let why = format!("a list says it has {count} items, but there are only {left} bytes left");
+        Err(self.error(why))
     }
 
     fn scalar(&mut self, scalar: Scalar) -> Result<f64, MeshError> {
@@ -78,7 +103,7 @@ impl<'a> Body<'a> {
                 .and_then(|bytes| big(scalar, bytes)),
         };
         let why = "it ends early, or has something else in place of a number";
-        value.ok_or_else(|| MeshError::file(FORMAT, why))
+        value.ok_or_else(|| self.error(why))
     }
 
     /// The next word as a number.

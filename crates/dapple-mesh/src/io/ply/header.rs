@@ -22,6 +22,8 @@ pub(super) enum Encoding {
 pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: u64,
+    /// Of the file, from 1.
+    pub(super) line: usize,
     pub(super) properties: Vec<Property>,
 }
 
@@ -68,25 +70,31 @@ impl Header {
             number += 1;
             match (number, line.as_slice()) {
                 (1, [b"ply"]) => {}
-                (1, _) => return Err(MeshError::file(FORMAT, "the first line is not `ply`")),
+                (1, _) => {
+                    return Err(MeshError::file(
+                        FORMAT,
+                        "line 1: the first line is not `ply`",
+                    ));
+                }
                 (_, [] | [b"comment" | b"obj_info", ..]) => {}
                 (_, [b"format", encoding, _]) if !known => {
                     header.encoding = named(encoding).ok_or_else(|| wrong(number))?;
                     known = true;
                 }
                 (_, [b"end_header"]) if known => return Ok((header, rest)),
-                (_, line) => header.add(line).ok_or_else(|| wrong(number))?,
+                (_, line) => header.add(number, line).ok_or_else(|| wrong(number))?,
             }
         }
     }
 
     /// Adds what a line says, if it says anything.
-    fn add(&mut self, line: &[&[u8]]) -> Option<()> {
+    fn add(&mut self, number: usize, line: &[&[u8]]) -> Option<()> {
         let text = |word: &[u8]| String::from_utf8_lossy(word).into_owned();
         match line {
             [b"element", name, count] => self.elements.push(Element {
                 name: text(name),
                 count: parse(count)?,
+                line: number,
                 properties: Vec::new(),
             }),
             [b"property", b"list", count, item, name] => {
@@ -107,6 +115,14 @@ impl Header {
             _ => return None,
         }
         Some(())
+    }
+}
+
+impl Element {
+    /// Where the first property is that has one of these names.
+    pub(super) fn place(&self, names: &[&str]) -> Option<usize> {
+        let mut properties = self.properties.iter();
+        properties.position(|property| names.contains(&property.name.as_str()))
     }
 }
 
@@ -146,8 +162,6 @@ fn scalar(name: &[u8]) -> Option<Scalar> {
 }
 
 fn wrong(number: usize) -> MeshError {
-    MeshError::file(
-        FORMAT,
-        format!("line {number} of the header says nothing that PLY has"),
-    )
+    let why = format!("line {number}: this is nothing that a header of PLY says");
+    MeshError::file(FORMAT, why)
 }

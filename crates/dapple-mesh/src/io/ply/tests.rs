@@ -39,6 +39,22 @@ fn quad_as_text_becomes_two_triangles_with_linear_colors() {
     assert_eq!((model.normals, model.uvs), (None, None));
 }
 
+/// The head of a text with five vertices on the plane z = 0.
+const FIVE: &str = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n";
+
+#[test]
+fn strips_of_triangles_are_faces_with_one_orientation() {
+    let text = format!(
+        "{FIVE}element tristrips 2\nproperty uchar flags\nproperty list int int vertex_indices\nend_header\n\
+         0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n7 9 0 2 1 3 -1 4 3 2 -1\n7 2 0 1\n"
+    );
+    let model = read(text.as_bytes()).expect("it is valid");
+    assert_eq!(faces(&model), [[0, 2, 1], [2, 3, 1], [4, 3, 2]]);
+    for normal in model.mesh.vertex_normals() {
+        assert_eq!(normal, DVec3::Z, "counterclockwise from above");
+    }
+}
+
 #[test]
 fn both_byte_orders_read_as_the_same() {
     let header = |order: &str| {
@@ -119,12 +135,12 @@ fn counts_that_the_bytes_cannot_hold_are_refused_at_once() {
     let binary = b"ply\nformat binary_little_endian 1.0\nelement vertex 4294967296\nproperty float x\nproperty float y\nproperty float z\nend_header\nabc";
     assert_eq!(
         why(binary),
-        "the header says 4294967296 of the element vertex, but there are only 3 bytes left"
+        "line 3: the header says 4294967296 of the element vertex, but there are only 3 bytes left"
     );
     let text = QUAD.replace("face 3", "face 18446744073709551615");
     assert!(
         why(text.as_bytes())
-            .starts_with("the header says 18446744073709551615 of the element face"),
+            .starts_with("line 15: the header says 18446744073709551615 of the element face"),
         "faces"
     );
     let list = b"ply\nformat binary_little_endian 1.0\nelement odd 1\nproperty list uint uchar x\nend_header\n\xff\xff\xff\xffabc";
@@ -139,27 +155,37 @@ fn counts_that_the_bytes_cannot_hold_are_refused_at_once() {
 
 #[test]
 fn what_is_wrong_is_said() {
-    assert_eq!(why(b"plyx\n"), "the first line is not `ply`");
+    assert_eq!(why(b"plyx\n"), "line 1: the first line is not `ply`");
     assert_eq!(why(b"ply\nformat ascii 1.0\n"), "the header does not end");
     assert_eq!(
         why(b"ply\nformat ebcdic 1.0\nend_header\n"),
-        "line 2 of the header says nothing that PLY has"
+        "line 2: this is nothing that a header of PLY says"
     );
     assert_eq!(
         why(b"ply\nend_header\n"),
-        "line 2 of the header says nothing that PLY has"
+        "line 2: this is nothing that a header of PLY says"
     );
     assert_eq!(
         why(QUAD.replace("double x", "double w").as_bytes()),
-        "a vertex has no x, y or z"
+        "line 7: a vertex has no x, y or z"
     );
     assert_eq!(
         why(QUAD.replace("7 2 0 1", "7 2 0 -1").as_bytes()),
-        "a corner of a face is -1, which is not the number of a vertex"
+        "line 26: a corner of a face is vertex -1, but there are 4, counted from 0"
+    );
+    assert_eq!(
+        why(QUAD.replace("7 3 3 2 1", "7 3 3 2 4").as_bytes()),
+        "line 25: a corner of a face is vertex 4, but there are 4, counted from 0"
+    );
+    assert_eq!(
+        why(QUAD.replace("0.1 1 0", "nan 1 0").as_bytes()),
+        "line 21: a number is NaN, but it must be between -1e30 and 1e30"
     );
     let ends = "it ends early, or has something else in place of a number";
-    assert_eq!(why(QUAD.replace("7 2 0 1\r\n", "7 2 0").as_bytes()), ends);
-    assert_eq!(why(QUAD.replace("188", "x").as_bytes()), ends);
+    let cut = QUAD.replace("7 2 0 1\r\n", "7 2 0");
+    assert_eq!(why(cut.as_bytes()), format!("line 26: {ends}"));
+    let word = QUAD.replace("188", "x");
+    assert_eq!(why(word.as_bytes()), format!("line 21: {ends}"));
 }
 
 #[test]
