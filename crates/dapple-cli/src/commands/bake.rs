@@ -62,7 +62,7 @@ pub(crate) struct Args {
     #[arg(long, value_enum, value_name = "WAY")]
     normal: Option<NormalWay>,
 
-    /// How many units of the plane a height of 1 stands for, instead of what the recipe says.
+    /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6, instead of what the recipe says.
     #[arg(long, value_name = "UNITS")]
     relief: Option<f64>,
 

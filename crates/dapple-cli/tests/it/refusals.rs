@@ -55,12 +55,13 @@ const WRONG: [&str; 26] = [
 ];
 
 /// Command lines that a library refuses, and what the answer holds.
-const LIMITS: [(&str, &str); 15] = [
+const LIMITS: [(&str, &str); 16] = [
     ("bake flagston -o out/", "flagstone"),
     (
         "bake flagstone --region 60,0,8,8 --size 64 -o out/",
         "region",
     ),
+    ("bake flagstone --relief 1e300 -o out/", "from -1e6 to 1e6"),
     ("bake stone-and-grass --banded --size 64 -o out/", "whole"),
     ("worley --density 1000 -o out.png", "density"),
     ("pups noise --spacing 0 -o out.png", "radius"),

@@ -139,6 +139,21 @@ fn wavelet_noise_of_sides_that_cannot_repeat_is_told_with_the_number_of_cells() 
 }
 
 #[test]
+fn relief_past_its_range_is_refused_with_the_range() {
+    let plan = |relief: &str| {
+        let text = format!("dapple = 1\n[material]\nrelief = {relief}\n");
+        Plan::new(&Recipe::from_toml(&text).unwrap(), &Images::new(), 0.0)
+    };
+    for relief in ["1e300", "-1.0001e6", "nan"] {
+        let error = plan(relief).expect_err(relief);
+        assert!(error.to_string().contains("from -1e6 to 1e6"), "{error}");
+    }
+    for relief in ["1e6", "-1e6", "0"] {
+        assert!(plan(relief).is_ok(), "{relief}");
+    }
+}
+
+#[test]
 fn what_excludes_each_other_is_told() {
     for nodes in [
         "[nodes.a.worley]\nvalue = \"cell_value\"\noctaves = { count = 3 }",
