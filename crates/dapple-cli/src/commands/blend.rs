@@ -12,7 +12,7 @@ use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
 use anyhow::{Context as _, Error, Result};
 use dapple::raster::Raster;
-use dapple::tile::{Layer, TileError, TileErrorKind, blend, blend_by_tile, rank_equalize};
+use dapple::tile::{Layer, Map, TileError, TileErrorKind, blend, blend_by_tile, rank_equalize};
 use layer::{LayerArg, Reader};
 use mixing::MixingArgs;
 use serde::Serialize;
@@ -26,15 +26,16 @@ Examples:
   dapple blend rock.png,height=rock_height.png \\
     grass.png,height=grass_height.png,weight=mask.png --depth 0.1 -o both.png
   dapple blend rock.png grass.png,weight=0.3 --tile cracks.png --gain 8 -o cracked.png
-  dapple blend rock.png,normal=rock_normal.png \\
-    grass.png,normal=grass_normal.png,weight=mask.png -o material/
+  dapple blend rock.png,normal=rock_normal.png,height=rock_height.png \\
+    grass.png,normal=grass_normal.png,height=grass_height.png,weight=mask.png -o material/
   dapple blend rock.png grass.png,weight=mask.png --size 512 \\
     --mixing keep-variance -o large.png
 
 Layers:
   A layer is an image, and behind commas what belongs to it:
     weight=0.3 or weight=mask.png   how much of it there is
-    height=FILE                     its height, from 0 to 1: what is higher shows
+    height=FILE                     its height, from 0 to 1: what is higher shows; in a folder
+                                    the heights are blended like other maps, if all have one
     normal=FILE                     its normals
     NAME=FILE                       another map, such as roughness=FILE
   The layer without a weight is the ground: it gets what the others leave, 1 less their
@@ -88,6 +89,13 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let read = args.layers.iter().map(|layer| layer.read(&mut reader));
     let mut materials = read.collect::<Result<Vec<_>>>()?;
     reader.agree(&args.layers, &mut materials)?;
+    if outputs.len() > materials[0].maps.len() {
+        // The heights are written, too.
+        for material in &mut materials {
+            let height = material.height.clone().map(Map::Value);
+            material.maps.extend(height);
+        }
+    }
     let tile = tile(args, &mut reader)?;
     let weights = layer::weights(&materials, materials[0].maps[0].size())?;
     let mut layers = Vec::new();
@@ -116,7 +124,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Claims an output for the first map, or for each of them in a folder.
+/// Claims an output for the first map, or for each of them in a folder, and there for the heights, if all layers have one.
 fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
     let names = args.layers[0].map_names();
     for layer in &args.layers[1..] {
@@ -142,6 +150,10 @@ fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
     };
     job.make_folder(folder)?;
     let ending = args.image.format.map_or("png", Format::ending);
+    let mut names = names;
+    if args.layers.iter().all(LayerArg::has_height) {
+        names.push(layer::HEIGHT);
+    }
     let target = |name: &&str| Target::Path(folder.join(format!("{name}.{ending}")));
     names.iter().map(|name| job.claim(&target(name))).collect()
 }

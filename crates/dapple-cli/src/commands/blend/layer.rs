@@ -13,12 +13,15 @@ use std::str::FromStr;
 /// The name of the first map of a layer.
 const BASE: &str = "base";
 
+/// The name of the map that is a layer's height.
+pub(super) const HEIGHT: &str = "height";
+
 /// What the user wrote of a layer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct LayerArg {
     path: PathBuf,
     weight: Option<Weight>,
-    /// The other maps by their names, in order; `height` and `normal` are special.
+    /// The other maps by their names, in order; [`HEIGHT`] and `normal` are special.
     maps: Vec<(String, PathBuf)>,
 }
 
@@ -35,7 +38,7 @@ enum Weight {
 pub(super) struct Material {
     /// Its maps, in the order of their names.
     pub(super) maps: Vec<Map>,
-    /// Its height, which is also among the maps.
+    /// Its height.
     pub(super) height: Option<Raster<f32>>,
     /// Whether an image has more than 8 bits.
     pub(super) is_deep: bool,
@@ -87,10 +90,15 @@ impl LayerArg {
         &self.path
     }
 
-    /// The names of the maps that a blend of it has. The height is one only beside others that need a folder anyway.
+    /// Whether it has a height.
+    pub(super) fn has_height(&self) -> bool {
+        self.maps.iter().any(|(name, _)| name == HEIGHT)
+    }
+
+    /// The names of its maps but the height.
     pub(super) fn map_names(&self) -> Vec<&str> {
         let others = self.maps.iter().map(|(name, _)| name.as_str());
-        let others: Vec<_> = others.filter(|name| *name != "height").collect();
+        let others: Vec<_> = others.filter(|name| *name != HEIGHT).collect();
         [BASE].into_iter().chain(others).collect()
     }
 
@@ -108,7 +116,7 @@ impl LayerArg {
                 _ => Kind::ByChannels,
             };
             let (map, is_map_deep) = reader.read(path, kind)?;
-            if name == "height" {
+            if name == HEIGHT {
                 height = Some(values(map));
             } else {
                 maps.push(map);
@@ -133,7 +141,7 @@ impl LayerArg {
 
     /// The files of the maps that are blended, in the order of their names.
     fn map_paths(&self) -> impl Iterator<Item = &Path> {
-        let others = self.maps.iter().filter(|(name, _)| name != "height");
+        let others = self.maps.iter().filter(|(name, _)| name != HEIGHT);
         let others = others.map(|(_, path)| path.as_path());
         [self.path.as_path()].into_iter().chain(others)
     }
