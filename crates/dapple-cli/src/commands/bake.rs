@@ -66,7 +66,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "UNITS")]
     relief: Option<f64>,
 
-    /// Keep only some rows in memory, however large the tile is. Refused where a node sees the whole tile.
+    /// Keep only some rows in memory, however large the tile is. Refused where a node sees the whole tile, and needed past
+    /// 32768 × 32768 pixels.
     #[arg(long)]
     banded: bool,
 

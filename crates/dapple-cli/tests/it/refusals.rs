@@ -55,16 +55,21 @@ const WRONG: [&str; 26] = [
 ];
 
 /// Command lines that a library refuses, and what the answer holds.
-const LIMITS: [(&str, &str); 16] = [
+const LIMITS: [(&str, &str); 18] = [
     ("bake flagston -o out/", "flagstone"),
     (
         "bake flagstone --region 60,0,8,8 --size 64 -o out/",
         "region",
     ),
-    ("bake flagstone --relief 1e300 -o out/", "from -1e6 to 1e6"),
+    ("bake craters --size 1000000 -o out/", "hint: add --banded"),
+    (
+        "bake craters --size 1000000 --maps height,normal -o out/",
+        "2 maps of 1000000 × 1000000 pixels: 8.00 TB before compression, about ",
+    ),
     ("bake stone-and-grass --banded --size 64 -o out/", "whole"),
     ("worley --density 1000 -o out.png", "density"),
     ("pups noise --spacing 0 -o out.png", "radius"),
+    ("bake flagstone --relief 1e300 -o out/", "from -1e6 to 1e6"),
     (
         "tile photo.png --method soft-cut --margin 40 -o out.png",
         "margin",
