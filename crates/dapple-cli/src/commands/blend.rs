@@ -1,12 +1,13 @@
 //! `dapple blend`: materials laid over each other by weights.
 
+mod alpha;
 mod layer;
 mod mixing;
 
-use crate::args::{ImageArgs, Size};
+use crate::args::{AlphaArgs, ImageArgs, Size};
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
-use crate::input::{self, Kind};
+use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
@@ -64,6 +65,10 @@ pub(crate) struct Args {
     plain_tile: bool,
 
     #[command(flatten)]
+    #[serde(flatten)]
+    alpha: AlphaArgs,
+
+    #[command(flatten)]
     mixing: MixingArgs,
 
     /// How large the blend is, in pixels. Images that are smaller are repeated, larger ones cut. By default all images have
@@ -85,7 +90,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend", &args.image.files);
     let outputs = claim(args, &mut job)?;
     job.claim_sidecar()?;
-    let mut reader = Reader::new(args.size);
+    let mut reader = Reader::new(args.size, args.alpha.alpha);
     let read = args.layers.iter().map(|layer| layer.read(&mut reader));
     let mut materials = read.collect::<Result<Vec<_>>>()?;
     reader.agree(&args.layers, &mut materials)?;
@@ -96,6 +101,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             material.maps.extend(height);
         }
     }
+    let has_alpha = alpha::multiply(&mut materials)?;
     let tile = tile(args, &mut reader)?;
     let weights = layer::weights(&materials, materials[0].maps[0].size())?;
     let mut layers = Vec::new();
@@ -114,11 +120,22 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         Some(tile) => blend_by_tile(&layers, tile, &how),
         None => blend(&layers, &how),
     };
-    let maps = maps.map_err(advise)?;
+    let mut maps = maps.map_err(advise)?;
+    let mut alpha = if has_alpha {
+        alpha::divide(&mut maps)?
+    } else {
+        None
+    };
     drop(progress);
     let is_deep = materials.iter().any(|material| material.is_deep);
     for (map, output) in maps.into_iter().zip(outputs) {
-        job.write_image(output, map, is_deep, &args.image)?;
+        let blended = Loaded {
+            map,
+            // That of the first map.
+            alpha: alpha.take(),
+            is_deep,
+        };
+        job.write_loaded(output, blended, &args.image)?;
     }
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)
@@ -163,7 +180,7 @@ fn tile(args: &Args, reader: &mut Reader) -> Result<Option<Raster<f32>>> {
     let Some(path) = &args.tile else {
         return Ok(None);
     };
-    let values = layer::values(reader.read(path, Kind::ByChannels)?.0);
+    let values = layer::values(reader.read_opaque(path, Kind::ByChannels)?.map);
     if args.plain_tile {
         return Ok(Some(values));
     }
