@@ -1,10 +1,12 @@
 //! What many subcommands take: how large, where to, in which format.
 
+mod alpha;
 mod numbers;
 mod ramp;
 mod region;
 mod size;
 
+pub(crate) use alpha::{Alpha, AlphaArgs};
 pub(crate) use numbers::Numbers;
 pub(crate) use ramp::RampArg;
 pub(crate) use region::Region;

@@ -2,8 +2,9 @@
 
 use crate::encode::Format;
 use crate::error::Hint;
+use crate::foresight::foresee;
 use crate::input;
-use crate::job::Job;
+use crate::job::{Job, eprintln_if_possible};
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
 use anyhow::{Context as _, Error, Result};
@@ -104,6 +105,11 @@ pub(crate) fn bake(
     options: &BakeOptions,
     files: &[MapFile],
 ) -> Result<()> {
+    if let Some(work) = foresee(plan, options, files)?
+        && !job.is_quiet()
+    {
+        eprintln_if_possible(&work);
+    }
     let mut bake = Bake::new(plan, options).map_err(advise)?;
     let size = bake.size();
     let mut rows = Vec::new();

@@ -5,8 +5,9 @@ use crate::error::{Hint, usage};
 use crate::output::Target;
 use anyhow::Result;
 use clap::ValueEnum;
-use dapple::color::{Interpolation, Outside};
+use dapple::color::{Interpolation, LinearRgb, LinearRgba, Outside};
 use dapple::image::{Content, Depth, Encoding, RowWriter};
+use dapple::raster::Raster;
 use dapple::recipe::{Input, Node, Ramped};
 use dapple::tile::Map;
 use serde::Serialize;
@@ -127,6 +128,22 @@ pub(crate) fn encode(map: &Map, format: Format) -> Result<Vec<u8>> {
         }
     };
     Ok(sink.into_inner())
+}
+
+/// The bytes of a file with colors and their alpha, in the coding of [`encode`].
+pub(crate) fn encode_with_alpha(
+    colors: &Raster<LinearRgb>,
+    alpha: &Raster<f32>,
+    format: Format,
+) -> Result<Vec<u8>> {
+    let pixels = colors.zip_map(alpha, |&color, &alpha| LinearRgba {
+        color,
+        alpha: alpha.clamp(0.0, 1.0),
+    })?;
+    let sink = Cursor::new(Vec::new());
+    let mut rows = RowWriter::new(sink, pixels.size(), Content::ColorAlpha, format.encoding())?;
+    rows.write_color_alpha(pixels.view())?;
+    Ok(rows.finish()?.into_inner())
 }
 
 /// The smallest and the largest number of a map that are finite, over all channels; normals are from -1 to 1.

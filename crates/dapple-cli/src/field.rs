@@ -235,14 +235,25 @@ fn numbered(path: &Path, frame: u32, digits: usize) -> PathBuf {
 /// The width and height of a picture that is `shorter` units along its shorter side and has square pixels.
 pub(crate) fn extent_of(size: Size, shorter: f64) -> [f64; 2] {
     let [width, height] = size.0.map(f64::from);
-    let pixel = shorter / width.min(height);
-    [width * pixel, height * pixel]
+    // Products first: where there are whole numbers of units along both sides, they come out as such.
+    let side = |pixels: f64| pixels * shorter / width.min(height);
+    [side(width), side(height)]
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{RangeArg, numbered};
+    use super::{RangeArg, extent_of, numbered};
+    use crate::args::Size;
     use std::path::Path;
+
+    #[test]
+    fn whole_numbers_of_units_come_out_whole_for_any_size() {
+        for side in 1..2000 {
+            assert_eq!(extent_of(Size([side; 2]), 32.0), [32.0; 2], "{side}");
+        }
+        let wide = extent_of(Size([640, 480]), 246.0);
+        assert_eq!(wide, [328.0, 246.0]);
+    }
 
     #[test]
     fn ranges_are_two_ends_or_raw() {

@@ -5,10 +5,10 @@
     reason = "this module is where the command reads files"
 )]
 
-use crate::args::Region;
+use crate::args::{Alpha, Region};
 use crate::error::Hint;
 use anyhow::{Context, Error, Result, anyhow};
-use dapple::color::{Code, Normal};
+use dapple::color::{Code, LinearRgba, Normal};
 use dapple::image::{
     Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_image, read_image,
 };
@@ -42,6 +42,8 @@ pub(crate) enum Kind {
 pub(crate) struct Loaded {
     /// Its pixels.
     pub(crate) map: Map,
+    /// The alpha of its pixels, where some are transparent and that is kept.
+    pub(crate) alpha: Option<Raster<f32>>,
     /// Whether the file has more than 8 bits per channel.
     pub(crate) is_deep: bool,
 }
@@ -69,24 +71,95 @@ pub(crate) fn image(path: &Path) -> Result<Image> {
 ///
 /// # Errors
 ///
-/// As [`image`]; and if its channels cannot be meant so, or the part is not inside of it.
+/// As [`image`]; and if its channels cannot be meant so, some pixels are transparent, or the part is not inside of it.
 pub(crate) fn map(path: &Path, kind: Kind, region: Option<Region>) -> Result<Loaded> {
     let image = image(path)?;
-    let map = match kind {
-        Kind::Normals => normals(&image).map(Map::Normal),
+    let map = opaque(&image, kind).with_context(|| name(path))?;
+    part(path, &image, region, map, None)
+}
+
+/// Reads an image as a map, or a part of it, and does with its alpha what was asked for.
+///
+/// # Errors
+///
+/// As [`map`], but for what is transparent. Normals have no alpha.
+pub(crate) fn map_with_alpha(
+    path: &Path,
+    kind: Kind,
+    region: Option<Region>,
+    alpha: Alpha,
+) -> Result<Loaded> {
+    let image = image(path)?;
+    let pixels = if kind != Kind::Normals && image.channels().has_alpha() {
+        Some(image.color_alpha().map_err(advise)?)
+    } else {
+        None
+    };
+    let is_transparent = |pixels: &Raster<LinearRgba>| {
+        let mut alphas = pixels.pixels().iter().map(|pixel| pixel.alpha);
+        alphas.any(|alpha| alpha != 1.0)
+    };
+    let Some(pixels) = pixels.filter(is_transparent) else {
+        let map = opaque(&image, kind).with_context(|| name(path))?;
+        return part(path, &image, region, map, None);
+    };
+    let map = match (alpha, values_beside_alpha(&image)) {
+        (Alpha::Drop, Some(values)) if kind == Kind::ByChannels => Map::Value(values),
+        (Alpha::Keep | Alpha::Drop, _) => Map::Color(pixels.map(|pixel| pixel.color)),
+        (Alpha::Over(below), _) => {
+            Map::Color(pixels.map(|pixel| pixel.color * pixel.alpha + below * (1.0 - pixel.alpha)))
+        }
+    };
+    let alpha = (alpha == Alpha::Keep).then(|| pixels.map(|pixel| pixel.alpha));
+    part(path, &image, region, map, alpha)
+}
+
+/// The values of a gray image with alpha, as they are.
+fn values_beside_alpha(image: &Image) -> Option<Raster<f32>> {
+    let Image::Png(png) = image else {
+        return None;
+    };
+    match &png.pixels {
+        PngPixels::GrayAlpha8(raster) => Some(raster.map(|[code, _]| code.to_unit())),
+        PngPixels::GrayAlpha16(raster) => Some(raster.map(|[code, _]| code.to_unit())),
+        _ => None,
+    }
+}
+
+/// The map of an image whose pixels are all opaque.
+fn opaque(image: &Image, kind: Kind) -> Result<Map> {
+    match kind {
+        Kind::Normals => normals(image).map(Map::Normal),
         Kind::Colors => image.color().map(Map::Color).map_err(advise),
         Kind::ByChannels => match image.gray() {
             Ok(values) => Ok(Map::Value(values)),
             Err(_) => image.color().map(Map::Color).map_err(advise),
         },
-    };
-    let map = map.with_context(|| name(path))?;
-    let map = match region {
-        Some(region) => crop(&map, region).with_context(|| name(path))?,
-        None => map,
-    };
+    }
+}
+
+/// A part of what was read, or all of it.
+fn part(
+    path: &Path,
+    image: &Image,
+    region: Option<Region>,
+    map: Map,
+    alpha: Option<Raster<f32>>,
+) -> Result<Loaded> {
     let is_deep = image.bits() > 8;
-    Ok(Loaded { map, is_deep })
+    let Some(region) = region else {
+        return Ok(Loaded {
+            map,
+            alpha,
+            is_deep,
+        });
+    };
+    let cropped = alpha.map(|alpha| alpha.crop(region.first, region.size));
+    Ok(Loaded {
+        map: crop(&map, region).with_context(|| name(path))?,
+        alpha: cropped.transpose().with_context(|| name(path))?,
+        is_deep,
+    })
 }
 
 /// Refuses an image that has not the size of the first one.

@@ -1,8 +1,9 @@
 //! A run of a subcommand: its files, what it says, and the JSON file beside the output.
 
 use crate::args::{ImageArgs, OutputArgs};
-use crate::encode::{Format, default_format, encode, ramped, range};
+use crate::encode::{Format, default_format, encode, encode_with_alpha, ramped, range};
 use crate::error::{Exit, Hint, usage};
+use crate::input::Loaded;
 use crate::output::{OutputIdx, Outputs, Target};
 use anyhow::{Context as _, Result};
 use dapple::tile::Map;
@@ -206,6 +207,32 @@ impl<'a> Job<'a> {
         let default = default_format(&map, is_deep);
         let format = Format::choose(args.format, self.outputs.target(output), default)?;
         self.write_map(output, &map, format)
+    }
+
+    /// Writes an image as [`write_image`](Self::write_image) does, with its alpha if it has one.
+    ///
+    /// # Errors
+    ///
+    /// As [`write_image`](Self::write_image).
+    pub(crate) fn write_loaded(
+        &mut self,
+        output: OutputIdx,
+        loaded: Loaded,
+        args: &ImageArgs,
+    ) -> Result<()> {
+        let Loaded {
+            map,
+            alpha,
+            is_deep,
+        } = loaded;
+        let (Map::Color(colors), Some(alpha)) = (&map, &alpha) else {
+            return self.write_image(output, map, is_deep, args);
+        };
+        let default = default_format(&map, is_deep);
+        let format = Format::choose(args.format, self.outputs.target(output), default)?;
+        self.write(output, &encode_with_alpha(colors, alpha, format)?)?;
+        self.note(output, format, map.size(), range(&map));
+        Ok(())
     }
 
     /// Says what was asked for, on standard output unless that is taken.

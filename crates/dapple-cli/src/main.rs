@@ -14,6 +14,7 @@ mod commands;
 mod encode;
 mod error;
 mod field;
+mod foresight;
 mod input;
 mod job;
 mod output;

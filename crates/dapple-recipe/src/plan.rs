@@ -250,11 +250,16 @@ impl Plan {
     }
 }
 
+/// The steepest relief: far more than any texture needs, and slopes and their squares are finite.
+const MAX_RELIEF: f64 = 1e6;
+
 /// The steps of the material, which are made after all nodes.
 fn channels(recipe: &Recipe, builder: &mut step::Builder<'_>) -> Result<Channels, RecipeError> {
     let material = &recipe.material;
     let relief = material.relief;
-    RecipeError::check(relief.is_finite(), "relief", relief, "finite")?;
+    // NaN is no less than anything.
+    let holds = relief.abs() <= MAX_RELIEF;
+    RecipeError::check(holds, "relief", relief, "from -1e6 to 1e6")?;
     let height = builder.number(&material.height)?;
     let albedo = match &material.albedo {
         Some(albedo) => builder.any(albedo)?,

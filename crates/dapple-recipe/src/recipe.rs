@@ -81,7 +81,7 @@ fn default_wrap() -> [bool; 2] {
 pub struct Material {
     /// The height, from 0 to 1; ½ by default. Files with whole numbers cut off what lies outside.
     pub height: Input,
-    /// How many units of the plane a height of 1 stands for; 0.1 by default.
+    /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6; 0.1 by default.
     pub relief: f64,
     /// The color; the height as a gray by default.
     pub albedo: Option<Input>,

@@ -2,6 +2,9 @@
 
 use crate::{Place, Recipe, RecipeError, RecipeErrorKind, SCHEMA};
 use serde::de::DeserializeOwned;
+use unique::UniqueKeys;
+
+mod unique;
 
 /// The most bytes of a recipe. More than this is no recipe.
 pub const MAX_TEXT: usize = 1 << 22;
@@ -29,7 +32,9 @@ impl Recipe {
     /// As [`from_toml`](Self::from_toml).
     pub fn from_json(text: &str) -> Result<Self, RecipeError> {
         check_length(text)?;
-        checked(parse_json(text), parse_json::<Version>(text))
+        // The maps that recipes are read into would keep the last of two values.
+        let recipe = parse_json::<UniqueKeys>(text).and_then(|_| parse_json(text));
+        checked(recipe, parse_json::<Version>(text))
     }
 
     /// The recipe as TOML.
@@ -188,6 +193,39 @@ mod tests {
             !error.to_string().contains(" at line "),
             "the place is told once: {error}"
         );
+    }
+
+    #[test]
+    fn a_key_that_is_there_twice_is_refused_with_its_line() {
+        let json = |nodes: &str, material: &str| {
+            format!(
+                "{{\n\"dapple\": 1,\n\"nodes\": {{\n{nodes}\n}},\n\"material\": {{{material}}}\n}}"
+            )
+        };
+        let a = "\"a\": {\"worley\": {}}";
+        for (text, line, key) in [
+            (json(&format!("{a},\n{a}"), ""), 5, "a"),
+            (
+                json(
+                    "\"a\": {\"worley\": {\"seed\": 1,\n\"frequency\": 2, \"seed\": 3}}",
+                    "",
+                ),
+                5,
+                "seed",
+            ),
+            (json(a, "\"relief\": 1, \"relief\": 2"), 6, "relief"),
+            (json(a, "}, \"seed\": 1, \"seed\": {"), 6, "seed"),
+        ] {
+            let error = Recipe::from_json(&text).expect_err(&text);
+            let message = error.to_string();
+            assert!(
+                message.contains(&format!("`{key}` is there twice")),
+                "{message}"
+            );
+            assert_eq!(error.place().map(|place| place.line), Some(line), "{error}");
+        }
+        let once = Recipe::from_json(&json(a, "")).unwrap();
+        assert_eq!(once.nodes.len(), 1);
     }
 
     #[test]

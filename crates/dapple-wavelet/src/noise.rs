@@ -41,8 +41,8 @@ pub(crate) use white::white_raster;
 /// along each axis and up to 1.38 within cells. No value is further from zero than [`bound`](Self::bound). There is no
 /// other normalization.
 ///
-/// The noise repeats after [`size`](Self::size) cells along every axis, to the last bit where both positions are exact in
-/// `f64`. It is continuous, and so is its gradient. At a position that is not finite it is NaN.
+/// The noise repeats after as many cells along each axis as [`size`](Self::size) says, to the last bit where both positions
+/// are exact in `f64`. It is continuous, and so is its gradient. At a position that is not finite it is NaN.
 ///
 /// At first there is one band, of weight 1; [`with_weights`](Self::with_weights) gives more.
 ///
@@ -60,8 +60,8 @@ pub(crate) use white::white_raster;
 /// ```
 #[derive(Clone, PartialEq)]
 pub struct WaveletNoise<const N: usize> {
-    size: u32,
-    period: Period,
+    size: [u32; N],
+    periods: [Period; N],
     seed: Seed,
     tile: Tile<N>,
     bands: Vec<Band<N>>,
@@ -98,9 +98,9 @@ impl<const N: usize> WaveletNoise<N> {
         Ok(self)
     }
 
-    /// Cells along each side of the tile, which is the period.
+    /// Cells along each axis of the tile, which are the periods.
     #[must_use]
-    pub fn size(&self) -> u32 {
+    pub fn size(&self) -> [u32; N] {
         self.size
     }
 

@@ -21,7 +21,12 @@ impl FromStr for RampArg {
         let is_palette = |palette: &&Palette| name(**palette).eq_ignore_ascii_case(text);
         let colors = match Palette::ALL.iter().find(is_palette) {
             Some(palette) => palette.colors(),
-            None => text.split(',').map(color).collect::<Result<_, _>>()?,
+            None => {
+                let colors = text
+                    .split(',')
+                    .map(|text| color(text).ok_or_else(|| unknown(text)));
+                colors.collect::<Result<_, _>>()?
+            }
         };
         let ramp = ColorRamp::even(&colors).map_err(|error| error.to_string())?;
         Ok(Self {
@@ -44,16 +49,19 @@ fn name(palette: Palette) -> String {
 }
 
 /// A color in hexadecimal, or black or white.
-fn color(text: &str) -> Result<LinearRgb, String> {
+pub(super) fn color(text: &str) -> Option<LinearRgb> {
     match text.trim() {
-        "black" => Ok(LinearRgb::BLACK),
-        "white" => Ok(LinearRgb::WHITE),
-        text => LinearRgb::from_hex(text).map_err(|_| {
-            let palettes: Vec<_> = Palette::ALL.iter().map(|&palette| name(palette)).collect();
-            let palettes = palettes.join(", ");
-            format!("{text:?} is no color such as #ff8000, and no palette: {palettes}")
-        }),
+        "black" => Some(LinearRgb::BLACK),
+        "white" => Some(LinearRgb::WHITE),
+        text => LinearRgb::from_hex(text).ok(),
     }
+}
+
+/// What is said of a text that is neither a color nor a palette.
+fn unknown(text: &str) -> String {
+    let palettes: Vec<_> = Palette::ALL.iter().map(|&palette| name(palette)).collect();
+    let (text, palettes) = (text.trim(), palettes.join(", "));
+    format!("{text:?} is no color such as #ff8000, and no palette: {palettes}")
 }
 
 #[cfg(test)]

@@ -62,11 +62,12 @@ pub(crate) struct Args {
     #[arg(long, value_enum, value_name = "WAY")]
     normal: Option<NormalWay>,
 
-    /// How many units of the plane a height of 1 stands for, instead of what the recipe says.
+    /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6, instead of what the recipe says.
     #[arg(long, value_name = "UNITS")]
     relief: Option<f64>,
 
-    /// Keep only some rows in memory, however large the tile is. Refused where a node sees the whole tile.
+    /// Keep only some rows in memory, however large the tile is. Refused where a node sees the whole tile, and needed past
+    /// 32768 × 32768 pixels.
     #[arg(long)]
     banded: bool,
 

@@ -1,18 +1,19 @@
 //! `dapple blend`: materials laid over each other by weights.
 
+mod alpha;
 mod layer;
 mod mixing;
 
-use crate::args::{ImageArgs, Size};
+use crate::args::{AlphaArgs, ImageArgs, Size};
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
-use crate::input::{self, Kind};
+use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
 use anyhow::{Context as _, Error, Result};
 use dapple::raster::Raster;
-use dapple::tile::{Layer, TileError, TileErrorKind, blend, blend_by_tile, rank_equalize};
+use dapple::tile::{Layer, Map, TileError, TileErrorKind, blend, blend_by_tile, rank_equalize};
 use layer::{LayerArg, Reader};
 use mixing::MixingArgs;
 use serde::Serialize;
@@ -26,15 +27,16 @@ Examples:
   dapple blend rock.png,height=rock_height.png \\
     grass.png,height=grass_height.png,weight=mask.png --depth 0.1 -o both.png
   dapple blend rock.png grass.png,weight=0.3 --tile cracks.png --gain 8 -o cracked.png
-  dapple blend rock.png,normal=rock_normal.png \\
-    grass.png,normal=grass_normal.png,weight=mask.png -o material/
+  dapple blend rock.png,normal=rock_normal.png,height=rock_height.png \\
+    grass.png,normal=grass_normal.png,height=grass_height.png,weight=mask.png -o material/
   dapple blend rock.png grass.png,weight=mask.png --size 512 \\
     --mixing keep-variance -o large.png
 
 Layers:
   A layer is an image, and behind commas what belongs to it:
     weight=0.3 or weight=mask.png   how much of it there is
-    height=FILE                     its height, from 0 to 1: what is higher shows
+    height=FILE                     its height, from 0 to 1: what is higher shows; in a folder
+                                    the heights are blended like other maps, if all have one
     normal=FILE                     its normals
     NAME=FILE                       another map, such as roughness=FILE
   The layer without a weight is the ground: it gets what the others leave, 1 less their
@@ -63,6 +65,10 @@ pub(crate) struct Args {
     plain_tile: bool,
 
     #[command(flatten)]
+    #[serde(flatten)]
+    alpha: AlphaArgs,
+
+    #[command(flatten)]
     mixing: MixingArgs,
 
     /// How large the blend is, in pixels. Images that are smaller are repeated, larger ones cut. By default all images have
@@ -84,10 +90,18 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend", &args.image.files);
     let outputs = claim(args, &mut job)?;
     job.claim_sidecar()?;
-    let mut reader = Reader::new(args.size);
+    let mut reader = Reader::new(args.size, args.alpha.alpha);
     let read = args.layers.iter().map(|layer| layer.read(&mut reader));
     let mut materials = read.collect::<Result<Vec<_>>>()?;
     reader.agree(&args.layers, &mut materials)?;
+    if outputs.len() > materials[0].maps.len() {
+        // The heights are written, too.
+        for material in &mut materials {
+            let height = material.height.clone().map(Map::Value);
+            material.maps.extend(height);
+        }
+    }
+    let has_alpha = alpha::multiply(&mut materials)?;
     let tile = tile(args, &mut reader)?;
     let weights = layer::weights(&materials, materials[0].maps[0].size())?;
     let mut layers = Vec::new();
@@ -106,17 +120,28 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         Some(tile) => blend_by_tile(&layers, tile, &how),
         None => blend(&layers, &how),
     };
-    let maps = maps.map_err(advise)?;
+    let mut maps = maps.map_err(advise)?;
+    let mut alpha = if has_alpha {
+        alpha::divide(&mut maps)?
+    } else {
+        None
+    };
     drop(progress);
     let is_deep = materials.iter().any(|material| material.is_deep);
     for (map, output) in maps.into_iter().zip(outputs) {
-        job.write_image(output, map, is_deep, &args.image)?;
+        let blended = Loaded {
+            map,
+            // That of the first map.
+            alpha: alpha.take(),
+            is_deep,
+        };
+        job.write_loaded(output, blended, &args.image)?;
     }
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)
 }
 
-/// Claims an output for the first map, or for each of them in a folder.
+/// Claims an output for the first map, or for each of them in a folder, and there for the heights, if all layers have one.
 fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
     let names = args.layers[0].map_names();
     for layer in &args.layers[1..] {
@@ -142,6 +167,10 @@ fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
     };
     job.make_folder(folder)?;
     let ending = args.image.format.map_or("png", Format::ending);
+    let mut names = names;
+    if args.layers.iter().all(LayerArg::has_height) {
+        names.push(layer::HEIGHT);
+    }
     let target = |name: &&str| Target::Path(folder.join(format!("{name}.{ending}")));
     names.iter().map(|name| job.claim(&target(name))).collect()
 }
@@ -151,7 +180,7 @@ fn tile(args: &Args, reader: &mut Reader) -> Result<Option<Raster<f32>>> {
     let Some(path) = &args.tile else {
         return Ok(None);
     };
-    let values = layer::values(reader.read(path, Kind::ByChannels)?.0);
+    let values = layer::values(reader.read_opaque(path, Kind::ByChannels)?.map);
     if args.plain_tile {
         return Ok(Some(values));
     }

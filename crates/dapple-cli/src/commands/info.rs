@@ -158,6 +158,10 @@ fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
         size[1]
     );
     text += &channels::table(&channels);
+    let transparency = channels::transparency(&channels);
+    if let Some(transparency) = &transparency {
+        text += &format!("\n{transparency}");
+    }
     match &seams {
         Some(report) => text += &format!("\n{report}"),
         None if n_not_finite > 0 => text += "\nno seam report: not all pixels are finite",
@@ -166,7 +170,7 @@ fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
     let channels: Vec<_> = channels.iter().map(Channel::to_json).collect();
     let json = json!({
         "file": input::name(path), "kind": "image", "format": format, "size": size,
-        "channels": channels, "seams": seams,
+        "channels": channels, "transparency": transparency, "seams": seams,
     });
     Ok(Findings {
         text: text + "\n",

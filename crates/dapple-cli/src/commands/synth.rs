@@ -4,7 +4,7 @@ mod options;
 mod plane;
 mod surface;
 
-use crate::args::{ImageArgs, Region};
+use crate::args::{AlphaArgs, ImageArgs, Region};
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
@@ -16,7 +16,7 @@ use dapple::tile::Map;
 use options::{MatchArgs, PlaneArgs, SurfaceArgs};
 use serde::Serialize;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 const EXAMPLES: &str = "\
@@ -60,6 +60,10 @@ pub(crate) struct Args {
     /// Use only this part of the example, in pixels.
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
+
+    #[command(flatten)]
+    #[serde(flatten)]
+    alpha: AlphaArgs,
 
     #[command(flatten)]
     plane: PlaneArgs,
@@ -136,14 +140,14 @@ impl Args {
 
     /// Reads the example and its maps, which must have its size.
     fn read(&self) -> Result<Input> {
-        let base = input::map(&self.exemplar, Kind::ByChannels, self.region)?;
+        let base = self.load(&self.exemplar, Kind::ByChannels)?;
         let mut maps = Vec::new();
         for MapArg { name, path } in &self.map {
             let kind = match name.as_str() {
                 "normal" => Kind::Normals,
                 _ => Kind::ByChannels,
             };
-            let map = input::map(path, kind, self.region)?;
+            let map = self.load(path, kind)?;
             input::check_size(path, map.map.size(), base.map.size())?;
             maps.push((name.clone(), map));
         }
@@ -159,6 +163,19 @@ impl Args {
             maps,
             exemplar,
         })
+    }
+
+    /// Reads an image, and refuses alpha where there is no room for it.
+    fn load(&self, path: &Path, kind: Kind) -> Result<Loaded> {
+        let loaded = input::map_with_alpha(path, kind, self.region, self.alpha.alpha)?;
+        if loaded.alpha.is_some() && self.surface.mesh.is_some() {
+            let message = format!(
+                "{} is partly transparent, which a mesh cannot keep",
+                input::name(path)
+            );
+            return Err(usage(message).hint("add --alpha drop or --alpha over:COLOR"));
+        }
+        Ok(loaded)
     }
 
     /// Claims a file beside the output for each map: `STEM-NAME.ENDING`.

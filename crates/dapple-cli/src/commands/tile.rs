@@ -2,7 +2,7 @@
 
 mod method;
 
-use crate::args::{Axes, ImageArgs, Region, Size};
+use crate::args::{AlphaArgs, Axes, ImageArgs, Region, Size};
 use crate::commands::info::measured;
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
@@ -57,6 +57,10 @@ pub(crate) struct Args {
     region: Option<Region>,
 
     #[command(flatten)]
+    #[serde(flatten)]
+    alpha: AlphaArgs,
+
+    #[command(flatten)]
     method: MethodArgs,
 
     /// Which sides fit together.
@@ -108,24 +112,42 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let sources = sources(args, &mut job)?;
     job.claim_sidecar()?;
     let progress = Progress::spinner("making it repeat", context.quiet);
-    let maps: Vec<Map> = sources
+    let maps = sources.iter().map(|source| source.loaded.map.clone());
+    // Alpha is one more map of the same cut.
+    let alphas = sources
         .iter()
-        .map(|source| source.loaded.map.clone())
-        .collect();
-    let tiles = seamless.apply_maps(&maps).map_err(hint_at_size)?;
+        .filter_map(|source| source.loaded.alpha.clone());
+    let maps: Vec<Map> = maps.chain(alphas.map(Map::Value)).collect();
+    let mut tiles = seamless.apply_maps(&maps).map_err(hint_at_size)?;
+    let mut alphas = tiles.split_off(sources.len()).into_iter();
     drop(progress);
 
     let (report, passes) = reports(args, &sources, &tiles, &job)?;
-    for (source, tile) in sources.iter().zip(tiles) {
+    for (source, map) in sources.iter().zip(tiles) {
+        let has_alpha = source.loaded.alpha.is_some();
+        let alpha = match has_alpha.then(|| alphas.next()).flatten() {
+            Some(Map::Value(alpha)) => Some(alpha),
+            _ => None,
+        };
         let Some([output, sheet]) = source.outputs else {
             continue;
         };
         let is_deep = source.loaded.is_deep;
         if let Some(sheet) = sheet {
-            job.write_image(sheet, doubled(&tile)?, is_deep, &args.image)?;
+            let twice = Loaded {
+                map: doubled(&map)?,
+                alpha: alpha.as_ref().map(twice).transpose()?,
+                is_deep,
+            };
+            job.write_loaded(sheet, twice, &args.image)?;
         }
         if let Some(output) = output {
-            job.write_image(output, tile, is_deep, &args.image)?;
+            let tile = Loaded {
+                map,
+                alpha,
+                is_deep,
+            };
+            job.write_loaded(output, tile, &args.image)?;
         }
     }
     job.finish(args, report)?;
@@ -155,7 +177,7 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     let mut sources: Vec<Source> = Vec::new();
     for (path, kind) in inputs {
         let outputs = claim(path, folder, args, job)?;
-        let loaded = input::map(path, kind, args.region)?;
+        let loaded = input::map_with_alpha(path, kind, args.region, args.alpha.alpha)?;
         let first = sources.first().map(|source| &source.loaded.map);
         let first = first.map_or(loaded.map.size(), Map::size);
         input::check_size(path, loaded.map.size(), first)
@@ -249,20 +271,19 @@ fn reports(args: &Args, sources: &[Source], tiles: &[Map], job: &Job<'_>) -> Res
     Ok((Value::Array(all), passes))
 }
 
-/// Two copies beside and below each other.
+/// Two copies of a map beside and below each other.
 fn doubled(map: &Map) -> Result<Map> {
-    fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
-        let [width, height] = raster.size();
-        Ok(repeat(
-            raster,
-            [width.saturating_mul(2), height.saturating_mul(2)],
-        )?)
-    }
     Ok(match map {
         Map::Value(raster) => Map::Value(twice(raster)?),
         Map::Color(raster) => Map::Color(twice(raster)?),
         Map::Normal(raster) => Map::Normal(twice(raster)?),
     })
+}
+
+/// Two copies of a raster beside and below each other.
+fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
+    let size = raster.size().map(|side| side.saturating_mul(2));
+    Ok(repeat(raster, size)?)
 }
 
 /// Adds what to do about sizes that a method does not take.

@@ -1,6 +1,6 @@
 //! `dapple wavelet`: wavelet noise.
 
-use crate::args::ImageArgs;
+use crate::args::{ImageArgs, Size};
 use crate::error::{Exit, Hint, usage};
 use crate::field::{Field, FieldArgs, draw, extent_of};
 use crate::job::Context;
@@ -12,6 +12,7 @@ const EXAMPLES: &str = "\
 Examples:
   dapple wavelet -o noise.png
   dapple wavelet --cells 16 --octaves 5 --gain 0.5 --size 1024 -o clouds.png
+  dapple wavelet --cells 30 --size 640x480 -o wide.png
   dapple wavelet --weights 1,0,0.5 --ramp lagoon -o two-bands.png
   dapple wavelet --cells 64 --format exr -o noise.exr
 
@@ -22,7 +23,8 @@ white in PNG; several bands have the range that goes with the sum of their varia
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Cells across the shorter side of the picture, in the coarsest band: an even number, from 4 on, if it repeats.
+    /// Cells across the shorter side of the picture, in the coarsest band. Along each axis on which it repeats there must be
+    /// an even number, from 4 on.
     #[arg(
         long,
         value_name = "N",
@@ -71,6 +73,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         return Err(usage("the weights have no finite sum of squares above 0")
             .hint("give at least one that is not 0"));
     }
+    let extent = extent_of(args.field.size, args.cells);
+    check_cells(extent, args.field.axes.flags(), args.field.size)?;
     let reach = (3.0 * variance.sqrt()) as f32;
     let node = WaveletNode {
         frequency: 1.0,
@@ -81,12 +85,57 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         command: "wavelet",
         node: Node::Wavelet(node),
         is_color: false,
-        extent: extent_of(args.field.size, args.cells),
+        extent,
         range: [-reach, reach],
         frames: None,
         images: Images::new(),
     };
     draw(&field, &args.field, &args.image, args, context)
+}
+
+/// The fewest cells along an axis on which noise repeats.
+const FEWEST_CELLS: f64 = 4.0;
+
+/// Refuses numbers of cells along the sides that cannot repeat, and says which can.
+fn check_cells(cells: [f64; 2], repeats: [bool; 2], size: Size) -> Result<()> {
+    let holds =
+        |axis: usize| !repeats[axis] || (cells[axis] >= FEWEST_CELLS && cells[axis] % 2.0 == 0.0);
+    if holds(0) && holds(1) {
+        return Ok(());
+    }
+    let [across, down] = cells.map(|cells| (100.0 * cells).round() / 100.0);
+    let [width, height] = size.0;
+    let message = format!(
+        "{across} × {down} cells on {width} × {height} pixels cannot repeat: wavelet noise needs an even number, from 4 on, along each axis"
+    );
+    Err(usage(message).hint(other_cells(cells, size)))
+}
+
+/// What would repeat instead of these numbers of cells.
+fn other_cells(cells: [f64; 2], size: Size) -> String {
+    // Along the shorter side, multiples of this give whole even numbers along both.
+    let [width, height] = size.0;
+    let step = f64::from(2 * (width.min(height) / greatest_common_divisor(width, height)));
+    let shorter = cells[0].min(cells[1]);
+    let least = (FEWEST_CELLS / step).ceil();
+    let below = (shorter / step).floor().max(least) * step;
+    let above = if below > shorter { below } else { below + step };
+    match (below < shorter, above <= f64::from(width.min(height))) {
+        (true, true) => format!("take --cells {below} or --cells {above}, or --axes none"),
+        (true, false) => format!("take --cells {below}, or --axes none"),
+        (false, true) => format!("take --cells {above}, or --axes none"),
+        (false, false) => {
+            "take a --size whose sides have a simpler ratio, or --axes none".to_owned()
+        }
+    }
+}
+
+fn greatest_common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 {
+        a
+    } else {
+        greatest_common_divisor(b, a % b)
+    }
 }
 
 impl Args {
@@ -99,5 +148,44 @@ impl Args {
             .take(self.octaves as usize)
             .map(|weight| weight as f32)
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{check_cells, other_cells};
+    use crate::args::Size;
+    use crate::field::extent_of;
+
+    #[test]
+    fn cells_that_are_named_instead_repeat() {
+        for (size, cells, expected) in [
+            (
+                [640, 480],
+                32.0,
+                "take --cells 30 or --cells 36, or --axes none",
+            ),
+            ([80, 64], 5.0, "take --cells 8, or --axes none"),
+            ([512, 512], 2.0, "take --cells 4, or --axes none"),
+            (
+                [1080, 1920],
+                32.0,
+                "take --cells 18 or --cells 36, or --axes none",
+            ),
+            (
+                [641, 480],
+                32.0,
+                "take a --size whose sides have a simpler ratio, or --axes none",
+            ),
+        ] {
+            let size = Size(size);
+            let hint = other_cells(extent_of(size, cells), size);
+            assert_eq!(hint, expected);
+            let words: Vec<_> = hint.split([' ', ',']).collect();
+            for pair in words.windows(2).filter(|pair| pair[0] == "--cells") {
+                let extent = extent_of(size, pair[1].parse().unwrap());
+                assert!(check_cells(extent, [true; 2], size).is_ok(), "{hint}");
+            }
+        }
     }
 }

@@ -5,6 +5,7 @@
     reason = "tests look at the files that the command reads and writes"
 )]
 
+mod alpha;
 mod bakes;
 mod examples;
 mod files;

@@ -25,12 +25,14 @@ const READERS: [&str; 17] = [
 ];
 
 /// Command lines that clap cannot tell to be wrong.
-const WRONG: [&str; 24] = [
+const WRONG: [&str; 26] = [
     "bake flagstone -o out.png",
     "bake flagstone",
     "bake flagstone --maps height,height -o out/",
     "worley --size 100x64 -o out.png",
     "worley --frames 3 -o -",
+    "wavelet --cells 5 -o out.png",
+    "wavelet --size 640x480 -o out.png",
     "pups noise --octaves 3 -o out.png",
     "pups color-noise --ramp ember -o out.png",
     "tile photo.png",
@@ -53,16 +55,21 @@ const WRONG: [&str; 24] = [
 ];
 
 /// Command lines that a library refuses, and what the answer holds.
-const LIMITS: [(&str, &str); 16] = [
+const LIMITS: [(&str, &str); 18] = [
     ("bake flagston -o out/", "flagstone"),
     (
         "bake flagstone --region 60,0,8,8 --size 64 -o out/",
         "region",
     ),
+    ("bake craters --size 1000000 -o out/", "hint: add --banded"),
+    (
+        "bake craters --size 1000000 --maps height,normal -o out/",
+        "2 maps of 1000000 × 1000000 pixels: 8.00 TB before compression, about ",
+    ),
     ("bake stone-and-grass --banded --size 64 -o out/", "whole"),
     ("worley --density 1000 -o out.png", "density"),
     ("pups noise --spacing 0 -o out.png", "radius"),
-    ("wavelet --cells 5 -o out.png", "5"),
+    ("bake flagstone --relief 1e300 -o out/", "from -1e6 to 1e6"),
     (
         "tile photo.png --method soft-cut --margin 40 -o out.png",
         "margin",

@@ -36,6 +36,48 @@ fn tile_is_what_the_library_makes() {
 }
 
 #[test]
+fn blend_writes_the_blended_height_beside_the_other_maps() {
+    let folder = Folder::with_inputs("heights");
+    let layers = [
+        "rock.png,height=rock_height.png",
+        "grass.png,weight=0.25,height=mask.png",
+    ];
+    let run = |weighting, output| {
+        let options = ["--weighting", weighting, "-o", output];
+        folder.run(&[&["blend"], &layers[..], &options].concat())
+    };
+    assert_done(&run("given", "out/"), "blend");
+    assert!(folder.path("out/base.png").is_file(), "the first map");
+    let expected = gray(&folder, "rock_height.png")
+        .zip_map(&gray(&folder, "mask.png"), |rock, grass| {
+            0.75 * rock + 0.25 * grass
+        })
+        .unwrap();
+    let blended = gray(&folder, "out/height.png");
+    for (value, expected) in blended.pixels().iter().zip(expected.pixels()) {
+        // A file with 16 bits.
+        assert!(
+            (value - expected).abs() < 1.0 / 65_535.0,
+            "{value} {expected}"
+        );
+    }
+    // A single file has room for the first map alone.
+    assert_done(&run("height", "out.png"), "blend");
+    // A height that some layers lack is none of the blend.
+    let some = [
+        "blend",
+        layers[0],
+        "grass.png",
+        "--tile",
+        "cracks.png",
+        "-o",
+        "some/",
+    ];
+    assert_done(&folder.run(&some), "blend");
+    assert!(!folder.path("some/height.png").exists(), "no height");
+}
+
+#[test]
 fn threads_do_not_change_a_bit() {
     let folder = Folder::with_inputs("threads");
     let runs: [&[&str]; 4] = [

@@ -139,18 +139,23 @@ impl Generator<'_> {
         weights: &[f32],
     ) -> Result<Arc<dyn Field>, RecipeError> {
         let noise =
-            WaveletNoise2::new(self.wavelet_cells(frequency)?, seed)?.with_weights(weights)?;
+            WaveletNoise2::of_size(self.wavelet_cells(frequency)?, seed)?.with_weights(weights)?;
         Ok(Arc::new(Scaled {
             field: Arc::new(noise),
             frequency: DVec2::splat(frequency),
         }))
     }
 
-    /// The cells of the tile of wavelet noise.
-    pub(crate) fn wavelet_cells(&self, frequency: f64) -> Result<u32, RecipeError> {
-        let cells = self.periods([frequency; 2])?;
-        let cells = cells.into_iter().flatten().reduce(greatest_common_divisor);
-        Ok(cells.unwrap_or(UNBOUND_TILE))
+    /// The cells of the tile of wavelet noise along each axis.
+    pub(crate) fn wavelet_cells(&self, frequency: f64) -> Result<[u32; 2], RecipeError> {
+        let periods = self.periods([frequency; 2])?;
+        for cells in periods.into_iter().flatten() {
+            let holds = cells >= 4 && cells.is_multiple_of(2);
+            let range = "even, at least 4 (extent times frequency, since the recipe repeats)";
+            let what = "number of cells of wavelet noise along a side of the tile";
+            RecipeError::check(holds, what, cells.into(), range)?;
+        }
+        Ok(periods.map(|cells| cells.unwrap_or(UNBOUND_TILE)))
     }
 
     pub(super) fn noise(&self, name: &str, node: &Fractal) -> Result<Arc<dyn Field>, RecipeError> {
@@ -231,14 +236,6 @@ impl Generator<'_> {
             extent: self.extent(),
             wrap: self.recipe.wrap,
         }))
-    }
-}
-
-fn greatest_common_divisor(a: u32, b: u32) -> u32 {
-    if b == 0 {
-        a
-    } else {
-        greatest_common_divisor(b, a % b)
     }
 }
 

@@ -103,6 +103,57 @@ fn what_a_crate_refuses_is_told_with_the_node() {
 }
 
 #[test]
+fn wavelet_noise_on_a_tile_that_is_not_square_repeats_after_the_tile_alone() {
+    let text = |nodes| {
+        format!("dapple = 1\nextent = [12, 8]\n[nodes]\na = {nodes}\n[material]\nheight = \"a\"\n")
+    };
+    for nodes in [
+        "{ wavelet = { frequency = 1 } }",
+        "{ noise = { basis = \"wavelet\", frequency = 1, octaves = 3 } }",
+    ] {
+        let recipe = Recipe::from_toml(&text(nodes)).unwrap();
+        let plan = Plan::new(&recipe, &Images::new(), 0.0).unwrap();
+        let height = plan.height();
+        let same = |step: DVec2| {
+            let places =
+                (0..64).map(|index| DVec2::new(f64::from(index % 8), f64::from(index / 8)));
+            let same = places.filter(|&at| height.sample(at) == height.sample(at + step));
+            same.count()
+        };
+        assert_eq!(same(DVec2::new(12.0, -8.0)), 64, "{nodes}");
+        // The greatest period of both sides.
+        for step in [DVec2::X * 4.0, DVec2::Y * 4.0] {
+            assert!(same(step) < 4, "{nodes} repeats after {step}");
+        }
+    }
+}
+
+#[test]
+fn wavelet_noise_of_sides_that_cannot_repeat_is_told_with_the_number_of_cells() {
+    for (frequency, cells) in [(2, 2.0), (5, 5.0)] {
+        let error = refusal(&format!("[nodes.a.wavelet]\nfrequency = {frequency}"));
+        let is_range = matches!(error.kind(), RecipeErrorKind::Range { what, value, .. }
+            if what.contains("wavelet noise") && *value == cells);
+        assert!(is_range, "{error}");
+    }
+}
+
+#[test]
+fn relief_past_its_range_is_refused_with_the_range() {
+    let plan = |relief: &str| {
+        let text = format!("dapple = 1\n[material]\nrelief = {relief}\n");
+        Plan::new(&Recipe::from_toml(&text).unwrap(), &Images::new(), 0.0)
+    };
+    for relief in ["1e300", "-1.0001e6", "nan"] {
+        let error = plan(relief).expect_err(relief);
+        assert!(error.to_string().contains("from -1e6 to 1e6"), "{error}");
+    }
+    for relief in ["1e6", "-1e6", "0"] {
+        assert!(plan(relief).is_ok(), "{relief}");
+    }
+}
+
+#[test]
 fn what_excludes_each_other_is_told() {
     for nodes in [
         "[nodes.a.worley]\nvalue = \"cell_value\"\noctaves = { count = 3 }",

@@ -122,8 +122,8 @@ impl<'a> Work<'a> {
         generator: &Generator<'_>,
         frequency: f64,
     ) -> Result<(), RecipeError> {
-        let side = f64::from(generator.wavelet_cells(frequency)?);
-        self.wavelet_cells += side * side;
+        let cells = generator.wavelet_cells(frequency)?.map(f64::from);
+        self.wavelet_cells += cells[0] * cells[1];
         Ok(())
     }
 }

@@ -154,9 +154,14 @@ impl<'a> Printer<'a> {
         frequency: f64,
         weights: &[f32],
     ) -> Result<String, RecipeError> {
-        let size = self.plan().wavelet_cells(frequency)?;
+        let [width, height] = self.plan().wavelet_cells(frequency)?;
+        let new = if width == height {
+            format!("new({width}, {seed})")
+        } else {
+            format!("of_size([{width}, {height}], {seed})")
+        };
         Ok(format!(
-            "wavelet::WaveletNoise2::new({size}, {seed})?.with_weights(&{})?",
+            "wavelet::WaveletNoise2::{new}?.with_weights(&{})?",
             literal(&weights.to_vec()).replace("vec!", "")
         ))
     }

@@ -9,13 +9,13 @@ pub(super) struct Band<const N: usize> {
     pub(super) weight: f32,
     /// Cells of this band in one of the first: a power of two.
     pub(super) frequency: f64,
-    /// By how many cells the tile is shifted along each axis, below its size. Zero for the first band.
+    /// By how many cells the tile is shifted along each axis, below its size there. Zero for the first band.
     pub(super) offset: [f64; N],
 }
 
 impl<const N: usize> Band<N> {
     /// The bands whose weight is not zero.
-    pub(super) fn all(weights: &[f32], size: u32, seed: Seed) -> Vec<Self> {
+    pub(super) fn all(weights: &[f32], size: [u32; N], seed: Seed) -> Vec<Self> {
         let bands = (0_u64..).zip(weights);
         let bands = bands.filter(|(_, weight)| **weight != 0.0);
         bands
@@ -23,9 +23,9 @@ impl<const N: usize> Band<N> {
             .collect()
     }
 
-    fn new(index: u64, weight: f32, size: u32, seed: Seed) -> Self {
+    fn new(index: u64, weight: f32, size: [u32; N], seed: Seed) -> Self {
         let seed = seed.child("wavelet noise offset", index);
-        let offset = |axis: usize| hash1(seed, [axis as i64], 0) % u64::from(size);
+        let offset = |axis: usize| hash1(seed, [axis as i64], 0) % u64::from(size[axis]);
         Self {
             weight,
             frequency: (1_u64 << index) as f64,
@@ -38,14 +38,14 @@ impl<const N: usize> Band<N> {
 
     /// Where places of the noise are in this band.
     #[inline(always)]
-    pub(super) fn places(&self, period: Period, mut places: [Place; N]) -> [Place; N] {
+    pub(super) fn places(&self, periods: [Period; N], mut places: [Place; N]) -> [Place; N] {
         for (axis, place) in places.iter_mut().enumerate() {
-            *place = self.place(period, *place, axis);
+            *place = self.place(periods[axis], *place, axis);
         }
         places
     }
 
-    /// Where a place along an axis is in this band.
+    /// Where a place along an axis, whose period is given, is in this band.
     #[inline(always)]
     pub(super) fn place(&self, period: Period, place: Place, axis: usize) -> Place {
         // The first band is the noise as it is.
@@ -55,7 +55,7 @@ impl<const N: usize> Band<N> {
         let fine = self.frequency * place.fraction;
         let whole = floor(fine);
         Place {
-            // All parts are whole numbers below 2^31.
+            // All parts are whole numbers below 2^41: a side has at most 2^25 cells, and a band at most 2^15 of its own in one.
             cell: period.wrap(self.frequency * place.cell + (self.offset[axis] + whole)),
             fraction: fine - whole,
         }

@@ -2,7 +2,7 @@
 
 use super::WaveletNoise;
 use super::band::Band;
-use super::place::Place;
+use super::place::{Period, Place};
 use super::render::render;
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 use glam::{DVec2, DVec3};
@@ -38,7 +38,7 @@ impl Field for WaveletNoise<2> {
 
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         let bands: Vec<_> = self.bands.iter().map(|band| (band, &self.tile)).collect();
-        render(&bands, self.period, window, out)
+        render(&bands, self.periods, window, out)
     }
 }
 
@@ -79,14 +79,15 @@ impl WaveletNoise<3> {
         mut out: RasterViewMut<'_, f32>,
     ) -> Result<(), RasterError> {
         window.check_size(out.size())?;
-        let Some(z) = self.period.place_of(z) else {
+        let [x_period, y_period, z_period] = self.periods;
+        let Some(z) = z_period.place_of(z) else {
             out.fill(f32::NAN);
             return Ok(());
         };
-        let slice = |band: &Band<3>| self.tile.slice(band.place(self.period, z, 2));
+        let slice = |band: &Band<3>| self.tile.slice(band.place(z_period, z, 2));
         let slices: Vec<_> = self.bands.iter().map(slice).collect();
         let bands: Vec<_> = self.bands.iter().zip(&slices).collect();
-        render(&bands, self.period, window, out)
+        render(&bands, [x_period, y_period], window, out)
     }
 }
 
@@ -94,12 +95,12 @@ impl<const N: usize> WaveletNoise<N> {
     /// The weighted values of the bands, summed in their order.
     #[inline(always)]
     fn sum(&self, position: [f64; N], value: impl Fn([Place; N]) -> f32) -> f32 {
-        let Some(places) = self.period.places(position) else {
+        let Some(places) = Period::places(self.periods, position) else {
             return f32::NAN;
         };
         let mut sum = 0.0;
         for band in &self.bands {
-            sum += band.weight * value(band.places(self.period, places));
+            sum += band.weight * value(band.places(self.periods, places));
         }
         sum
     }
@@ -110,12 +111,12 @@ impl<const N: usize> WaveletNoise<N> {
         position: [f64; N],
         value: impl Fn([Place; N]) -> (f32, [f32; N]),
     ) -> (f32, [f64; N]) {
-        let Some(places) = self.period.places(position) else {
+        let Some(places) = Period::places(self.periods, position) else {
             return (f32::NAN, [f64::NAN; N]);
         };
         let (mut sum, mut gradient) = (0.0, [0.0; N]);
         for band in &self.bands {
-            let (value, slopes) = value(band.places(self.period, places));
+            let (value, slopes) = value(band.places(self.periods, places));
             sum += band.weight * value;
             for axis in 0..N {
                 gradient[axis] += f64::from(band.weight) * band.frequency * f64::from(slopes[axis]);

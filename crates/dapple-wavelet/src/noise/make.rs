@@ -10,14 +10,14 @@ use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
-/// The largest tile of the plane: below half a gigabyte.
-const LARGEST_2: u32 = 11_584;
+/// The most cells of a tile: half a gigabyte.
+const MOST_CELLS: u32 = 1 << 27;
 
-/// The largest tile of space: half a gigabyte.
-const LARGEST_3: u32 = 512;
+/// The fewest cells along an axis that can be halved and doubled.
+const FEWEST_CELLS: u32 = 4;
 
 impl WaveletNoise2 {
-    /// Noise of the plane that repeats after `size` cells: one band, of weight 1.
+    /// Noise of the plane that repeats after `size` cells along both axes: one band, of weight 1.
     ///
     /// The tile takes `4 (size + 2)²` bytes, and several times as many while it is made.
     ///
@@ -25,15 +25,38 @@ impl WaveletNoise2 {
     ///
     /// [`WaveletErrorKind::Range`] below 4 and above 11584, [`WaveletErrorKind::NotDivisible`] if `size` is odd.
     pub fn new(size: u32, seed: Seed) -> Result<Self, WaveletError> {
-        check_size(size, LARGEST_2, "from 4 to 11584")?;
-        let white = white_raster([size; 2], white_words(seed))?;
+        Self::of_size([size; 2], seed)
+    }
+
+    /// Noise of the plane that repeats after as many cells along each axis as `size` says: one band, of weight 1.
+    ///
+    /// Of two equal numbers it is that of [`new`](Self::new). The variance is 1 for any size.
+    ///
+    /// # Errors
+    ///
+    /// [`WaveletErrorKind::Range`] below 4 cells along an axis and above 2^27 in all, [`WaveletErrorKind::NotDivisible`] if
+    /// one number is odd.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_wavelet::{WaveletNoise2, hash::Seed, raster::glam::DVec2};
+    ///
+    /// let noise = WaveletNoise2::of_size([96, 64], Seed(7))?;
+    /// let position = DVec2::new(0.25, -3.5);
+    /// assert_eq!(noise.sample(position), noise.sample(position + DVec2::new(96.0, 64.0)));
+    /// # Ok::<(), dapple_wavelet::WaveletError>(())
+    /// ```
+    pub fn of_size(size: [u32; 2], seed: Seed) -> Result<Self, WaveletError> {
+        check_size(size)?;
+        let white = white_raster(size, white_words(seed))?;
         let low = SplineFilter::default().project(&white, 1, [Border::Periodic; 2])?;
         Self::from_white(size, seed, white.pixels(), low.pixels())
     }
 }
 
 impl WaveletNoise3 {
-    /// Noise of space that repeats after `size` cells: one band, of weight 1.
+    /// Noise of space that repeats after `size` cells along each axis: one band, of weight 1.
     ///
     /// The tile takes `4 (size + 2)³` bytes, and several times as many while it is made.
     ///
@@ -41,55 +64,85 @@ impl WaveletNoise3 {
     ///
     /// [`WaveletErrorKind::Range`] below 4 and above 512, [`WaveletErrorKind::NotDivisible`] if `size` is odd.
     pub fn new(size: u32, seed: Seed) -> Result<Self, WaveletError> {
-        check_size(size, LARGEST_3, "from 4 to 512")?;
+        Self::of_size([size; 3], seed)
+    }
+
+    /// Noise of space that repeats after as many cells along each axis as `size` says: one band, of weight 1.
+    ///
+    /// Of three equal numbers it is that of [`new`](Self::new). The variance is 1 for any size.
+    ///
+    /// # Errors
+    ///
+    /// [`WaveletErrorKind::Range`] below 4 cells along an axis and above 2^27 in all, [`WaveletErrorKind::NotDivisible`] if
+    /// one number is odd.
+    pub fn of_size(size: [u32; 3], seed: Seed) -> Result<Self, WaveletError> {
+        check_size(size)?;
+        let [width, height, depth] = size;
         let words = white_words(seed);
         // The slices, one below the other.
-        let white = Raster::from_rows([size, size * size], |row| {
-            let [row, slice] = [row % size, row / size].map(i64::from);
+        let white = Raster::from_rows([width, height * depth], |row| {
+            let [row, slice] = [row % height, row / height].map(i64::from);
             let row = CellHash::new(words, [row, slice]);
-            (0..size).map(move |column| white(row, column))
+            (0..width).map(move |column| white(row, column))
         })?;
-        let periodic = [Border::Periodic; 3];
         let filter = SplineFilter::default();
-        let low = filter.project_volume(white.pixels(), [size; 3], 1, periodic)?;
+        let low = filter.project_volume(white.pixels(), size, 1, [Border::Periodic; 3])?;
         Self::from_white(size, seed, white.pixels(), &low)
     }
 }
 
 impl<const N: usize> WaveletNoise<N> {
     /// One band, of weight 1, of what white noise has and its projection has not.
-    fn from_white(size: u32, seed: Seed, white: &[f32], low: &[f32]) -> Result<Self, WaveletError> {
-        let factor = LineSums::factor([LineSums::of_values(size as usize)?; N]);
+    fn from_white(
+        size: [u32; N],
+        seed: Seed,
+        white: &[f32],
+        low: &[f32],
+    ) -> Result<Self, WaveletError> {
+        let cells = size.map(|cells| cells as usize);
+        let mut sums = [LineSums::of_values(cells[0])?; N];
+        for axis in 1..N {
+            sums[axis] = LineSums::of_values(cells[axis])?;
+        }
+        let factor = LineSums::factor(sums);
         let parts = white.iter().zip(low);
         let coefficients: Vec<f32> = parts
             .map(|(&white, &low)| ((f64::from(white) - f64::from(low)) * factor) as f32)
             .collect();
         Ok(Self {
             size,
-            period: Period::new(size),
+            periods: size.map(Period::new),
             seed,
-            tile: Tile::new(size as usize, &coefficients),
+            tile: Tile::new(cells, &coefficients),
             bands: Band::all(&[1.0], size, seed),
         })
     }
 }
 
-/// Refuses tiles too small to be halved and doubled, those larger than the largest, and odd ones.
-fn check_size(size: u32, largest: u32, range: &'static str) -> Result<(), WaveletError> {
-    if !(4..=largest).contains(&size) {
-        return Err(WaveletError::new(WaveletErrorKind::Range {
-            what: "size of the tile",
-            value: size.into(),
-            range,
-        }));
+/// Refuses sides too short to be halved and doubled, odd ones, and tiles of too many cells.
+fn check_size<const N: usize>(size: [u32; N]) -> Result<(), WaveletError> {
+    let range = |what, value, range| {
+        let kind = WaveletErrorKind::Range { what, value, range };
+        Err(WaveletError::new(kind))
+    };
+    if let Some(side) = size.into_iter().find(|&side| side < FEWEST_CELLS) {
+        return range("size of the tile", side.into(), "at least 4");
     }
-    if !size.is_multiple_of(2) {
-        return Err(WaveletError::new(WaveletErrorKind::NotDivisible {
-            length: size as usize,
+    let cells: f64 = size.into_iter().map(f64::from).product();
+    if cells > f64::from(MOST_CELLS) {
+        return range(
+            "number of cells of the tile",
+            cells,
+            "at most 2^27 = 134217728",
+        );
+    }
+    match size.into_iter().find(|side| !side.is_multiple_of(2)) {
+        None => Ok(()),
+        Some(side) => Err(WaveletError::new(WaveletErrorKind::NotDivisible {
+            length: side as usize,
             levels: 1,
-        }));
+        })),
     }
-    Ok(())
 }
 
 /// The seed of the white noise.

@@ -9,7 +9,7 @@ const FAR: f64 = (1_u64 << 50) as f64;
 /// Added to a number below 2^51 and taken away again, this rounds it to a whole one: no fraction has room beside it.
 const ROUND: f64 = (3_u64 << 51) as f64;
 
-/// A period of a whole number of cells, along all axes.
+/// A period of a whole number of cells along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Period {
     cells: f64,
@@ -34,26 +34,29 @@ impl Period {
         }
     }
 
-    /// The places of the coordinates of a position; none if it is not finite.
+    /// The places of the coordinates of a position, one for each period; none if it is not finite.
     #[inline(always)]
-    pub(super) fn places<const N: usize>(self, mut position: [f64; N]) -> Option<[Place; N]> {
+    pub(super) fn places<const N: usize>(
+        periods: [Self; N],
+        mut position: [f64; N],
+    ) -> Option<[Place; N]> {
         let mut places = [Place::ZERO; N];
-        for coordinate in &mut position {
+        for axis in 0..N {
             // NaN is not near.
-            let is_near = coordinate.abs() < FAR;
+            let is_near = position[axis].abs() < FAR;
             if !is_near {
-                *coordinate = self.bring_near(*coordinate)?;
+                position[axis] = periods[axis].bring_near(position[axis])?;
             }
         }
         for axis in 0..N {
-            places[axis] = self.place(position[axis]);
+            places[axis] = periods[axis].place(position[axis]);
         }
         Some(places)
     }
 
     /// The place of a coordinate; none if it is not finite.
     pub(super) fn place_of(self, coordinate: f64) -> Option<Place> {
-        self.places([coordinate]).map(|[place]| place)
+        Self::places([self], [coordinate]).map(|[place]| place)
     }
 
     #[inline(always)]
@@ -183,7 +186,8 @@ mod tests {
     #[test]
     fn no_place_is_where_a_coordinate_is_not_finite() {
         for x in [f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            assert_eq!(Period::new(8).places([0.5, x]), None, "{x}");
+            let places = Period::places([Period::new(8), Period::new(6)], [0.5, x]);
+            assert_eq!(places, None, "{x}");
         }
     }
 }

@@ -14,12 +14,12 @@ const ROWS: u32 = 16;
 /// Fills a window with the weighted values of bands, each with its tile, on all cores where the feature `rayon` is on.
 pub(super) fn render<const N: usize>(
     bands: &[(&Band<N>, &Tile<2>)],
-    period: Period,
+    periods: [Period; 2],
     window: &Window,
     out: RasterViewMut<'_, f32>,
 ) -> Result<(), RasterError> {
     window.check_size(out.size())?;
-    let picture = Picture::new(bands, period, window);
+    let picture = Picture::new(bands, periods, window);
     let fill = |(index, mut strip): (usize, RasterViewMut<'_, f32>)| {
         // There are at most `u32::MAX` rows.
         let first = index as u32 * ROWS;
@@ -41,7 +41,7 @@ pub(super) fn render<const N: usize>(
 
 /// A window of noise, with what its columns share.
 struct Picture<'a, const N: usize> {
-    period: Period,
+    periods: [Period; 2],
     window: &'a Window,
     sheets: Vec<Sheet<'a, N>>,
     /// The columns whose coordinate is not finite.
@@ -57,7 +57,8 @@ struct Sheet<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Picture<'a, N> {
-    fn new(bands: &[(&'a Band<N>, &'a Tile<2>)], period: Period, window: &'a Window) -> Self {
+    fn new(bands: &[(&'a Band<N>, &'a Tile<2>)], periods: [Period; 2], window: &'a Window) -> Self {
+        let period = periods[0];
         let columns = (0..window.size[0]).map(|column| period.place_of(window.column_x(column)));
         let columns: Vec<Option<Place>> = columns.collect();
         let sheet = |&(band, tile): &(&'a Band<N>, &'a Tile<2>)| {
@@ -72,7 +73,7 @@ impl<'a, const N: usize> Picture<'a, N> {
         };
         let blind = (0..columns.len()).filter(|&column| columns[column].is_none());
         Self {
-            period,
+            periods,
             window,
             sheets: bands.iter().map(sheet).collect(),
             blind: blind.collect(),
@@ -80,13 +81,13 @@ impl<'a, const N: usize> Picture<'a, N> {
     }
 
     fn fill_row(&self, row: u32, values: &mut [f32]) {
-        let Some(y) = self.period.place_of(self.window.row_y(row)) else {
+        let Some(y) = self.periods[1].place_of(self.window.row_y(row)) else {
             values.fill(f32::NAN);
             return;
         };
         values.fill(0.0);
         for sheet in &self.sheets {
-            sheet.add_row(sheet.band.place(self.period, y, 1), values);
+            sheet.add_row(sheet.band.place(self.periods[1], y, 1), values);
         }
         for &column in &self.blind {
             values[column] = f32::NAN;
@@ -99,13 +100,13 @@ impl<const N: usize> Sheet<'_, N> {
     fn add_row(&self, y: Place, values: &mut [f32]) {
         let (tile, weight) = (self.tile, self.band.weight);
         // A row of the tile repays itself only if it is read often enough.
-        if self.columns.len() < tile.side() / 4 {
+        if self.columns.len() < tile.row_len() / 4 {
             for (value, &x) in values.iter_mut().zip(&self.columns) {
                 *value += weight * tile.value([x, y]);
             }
             return;
         }
-        let mut row = vec![0.0; tile.side()];
+        let mut row = vec![0.0; tile.row_len()];
         tile.blend_row(y, &mut row);
         for (value, x) in values.iter_mut().zip(&self.columns) {
             let cells = &row[x.index()..][..3];

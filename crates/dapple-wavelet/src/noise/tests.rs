@@ -54,7 +54,7 @@ fn spline<const N: usize>(
     let terms = (0..7).map(|step| {
         let at = first + f64::from(step);
         let mut cell = cell;
-        cell[axis] = at.rem_euclid(f64::from(noise.size())) as usize;
+        cell[axis] = at.rem_euclid(f64::from(noise.size()[axis])) as usize;
         let weight = b_spline(position[axis] - (at + 0.5));
         weight * spline(noise, position, cell, axis)
     });

@@ -7,7 +7,7 @@ use super::place::Place;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tile<const N: usize> {
     /// Cells along each axis, with those that are there twice.
-    side: usize,
+    sides: [usize; N],
     coefficients: Vec<f32>,
 }
 
@@ -15,23 +15,24 @@ pub(super) struct Tile<const N: usize> {
 const MORE: usize = 2;
 
 impl<const N: usize> Tile<N> {
-    /// The tile of `size` cells along each axis, from its coefficients, the first axis fastest.
-    pub(super) fn new(size: usize, coefficients: &[f32]) -> Self {
-        let side = size + MORE;
-        let n_rows = side.pow(N as u32 - 1);
-        let mut padded = Vec::with_capacity(n_rows * side);
+    /// The tile of `size` cells along the axes, from its coefficients, the first axis fastest.
+    pub(super) fn new(size: [usize; N], coefficients: &[f32]) -> Self {
+        let sides = size.map(|cells| cells + MORE);
+        let n_rows: usize = sides[1..].iter().product();
+        let mut padded = Vec::with_capacity(n_rows * sides[0]);
         for row in 0..n_rows {
             let source = (1..N).rev().fold(0, |source, axis| {
-                let at = row / side.pow(axis as u32 - 1) % side;
-                source * size + (at + size - 1) % size
+                let below: usize = sides[1..axis].iter().product();
+                let at = row / below % sides[axis];
+                source * size[axis] + (at + size[axis] - 1) % size[axis]
             });
-            let cells = &coefficients[source * size..][..size];
-            padded.push(cells[size - 1]);
+            let cells = &coefficients[source * size[0]..][..size[0]];
+            padded.push(cells[size[0] - 1]);
             padded.extend_from_slice(cells);
             padded.push(cells[0]);
         }
         Self {
-            side,
+            sides,
             coefficients: padded,
         }
     }
@@ -45,11 +46,8 @@ impl<const N: usize> Tile<N> {
     /// The coefficient of a cell.
     #[cfg(test)]
     pub(super) fn coefficient(&self, cell: [usize; N]) -> f32 {
-        let at = cell
-            .iter()
-            .rev()
-            .fold(0, |at, cell| at * self.side + cell + 1);
-        self.coefficients[at]
+        let axes = cell.iter().zip(&self.sides).rev();
+        self.coefficients[axes.fold(0, |at, (cell, side)| at * side + cell + 1)]
     }
 
     /// Three coefficients of a row, from a place in memory on.
@@ -79,22 +77,22 @@ impl Tile<2> {
 
     /// The weighted sum of the rows around a place, as many as a row has cells in memory.
     pub(super) fn blend_row(&self, y: Place, row: &mut [f32]) {
-        let rows = &self.coefficients[y.index() * self.side..][..3 * self.side];
+        let rows = &self.coefficients[y.index() * self.sides[0]..][..3 * self.sides[0]];
         blend(y.weights(), rows, row);
     }
 
     /// Cells of a row in memory.
-    pub(super) fn side(&self) -> usize {
-        self.side
+    pub(super) fn row_len(&self) -> usize {
+        self.sides[0]
     }
 
     #[inline(always)]
     fn rows(&self, [x, y]: [Place; 2]) -> [[f32; 3]; 3] {
-        let at = y.index() * self.side + x.index();
+        let at = y.index() * self.sides[0] + x.index();
         [
             self.three(at),
-            self.three(at + self.side),
-            self.three(at + 2 * self.side),
+            self.three(at + self.sides[0]),
+            self.three(at + 2 * self.sides[0]),
         ]
     }
 }
@@ -127,12 +125,13 @@ impl Tile<3> {
 
     /// The tile of the plane at a depth. Its values are those of this tile there, to the last bit.
     pub(super) fn slice(&self, z: Place) -> Tile<2> {
-        let area = self.side * self.side;
+        let [width, height, _] = self.sides;
+        let area = width * height;
         let slices = &self.coefficients[z.index() * area..][..3 * area];
         let mut coefficients = vec![0.0; area];
         blend(z.weights(), slices, &mut coefficients);
         Tile {
-            side: self.side,
+            sides: [width, height],
             coefficients,
         }
     }
@@ -140,19 +139,19 @@ impl Tile<3> {
     /// The rows around a place, each blended from three slices.
     #[inline(always)]
     fn rows(&self, weights: [f32; 3], [x, y, z]: [Place; 3]) -> [[f32; 3]; 3] {
-        let area = self.side * self.side;
-        let at = z.index() * area + y.index() * self.side + x.index();
+        let [width, height, _] = self.sides;
+        let at = (z.index() * height + y.index()) * width + x.index();
         [
             self.pillar(weights, at),
-            self.pillar(weights, at + self.side),
-            self.pillar(weights, at + 2 * self.side),
+            self.pillar(weights, at + width),
+            self.pillar(weights, at + 2 * width),
         ]
     }
 
     /// Three coefficients of a row, blended from three slices.
     #[inline(always)]
     fn pillar(&self, weights: [f32; 3], at: usize) -> [f32; 3] {
-        let area = self.side * self.side;
+        let area = self.sides[0] * self.sides[1];
         let slices = [
             self.three(at),
             self.three(at + area),

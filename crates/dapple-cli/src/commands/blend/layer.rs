@@ -1,8 +1,8 @@
 //! A layer on the command line: `grass.png,weight=mask.png,height=grass_height.png,normal=grass_normal.png`.
 
-use crate::args::Size;
-use crate::error::Hint;
-use crate::input::{self, Kind};
+use crate::args::{Alpha, Size};
+use crate::error::{Hint, usage};
+use crate::input::{self, Kind, Loaded};
 use anyhow::{Context as _, Result};
 use dapple::raster::Raster;
 use dapple::tile::{Map, TileError, repeat};
@@ -13,12 +13,15 @@ use std::str::FromStr;
 /// The name of the first map of a layer.
 const BASE: &str = "base";
 
+/// The name of the map that is a layer's height.
+pub(super) const HEIGHT: &str = "height";
+
 /// What the user wrote of a layer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct LayerArg {
     path: PathBuf,
     weight: Option<Weight>,
-    /// The other maps by their names, in order; `height` and `normal` are special.
+    /// The other maps by their names, in order; [`HEIGHT`] and `normal` are special.
     maps: Vec<(String, PathBuf)>,
 }
 
@@ -35,7 +38,9 @@ enum Weight {
 pub(super) struct Material {
     /// Its maps, in the order of their names.
     pub(super) maps: Vec<Map>,
-    /// Its height, which is also among the maps.
+    /// The alpha of its first map, where that is kept.
+    pub(super) alpha: Option<Raster<f32>>,
+    /// Its height.
     pub(super) height: Option<Raster<f32>>,
     /// Whether an image has more than 8 bits.
     pub(super) is_deep: bool,
@@ -87,10 +92,15 @@ impl LayerArg {
         &self.path
     }
 
-    /// The names of the maps that a blend of it has. The height is one only beside others that need a folder anyway.
+    /// Whether it has a height.
+    pub(super) fn has_height(&self) -> bool {
+        self.maps.iter().any(|(name, _)| name == HEIGHT)
+    }
+
+    /// The names of its maps but the height.
     pub(super) fn map_names(&self) -> Vec<&str> {
         let others = self.maps.iter().map(|(name, _)| name.as_str());
-        let others: Vec<_> = others.filter(|name| *name != "height").collect();
+        let others: Vec<_> = others.filter(|name| *name != HEIGHT).collect();
         [BASE].into_iter().chain(others).collect()
     }
 
@@ -100,31 +110,32 @@ impl LayerArg {
     ///
     /// If one cannot be read.
     pub(super) fn read(&self, reader: &mut Reader) -> Result<Material> {
-        let (base, mut is_deep) = reader.read(&self.path, Kind::ByChannels)?;
-        let (mut maps, mut height) = (vec![base], None);
+        let base = reader.read(&self.path, Kind::ByChannels)?;
+        let (mut maps, mut height, mut is_deep) = (vec![base.map], None, base.is_deep);
         for (name, path) in &self.maps {
             let kind = match name.as_str() {
                 "normal" => Kind::Normals,
                 _ => Kind::ByChannels,
             };
-            let (map, is_map_deep) = reader.read(path, kind)?;
-            if name == "height" {
-                height = Some(values(map));
+            let loaded = reader.read_opaque(path, kind)?;
+            if name == HEIGHT {
+                height = Some(values(loaded.map));
             } else {
-                maps.push(map);
-                is_deep |= is_map_deep;
+                maps.push(loaded.map);
+                is_deep |= loaded.is_deep;
             }
         }
         let weight = match &self.weight {
             None => None,
             Some(Weight::Number(number)) => Some(ReadWeight::Number(*number)),
             Some(Weight::Mask(path)) => {
-                let (mask, _) = reader.read(path, Kind::ByChannels)?;
-                Some(ReadWeight::Mask(values(mask)))
+                let mask = reader.read_opaque(path, Kind::ByChannels)?;
+                Some(ReadWeight::Mask(values(mask.map)))
             }
         };
         Ok(Material {
             maps,
+            alpha: base.alpha,
             height,
             is_deep,
             weight,
@@ -133,7 +144,7 @@ impl LayerArg {
 
     /// The files of the maps that are blended, in the order of their names.
     fn map_paths(&self) -> impl Iterator<Item = &Path> {
-        let others = self.maps.iter().filter(|(name, _)| name != "height");
+        let others = self.maps.iter().filter(|(name, _)| name != HEIGHT);
         let others = others.map(|(_, path)| path.as_path());
         [self.path.as_path()].into_iter().chain(others)
     }
@@ -144,31 +155,55 @@ impl LayerArg {
 pub(super) struct Reader {
     /// The size that they are repeated or cut to.
     size: Option<Size>,
+    /// What becomes of their alpha.
+    alpha: Alpha,
     /// The size of the first that was read.
     first: Option<[u32; 2]>,
 }
 
 impl Reader {
     /// For a blend of a size, or of that of the first image.
-    pub(super) fn new(size: Option<Size>) -> Self {
-        Self { size, first: None }
+    pub(super) fn new(size: Option<Size>, alpha: Alpha) -> Self {
+        Self {
+            size,
+            alpha,
+            first: None,
+        }
     }
 
-    /// Reads an image, and says whether it has more than 8 bits.
+    /// Reads an image.
     ///
     /// # Errors
     ///
     /// If it cannot be read, or has another size.
-    pub(super) fn read(&mut self, path: &Path, kind: Kind) -> Result<(Map, bool)> {
-        let loaded = input::map(path, kind, None)?;
-        let map = match self.size {
-            Some(size) => repeated(&loaded.map, size)?,
-            None => loaded.map,
-        };
-        let first = *self.first.get_or_insert(map.size());
-        input::check_size(path, map.size(), first)
+    pub(super) fn read(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
+        let mut loaded = input::map_with_alpha(path, kind, None, self.alpha)?;
+        if let Some(size) = self.size {
+            loaded.map = repeated(&loaded.map, size)?;
+            let alpha = loaded.alpha.map(|alpha| repeat(&alpha, size.0));
+            loaded.alpha = alpha.transpose().context("the images cannot be repeated")?;
+        }
+        let first = *self.first.get_or_insert(loaded.map.size());
+        input::check_size(path, loaded.map.size(), first)
             .hint("--size WxH repeats what is smaller and cuts what is larger")?;
-        Ok((map, loaded.is_deep))
+        Ok(loaded)
+    }
+
+    /// Reads an image whose alpha has nowhere to go.
+    ///
+    /// # Errors
+    ///
+    /// As [`read`](Self::read); and if it is partly transparent, and that was not to be dropped or laid over a color.
+    pub(super) fn read_opaque(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
+        let loaded = self.read(path, kind)?;
+        if loaded.alpha.is_some() {
+            let message = format!(
+                "{} is partly transparent, which only the first image of a layer keeps",
+                input::name(path)
+            );
+            return Err(usage(message).hint("add --alpha drop or --alpha over:COLOR"));
+        }
+        Ok(loaded)
     }
 
     /// Reads gray maps once more as color where another layer has color.
@@ -186,7 +221,7 @@ impl Reader {
                 if let (Map::Value(_), Some(path)) =
                     (&material.maps[map], layer.map_paths().nth(map))
                 {
-                    material.maps[map] = self.read(path, Kind::Colors)?.0;
+                    material.maps[map] = self.read(path, Kind::Colors)?.map;
                 }
             }
         }
@@ -312,6 +347,7 @@ mod tests {
     fn material(weight: Option<ReadWeight>) -> Material {
         Material {
             maps: vec![Map::Value(Raster::filled([2, 1], 0.0).unwrap())],
+            alpha: None,
             height: None,
             is_deep: false,
             weight,

@@ -4,7 +4,9 @@ use anyhow::Result;
 use dapple::color::{Code, LinearRgb};
 use dapple::image::{Image, PngPixels, Transfer};
 use dapple::raster::Raster;
+use serde::Serialize;
 use serde_json::{Value, json};
+use std::fmt;
 
 /// How many parts a histogram has.
 const BINS: u32 = 24;
@@ -157,6 +159,43 @@ pub(super) fn luminance(channels: &[Channel]) -> Option<Raster<f32>> {
     luminance.ok()
 }
 
+/// How much of an image is transparent, as parts of its pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct Transparency {
+    /// With an alpha of 0.
+    fully: f64,
+    /// With an alpha between 0 and 1.
+    partly: f64,
+}
+
+impl fmt::Display for Transparency {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.fully == 0.0 && self.partly == 0.0 {
+            return f.write_str("alpha: opaque everywhere");
+        }
+        let [fully, partly] = [self.fully, self.partly].map(|part| 100.0 * part);
+        write!(
+            f,
+            "alpha: {fully:.1} % of the pixels are transparent, {partly:.1} % partly so"
+        )
+    }
+}
+
+/// How much of the image is transparent, if it has alpha.
+pub(super) fn transparency(channels: &[Channel]) -> Option<Transparency> {
+    let alpha = channels
+        .iter()
+        .find(|channel| ["alpha", "A"].contains(&channel.name.as_str()))?;
+    let alphas = alpha.values.pixels();
+    let part = |is_counted: fn(&&f32) -> bool| {
+        alphas.iter().filter(is_counted).count() as f64 / alphas.len() as f64
+    };
+    Some(Transparency {
+        fully: part(|alpha| **alpha <= 0.0),
+        partly: part(|alpha| **alpha > 0.0 && **alpha < 1.0),
+    })
+}
+
 /// A line for each channel, under a header; each begins a new line.
 pub(super) fn table(channels: &[Channel]) -> String {
     let mut table = format!(
@@ -179,7 +218,7 @@ fn split<C: Code, const N: usize>(raster: &Raster<[C; N]>, names: [&str; N]) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::{BARS, BINS, Channel, luminance};
+    use super::{BARS, BINS, Channel, Transparency, luminance, transparency};
     use dapple::raster::Raster;
 
     fn channel(values: Vec<f32>) -> Channel {
@@ -201,6 +240,23 @@ mod tests {
             bars.chars().filter(|&bar| bar == BARS[8]).count(),
             3,
             "{bars:?}"
+        );
+    }
+
+    #[test]
+    fn transparent_pixels_are_counted_where_there_is_alpha() {
+        let alpha = Channel {
+            name: "alpha".to_owned(),
+            ..channel(vec![0.0, 0.0, 0.0, 0.5, 1.0])
+        };
+        let red = channel(vec![0.0; 5]);
+        assert_eq!(transparency(&[red]), None);
+        let found = transparency(&[alpha]).unwrap();
+        let (fully, partly) = (0.6, 0.2);
+        assert_eq!(found, Transparency { fully, partly });
+        assert_eq!(
+            found.to_string(),
+            "alpha: 60.0 % of the pixels are transparent, 20.0 % partly so"
         );
     }
 

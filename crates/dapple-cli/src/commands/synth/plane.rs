@@ -3,6 +3,7 @@
 use super::{Args, Input, STEPS, advise, shown};
 use crate::encode::Format;
 use crate::error::Exit;
+use crate::input::Loaded;
 use crate::job::{Context, Job};
 use crate::progress::Progress;
 use anyhow::Result;
@@ -36,29 +37,25 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     );
     let texture = texture.map_err(advise)?;
     drop(progress);
-    job.write_image(
-        output,
-        follow(&texture, &base.map)?,
-        base.is_deep,
-        &args.image,
-    )?;
+    job.write_loaded(output, follow(&texture, &base)?, &args.image)?;
     for (output, (_, map)) in map_outputs.into_iter().zip(maps) {
-        job.write_image(
-            output,
-            follow(&texture, &map.map)?,
-            map.is_deep,
-            &args.image,
-        )?;
+        job.write_loaded(output, follow(&texture, &map)?, &args.image)?;
     }
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)
 }
 
 /// What a map of the example becomes.
-fn follow(texture: &PlaneTexture, map: &Map) -> Result<Map> {
-    Ok(match map {
+fn follow(texture: &PlaneTexture, example: &Loaded) -> Result<Loaded> {
+    let map = match &example.map {
         Map::Value(raster) => Map::Value(texture.transfer(raster)?),
         Map::Color(raster) => Map::Color(texture.transfer(raster)?),
         Map::Normal(raster) => Map::Normal(texture.transfer(raster)?),
+    };
+    let alpha = example.alpha.as_ref().map(|alpha| texture.transfer(alpha));
+    Ok(Loaded {
+        map,
+        alpha: alpha.transpose()?,
+        is_deep: example.is_deep,
     })
 }

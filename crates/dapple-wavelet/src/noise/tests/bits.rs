@@ -41,8 +41,10 @@ fn period_is_exact_past_all_fractions() {
 fn render_equals_sample_bit_for_bit() {
     let one = WaveletNoise2::new(32, Seed(5)).unwrap();
     let many = one.clone().with_weights(&WEIGHTS).unwrap();
+    let oblong = WaveletNoise2::of_size([12, 32], Seed(5)).unwrap();
+    let oblong = oblong.with_weights(&WEIGHTS).unwrap();
     for window in windows() {
-        for noise in [&one, &many] {
+        for noise in [&one, &many, &oblong] {
             let raster = noise.to_raster(&window).unwrap();
             check(&raster, &window, |position| noise.sample(position));
         }
@@ -53,8 +55,15 @@ fn render_equals_sample_bit_for_bit() {
 fn render_slice_equals_sample_bit_for_bit() {
     let one = WaveletNoise3::new(16, Seed(5)).unwrap();
     let many = one.clone().with_weights(&WEIGHTS).unwrap();
+    let oblong = WaveletNoise3::of_size([6, 16, 10], Seed(5)).unwrap();
+    let oblong = oblong.with_weights(&WEIGHTS).unwrap();
     for window in windows() {
-        for (noise, z) in [(&one, 0.3), (&many, -7e8 - 0.1), (&many, f64::NAN)] {
+        for (noise, z) in [
+            (&one, 0.3),
+            (&many, -7e8 - 0.1),
+            (&many, f64::NAN),
+            (&oblong, 1e6 + 0.7),
+        ] {
             let mut raster = Raster::filled(window.size, 0.0).unwrap();
             noise.render_slice(z, &window, raster.view_mut()).unwrap();
             check(&raster, &window, |position| {
@@ -149,34 +158,86 @@ fn value_is_nan_where_the_position_is_not_finite() {
 }
 
 #[test]
+fn equal_sizes_have_the_bits_of_squares() {
+    assert!(WaveletNoise2::of_size([10; 2], Seed(7)) == WaveletNoise2::new(10, Seed(7)));
+    assert!(WaveletNoise3::of_size([10; 3], Seed(7)) == WaveletNoise3::new(10, Seed(7)));
+}
+
+#[test]
+fn noise_of_a_size_that_is_not_square_repeats_after_its_own_period_and_no_shorter_one() {
+    let size = [12, 8, 6];
+    let plane = WaveletNoise2::of_size([12, 8], Seed(1)).unwrap();
+    let plane = plane.with_weights(&WEIGHTS).unwrap();
+    let space = WaveletNoise3::of_size(size, Seed(1)).unwrap();
+    let space = space.with_weights(&WEIGHTS).unwrap();
+    let moved = |step: DVec3| {
+        let same = positions::<3>(100, 40.0).map(|position| {
+            let here = (DVec3::from(position) * 256.0).floor() / 256.0;
+            let there = here + step;
+            let in_plane = plane.sample(here.truncate()) == plane.sample(there.truncate());
+            (in_plane, space.sample(here) == space.sample(there))
+        });
+        let same: Vec<_> = same.collect();
+        let count = |part: fn(&(bool, bool)) -> bool| same.iter().filter(|both| part(both)).count();
+        [count(|both| both.0), count(|both| both.1)]
+    };
+    let periods = DVec3::from(size.map(f64::from));
+    assert_eq!(moved(periods * DVec3::new(1.0, -2.0, 1e9)), [100, 100]);
+    for step in [
+        DVec3::X * 4.0,
+        DVec3::X * 6.0,
+        DVec3::Y * 4.0,
+        DVec3::Y * 6.0,
+    ] {
+        assert!(
+            moved(step).iter().all(|&same| same < 5),
+            "{step} is a period"
+        );
+    }
+}
+
+#[test]
 fn sizes_out_of_range_are_refused() {
-    for size in [0, 1, 2, 3, 11_585, 11_586, u32::MAX] {
+    let (sides, cells) = ("size of the tile", "number of cells of the tile");
+    for size in [0, 1, 2, 3] {
+        check_range(WaveletNoise2::new(size, Seed(0)), sides, size.into());
         check_range(
-            WaveletNoise2::new(size, Seed(0)),
-            "size of the tile",
+            WaveletNoise2::of_size([8, size], Seed(0)),
+            sides,
+            size.into(),
+        );
+        check_range(
+            WaveletNoise3::of_size([8, size, 8], Seed(0)),
+            sides,
             size.into(),
         );
     }
-    for size in [0, 3, 513, 514, u32::MAX] {
-        check_range(
-            WaveletNoise3::new(size, Seed(0)),
-            "size of the tile",
-            size.into(),
-        );
+    for size in [11_586, u32::MAX] {
+        let value = f64::from(size) * f64::from(size);
+        check_range(WaveletNoise2::new(size, Seed(0)), cells, value);
+        check_range(WaveletNoise2::of_size([size; 2], Seed(0)), cells, value);
     }
-    for size in [5, 511] {
-        let expected = WaveletErrorKind::NotDivisible {
-            length: size as usize,
-            levels: 1,
-        };
-        assert_eq!(
-            *WaveletNoise2::new(size, Seed(0)).unwrap_err().kind(),
-            expected
-        );
-        assert_eq!(
-            *WaveletNoise3::new(size, Seed(0)).unwrap_err().kind(),
-            expected
-        );
+    check_range(
+        WaveletNoise2::of_size([1 << 25, 6], Seed(0)),
+        cells,
+        6.0 * f64::from(1 << 25),
+    );
+    check_range(
+        WaveletNoise3::new(514, Seed(0)),
+        cells,
+        f64::from(514 * 514 * 514),
+    );
+    let odd = WaveletErrorKind::NotDivisible {
+        length: 5,
+        levels: 1,
+    };
+    for error in [
+        WaveletNoise2::new(5, Seed(0)).unwrap_err(),
+        WaveletNoise2::of_size([8, 5], Seed(0)).unwrap_err(),
+        WaveletNoise3::new(5, Seed(0)).unwrap_err(),
+        WaveletNoise3::of_size([8, 8, 5], Seed(0)).unwrap_err(),
+    ] {
+        assert_eq!(*error.kind(), odd);
     }
 }
 

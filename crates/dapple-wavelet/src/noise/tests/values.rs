@@ -12,8 +12,8 @@ const TOLERANCE: f64 = 3e-5;
 
 #[test]
 fn value_equals_the_sum_of_all_b_splines_in_the_plane() {
-    for size in [4, 6, 32, 100] {
-        let one = WaveletNoise2::new(size, Seed(1)).unwrap();
+    for size in [[4; 2], [6; 2], [32; 2], [100; 2], [12, 8], [4, 100]] {
+        let one = WaveletNoise2::of_size(size, Seed(1)).unwrap();
         let many = one.clone().with_weights(&WEIGHTS).unwrap();
         for position in positions(500, 300.0) {
             for noise in [&one, &many] {
@@ -30,8 +30,8 @@ fn value_equals_the_sum_of_all_b_splines_in_the_plane() {
 
 #[test]
 fn value_equals_the_sum_of_all_b_splines_in_space() {
-    for size in [4, 10, 32] {
-        let one = WaveletNoise3::new(size, Seed(1)).unwrap();
+    for size in [[4; 3], [10; 3], [32; 3], [12, 8, 6], [4, 6, 32]] {
+        let one = WaveletNoise3::of_size(size, Seed(1)).unwrap();
         let many = one.clone().with_weights(&WEIGHTS).unwrap();
         for position in positions(300, 100.0) {
             for noise in [&one, &many] {

@@ -1,0 +1,105 @@
+//! How much work a bake is, said before it begins: pixels, bytes, and about how long.
+
+use crate::baking::{MapFile, advise};
+use crate::encode::Format;
+use crate::error::Hint;
+use anyhow::{Result, anyhow};
+use dapple::recipe::{Bake, BakeMemory, BakeOptions, MapKind, Plan};
+use indicatif::{DecimalBytes, HumanDuration};
+use std::time::{Duration, Instant};
+
+/// The most pixels that are baked by someone who has not asked for a large bake: 32768 × 32768.
+const MOST_PIXELS: u64 = 1 << 30;
+/// From here on the work is said before it begins: 8192 × 8192.
+const TOLD_PIXELS: u64 = 1 << 26;
+/// Columns and rows of the small bake whose pace is measured.
+const PROBE: [u32; 2] = [256; 2];
+
+/// What a bake will take, if that is worth a word.
+///
+/// # Errors
+///
+/// If there are more than [`MOST_PIXELS`] and the bake is not banded, or what the recipe refuses.
+pub(crate) fn foresee(
+    plan: &Plan,
+    options: &BakeOptions,
+    files: &[MapFile],
+) -> Result<Option<String>> {
+    let size = options.region.map_or(options.size, |region| region.size);
+    let pixels = n_pixels(size);
+    if pixels < TOLD_PIXELS {
+        return Ok(None);
+    }
+    let pace = probe(plan, options)?;
+    let work = work(size, files, pace);
+    if pixels > MOST_PIXELS && options.memory == BakeMemory::Whole {
+        let error =
+            anyhow!("without --banded at most 32768 × 32768 pixels are baked, and this is {work}");
+        return Err(error.hint("add --banded if you mean it, or make a part with --region"));
+    }
+    Ok(Some(format!("baking {work}")))
+}
+
+/// Seconds for each pixel, measured on a small picture of the same tile.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the time is told to the user, and no value depends on it"
+)]
+fn probe(plan: &Plan, options: &BakeOptions) -> Result<f64> {
+    let small = BakeOptions {
+        size: PROBE,
+        region: None,
+        ..options.clone()
+    };
+    let start = Instant::now();
+    for band in Bake::new(plan, &small).map_err(advise)? {
+        band.map_err(advise)?;
+    }
+    Ok(start.elapsed().as_secs_f64() / n_pixels(PROBE) as f64)
+}
+
+/// The work in words.
+fn work([width, height]: [u32; 2], files: &[MapFile], pace: f64) -> String {
+    let pixels = n_pixels([width, height]);
+    let bytes = files.iter().map(|file| n_bytes(file.kind, file.format));
+    let bytes = DecimalBytes(pixels.saturating_mul(bytes.sum()));
+    let time = Duration::try_from_secs_f64(pixels as f64 * pace).unwrap_or(Duration::MAX);
+    let maps = match files.len() {
+        1 => "1 map".to_owned(),
+        count => format!("{count} maps"),
+    };
+    let time = HumanDuration(time);
+    format!("{maps} of {width} × {height} pixels: {bytes} before compression, about {time}")
+}
+
+fn n_pixels(size: [u32; 2]) -> u64 {
+    u64::from(size[0]) * u64::from(size[1])
+}
+
+/// The bytes of a pixel of a map in a file that is not compressed.
+fn n_bytes(kind: MapKind, format: Format) -> u64 {
+    let channels = match kind {
+        MapKind::Normal | MapKind::Albedo | MapKind::Orm => 3,
+        _ => 1,
+    };
+    channels
+        * match format {
+            Format::Png8 => 1,
+            Format::Png16 => 2,
+            Format::Exr => 4,
+        }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::n_bytes;
+    use crate::encode::Format;
+    use dapple::recipe::MapKind;
+
+    #[test]
+    fn bytes_are_those_of_all_channels() {
+        assert_eq!(n_bytes(MapKind::Height, Format::Png8), 1);
+        assert_eq!(n_bytes(MapKind::Normal, Format::Png16), 6);
+        assert_eq!(n_bytes(MapKind::Albedo, Format::Exr), 12);
+    }
+}

@@ -1,0 +1,131 @@
+//! What becomes of images that are partly transparent.
+
+use crate::support::{Folder, assert_done, assert_refused, stdout};
+use dapple::color::{LinearRgb, LinearRgba};
+use dapple::image::{Depth, Image, Limits, read_image, write_color_alpha_png};
+use dapple::raster::Raster;
+
+/// Writes an image of 48 × 48 pixels.
+fn write(folder: &Folder, name: &str, pixel: impl Fn(f32) -> LinearRgba) {
+    let pixels = Raster::from_fn([48; 2], |x, y| {
+        pixel((7 * x + 3 * y * y + x * y) as f32 % 40.0 / 100.0 + 0.3)
+    });
+    write_color_alpha_png(folder.path(name), &pixels.unwrap(), Depth::Sixteen).unwrap();
+}
+
+/// A folder with an image whose alpha is its gray.
+fn folder(name: &str) -> Folder {
+    let folder = Folder::with_inputs(name);
+    write(&folder, "leaf.png", |value| LinearRgba {
+        color: LinearRgb::gray(value),
+        alpha: value,
+    });
+    folder
+}
+
+fn read(folder: &Folder, name: &str) -> Image {
+    read_image(folder.path(name), &Limits::default()).unwrap()
+}
+
+#[test]
+fn alpha_goes_the_way_of_the_colors_in_tile_and_synth() {
+    let folder = folder("alpha");
+    for (line, output) in [
+        ("tile leaf.png --sheet -o a.png", "a.png"),
+        ("info a-2x2.png", "a-2x2.png"),
+        (
+            "tile leaf.png --method soft-cut --margin 12 -o b.png",
+            "b.png",
+        ),
+        ("synth leaf.png --size 40 --seed 3 -o c.png", "c.png"),
+        (
+            "synth checker.png --region 0,0,32,32 --map cover=d.png --size 20 -o e.png",
+            "e-cover.png",
+        ),
+    ] {
+        if line.contains("d.png") {
+            let cut = "tile leaf.png --region 0,0,32,32 -o d.png";
+            assert_done(&folder.run(&cut.split(' ').collect::<Vec<_>>()), cut);
+        }
+        assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), line);
+        let pixels = read(&folder, output).color_alpha().unwrap();
+        let mut alphas = pixels.pixels().iter().map(|pixel| pixel.alpha);
+        assert!(alphas.any(|alpha| alpha < 0.6), "{line}");
+        for pixel in pixels.pixels() {
+            // 16 bits, of which the sRGB curve spreads those of color unevenly.
+            let gap = (pixel.color.g - pixel.alpha).abs();
+            assert!(gap < 1e-4, "{line}: {pixel:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_transparent_lends_no_color_to_a_blend() {
+    let folder = Folder::new("transparent-blend");
+    let color = |color, alpha| move |_| LinearRgba { color, alpha };
+    let (red, blue) = (LinearRgb::new(0.6, 0.1, 0.1), LinearRgb::new(0.0, 0.0, 1.0));
+    write(&folder, "red.png", color(red, 1.0));
+    write(&folder, "none.png", color(blue, 0.0));
+    let line = ["blend", "red.png", "none.png,weight=0.25", "-o", "out.png"];
+    assert_done(&folder.run(&line), "blend");
+    for pixel in read(&folder, "out.png").color_alpha().unwrap().pixels() {
+        // 16 bits.
+        assert!((pixel.alpha - 0.75).abs() < 1e-4, "{pixel:?}");
+        let gaps = [pixel.color.r - red.r, pixel.color.b - red.b];
+        assert!(gaps.iter().all(|gap| gap.abs() < 1e-4), "{pixel:?}");
+    }
+}
+
+#[test]
+fn alpha_is_dropped_or_laid_over_a_color_where_asked() {
+    let folder = folder("opaque");
+    let tile = |alpha: &str, output: &str| {
+        let options = ["--method", "soft-cut", "--margin", "4", "--alpha", alpha];
+        let run = folder.run(&[&["tile", "leaf.png", "-o", output], &options[..]].concat());
+        assert_done(&run, alpha);
+        read(&folder, output).color().expect("no alpha is left")
+    };
+    let colors = tile("drop", "drop.png");
+    let white = tile("over:white", "over.png");
+    let darkest = |colors: &Raster<LinearRgb>| {
+        let greens = colors.pixels().iter().map(|color| color.g);
+        greens.fold(1.0, f32::min)
+    };
+    // A gray of 0.3 with an alpha of 0.3, over white.
+    assert!(
+        (darkest(&colors) - 0.3).abs() < 0.02,
+        "{}",
+        darkest(&colors)
+    );
+    assert!((darkest(&white) - 0.75).abs() < 0.02, "{}", darkest(&white));
+}
+
+#[test]
+fn alpha_that_has_nowhere_to_go_is_refused_with_the_option() {
+    let folder = folder("nowhere");
+    for line in [
+        "synth leaf.png --mesh model.obj --sites 500 -o out.glb",
+        "blend rock.png photo.png,weight=leaf.png --size 32 -o out.png",
+        "blend rock.png,height=leaf.png photo.png,height=leaf.png --size 32 -o out.png",
+    ] {
+        let words: Vec<_> = line.split(' ').collect();
+        assert_refused(
+            &folder.run(&words),
+            2,
+            "leaf.png is partly transparent",
+            line,
+        );
+        assert_refused(&folder.run(&words), 2, "--alpha drop", line);
+        let dropped = [&words[..], &["--alpha", "drop"]].concat();
+        assert_done(&folder.run(&dropped), line);
+        std::fs::remove_file(folder.path(words[words.len() - 1])).unwrap();
+    }
+}
+
+#[test]
+fn info_says_how_much_is_transparent() {
+    let folder = folder("alpha-info");
+    let said = stdout(&folder.run(&["info", "leaf.png"]));
+    let expected = "alpha: 0.0 % of the pixels are transparent, 100.0 % partly so";
+    assert!(said.contains(expected), "{said}");
+}
