@@ -8,7 +8,7 @@
 use crate::args::Region;
 use crate::error::Hint;
 use anyhow::{Context, Error, Result, anyhow};
-use dapple::color::{Code, Normal};
+use dapple::color::{Code, LinearRgb, Normal};
 use dapple::image::{
     Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_image, read_image,
 };
@@ -44,6 +44,19 @@ pub(crate) struct Loaded {
     pub(crate) map: Map,
     /// Whether the file has more than 8 bits per channel.
     pub(crate) is_deep: bool,
+    /// Whether its numbers are linear light, as in OpenEXR; in a photograph of another format they are sRGB codes.
+    is_linear: bool,
+}
+
+impl Loaded {
+    /// The color of a gray value of a picture.
+    pub(crate) fn color_of(&self, value: f32) -> LinearRgb {
+        if self.is_linear {
+            LinearRgb::gray(value)
+        } else {
+            LinearRgb::from_srgb([u16::from_unit(value); 3])
+        }
+    }
 }
 
 /// Reads an image; `-` is standard input.
@@ -85,8 +98,11 @@ pub(crate) fn map(path: &Path, kind: Kind, region: Option<Region>) -> Result<Loa
         Some(region) => crop(&map, region).with_context(|| name(path))?,
         None => map,
     };
-    let is_deep = image.bits() > 8;
-    Ok(Loaded { map, is_deep })
+    Ok(Loaded {
+        map,
+        is_deep: image.bits() > 8,
+        is_linear: matches!(image, Image::Exr(_)),
+    })
 }
 
 /// Refuses an image that has not the size of the first one.

@@ -9,7 +9,7 @@ use crate::job::{Context, Job, eprintln_if_possible};
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
 use anyhow::{Context as _, Result, anyhow, bail};
-use dapple::color::{LinearRgb, LinearRgba, NormalY};
+use dapple::color::{LinearRgba, NormalY};
 use dapple::mesh::io::{gltf, obj, ply};
 use dapple::mesh::{EncodedImage, Mesh, Model, Repair, Surface};
 use dapple::points::glam::DVec2;
@@ -120,7 +120,8 @@ impl Covered {
             Map::Color(raster) => self.texture.transfer(raster)?,
             Map::Value(raster) => {
                 let values = self.texture.transfer(raster)?;
-                values.into_iter().map(LinearRgb::gray).collect()
+                let color = |value| self.input.base.color_of(value);
+                values.into_iter().map(color).collect()
             }
             Map::Normal(_) => bail!("normals are no colors"),
         };
@@ -231,7 +232,7 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
 /// The input mesh with its texture. A gray one becomes a color, which is what models have.
 fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
     let base = match base {
-        Map::Value(values) => Map::Color(values.map(|&value| LinearRgb::gray(value))),
+        Map::Value(values) => Map::Color(values.map(|&value| covered.input.base.color_of(value))),
         other => other.clone(),
     };
     let default = default_format(&base, covered.input.base.is_deep);
