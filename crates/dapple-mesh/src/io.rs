@@ -30,6 +30,8 @@ pub mod off;
 mod paths;
 #[cfg(feature = "ply")]
 pub mod ply;
+#[cfg(any(feature = "gltf", feature = "ply"))]
+mod split;
 #[cfg(any(feature = "obj", feature = "ply", feature = "off"))]
 mod text;
 

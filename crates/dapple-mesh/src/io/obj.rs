@@ -4,8 +4,8 @@
 //! follow `v x y z`, as many programs write them. Wavefront's v goes up, so that v becomes 1 - v on the way in and out.
 //!
 //! All faces become one mesh, whatever their objects, groups and materials, since a texture is to run across these; the
-//! material is the first that a face has. Of normals, which OBJ gives to corners, those are kept that are the same at
-//! all corners of each vertex; if one vertex has two, as at a crease, the model has none. Lines, points and free-form
+//! material is the first that a face has. Normals, which OBJ gives to corners, become those of vertices if no vertex has
+//! two, and stay with the corners otherwise; where a corner has none, all are left out. Lines, points and free-form
 //! surfaces are left out. Of a material its `Kd` (linear, and only without a texture, since with one it is seldom
 //! meant), `d`, `map_Kd` and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is left
 //! out.
@@ -181,7 +181,10 @@ impl Draft {
         // The corners name vertices that there are before normals are spread over these.
         let count = self.positions.len();
         let mesh = Mesh::new(core::mem::take(&mut self.positions), &faces)?;
-        let normals = self.vertex_normals(count)?;
+        let corner_normals = self.corner_normals()?;
+        let normals = self.vertex_normals(count, corner_normals.as_deref());
+        // Only at creases corners have normals of their own.
+        let corner_normals = corner_normals.filter(|_| normals.is_none());
         if !self.colors.is_empty() {
             self.colors.resize(count, WHITE);
         }
@@ -191,6 +194,7 @@ impl Draft {
             colors,
             uvs,
             normals,
+            corner_normals,
             ..Model::default()
         };
         model.check()?;
@@ -214,25 +218,43 @@ impl Draft {
             .map(Some)
     }
 
-    /// The normals of the vertices, if each vertex of a face has exactly one; those of a cloud of points in their
-    /// order.
-    fn vertex_normals(&self, count: usize) -> Result<Option<Vec<DVec3>>, MeshError> {
+    /// The normals of the corners of all faces, if each corner has one.
+    fn corner_normals(&self) -> Result<Option<Vec<[DVec3; 3]>>, MeshError> {
+        let mut whole = !self.faces.is_empty();
+        let mut normals = Vec::with_capacity(self.faces.len());
+        for face in &self.faces {
+            let mut corners = [DVec3::ZERO; 3];
+            for (normal, &[_, _, number]) in corners.iter_mut().zip(face) {
+                if number == NONE {
+                    whole = false;
+                } else {
+                    *normal = named("normal", &self.normals, number)?;
+                }
+            }
+            normals.push(corners);
+        }
+        Ok(whole.then_some(normals))
+    }
+
+    /// The normals of the vertices, if no vertex has two at its corners; those of a cloud of points in their order.
+    fn vertex_normals(
+        &self,
+        count: usize,
+        corner_normals: Option<&[[DVec3; 3]]>,
+    ) -> Option<Vec<DVec3>> {
         if self.faces.is_empty() {
             let whole = count > 0 && self.normals.len() == count;
-            return Ok(whole.then(|| self.normals.clone()));
+            return whole.then(|| self.normals.clone());
         }
         let mut normals = vec![None; count];
-        let mut whole = true;
-        for &[vertex, _, number] in self.faces.iter().flatten() {
-            if number == NONE {
-                whole = false;
-                continue;
+        for (face, of_corners) in self.faces.iter().zip(corner_normals?) {
+            for (&[vertex, ..], &normal) in face.iter().zip(of_corners) {
+                if *normals[vertex as usize].get_or_insert(normal) != normal {
+                    return None;
+                }
             }
-            let normal = named("normal", &self.normals, number)?;
-            whole &= *normals[vertex as usize].get_or_insert(normal) == normal;
         }
-        let spread = || normals.into_iter().map(Option::unwrap_or_default).collect();
-        Ok(whole.then(spread))
+        Some(normals.into_iter().map(Option::unwrap_or_default).collect())
     }
 }
 

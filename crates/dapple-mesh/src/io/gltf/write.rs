@@ -1,5 +1,6 @@
 //! Writing GLB.
 
+use super::super::split::with_vertex_normals;
 use super::container::{BIN, JSON, MAGIC};
 use crate::adjacency::sorted_edges;
 use crate::{EncodedImage, Mesh, MeshError, MeshErrorKind, Model};
@@ -38,8 +39,8 @@ struct Split {
 
 /// The model as a GLB file.
 ///
-/// Numbers are rounded to `f32`. Vertices keep their numbers; where corners have different texture coordinates, further
-/// vertices follow. Faces have the normals of the model, of unit length, or else those of
+/// Numbers are rounded to `f32`. Vertices keep their numbers; where corners have different texture coordinates or
+/// normals, further vertices follow. Faces have the normals of the model, of unit length, or else those of
 /// [`Mesh::vertex_normals`](crate::Mesh::vertex_normals); +z stands for a zero, which glTF does not have. Colors are
 /// clamped to 0 to 1. Without texture coordinates, textures are left out. The material is rough and not metallic where
 /// no texture says otherwise; it has two sides if the mesh is open, and blends if its base color factor is not opaque.
@@ -78,8 +79,9 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshError> {
 
 /// Adds the columns and gives the primitive that names them.
 fn primitive(model: &Model, bin: &mut Bin) -> Value {
+    let model = with_vertex_normals(model);
     let mesh = &model.mesh;
-    let split = Split::new(model);
+    let split = Split::new(&model);
     let spread = |vectors: &[DVec3]| -> Vec<[f32; 3]> {
         let part = |&vertex: &usize| vectors[vertex].to_array().map(narrow);
         split.vertex.iter().map(part).collect()
