@@ -11,7 +11,7 @@ mod own_uvs;
 mod tangents;
 mod tiles;
 
-pub(crate) use tangents::Tangents;
+pub(crate) use tangents::{Tangents, mixed};
 
 use crate::{SynthError, SynthErrorKind};
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};

@@ -1,5 +1,6 @@
 //! `dapple synth`: texture from an example, in the plane or on a mesh.
 
+mod corners;
 mod options;
 mod plane;
 mod surface;

@@ -283,10 +283,7 @@ fn a_gray_photograph_keeps_its_codes_on_a_mesh() {
     write_gray_png(folder.path("gray.png"), &values, Depth::Eight).unwrap();
     let arguments = ["synth", "gray.png", "--mesh", "model.obj", "--sites", "600"];
     for name in ["out.glb", "out.obj", "out.ply"] {
-        assert_done(
-            &folder.run(&[&arguments[..], &["-o", name]].concat()),
-            name,
-        );
+        assert_done(&folder.run(&[&arguments[..], &["-o", name]].concat()), name);
         let model = read_model(folder.path(name)).unwrap();
         let colors = match &model.material.base_color {
             Some(texture) => {
@@ -297,7 +294,10 @@ fn a_gray_photograph_keeps_its_codes_on_a_mesh() {
         };
         let codes = colors.iter().flat_map(|color| color.to_srgb::<u8>());
         // Between sites, codes are mixed.
-        assert!(codes.clone().all(|code| (91..=131).contains(&code)), "{name}");
+        assert!(
+            codes.clone().all(|code| (91..=131).contains(&code)),
+            "{name}"
+        );
         let n_codes = codes.clone().count() as f64;
         let mean = codes.map(f64::from).sum::<f64>() / n_codes;
         // The squares need not be used equally often.

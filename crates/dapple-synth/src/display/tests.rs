@@ -10,6 +10,11 @@ use glam::DVec3;
 
 const N: usize = 300;
 
+/// Shading without a crease.
+fn smooth(surface: &Surface) -> Vec<[DVec3; 3]> {
+    surface.mesh().corner_normals(core::f64::consts::PI)
+}
+
 fn png() -> EncodedImage {
     EncodedImage::new(b"\x89PNG\r\n\x1a\n and more".to_vec()).unwrap()
 }
@@ -52,7 +57,13 @@ fn textured_model_comes_back_from_its_file() {
     let map = bake_colors(&sphere, &[LinearRgb::new(1.0, 0.5, 0.0); N], &atlas).unwrap();
     let codes = map.map(|color| color.to_srgb::<u8>());
     let png = EncodedImage::new(encode_png(codes.view(), Transfer::Srgb).unwrap()).unwrap();
-    let model = textured_model(sphere.surface(), &atlas, png.clone()).unwrap();
+    let model = textured_model(
+        sphere.surface(),
+        &atlas,
+        smooth(sphere.surface()),
+        png.clone(),
+    )
+    .unwrap();
     model.check().unwrap();
     let read = gltf::read(&gltf::write(&model).unwrap()).unwrap();
     assert_eq!(read.material.base_color, Some(png));
@@ -70,7 +81,7 @@ fn faces_without_a_place_have_texture_coordinates_all_the_same() {
     let plane = synthesizer(square(), N, |_, _| DVec3::NEG_Y);
     let nowhere = vec![[DVec2::NAN; 3]; plane.surface().mesh().faces().len()];
     let atlas = Atlas::from_uvs(plane.surface(), &nowhere, [8, 8], 1).unwrap();
-    let model = textured_model(plane.surface(), &atlas, png()).unwrap();
+    let model = textured_model(plane.surface(), &atlas, smooth(plane.surface()), png()).unwrap();
     model.check().unwrap();
     assert_eq!(model.uvs.unwrap()[3], [DVec2::ZERO; 3]);
 }
@@ -80,7 +91,8 @@ fn atlas_of_another_mesh_is_refused() {
     let plane = synthesizer(square(), N, |_, _| DVec3::NEG_Y);
     let other = synthesizer(sphere(), N, |_, _| DVec3::NEG_Y);
     let atlas = Atlas::uniform(other.surface(), 256).unwrap();
-    let error = textured_model(plane.surface(), &atlas, png()).unwrap_err();
+    let shading = smooth(plane.surface());
+    let error = textured_model(plane.surface(), &atlas, shading, png()).unwrap_err();
     assert!(
         matches!(error.kind(), SynthErrorKind::Count { .. }),
         "{error}"

@@ -81,6 +81,11 @@ pub(super) struct SurfaceArgs {
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..=1024))]
     padding: Option<u32>,
 
+    /// The angle of an edge, in degrees, above which it is a crease: 0 shades every face flat, 180 everything smooth. By
+    /// default the normals of the mesh, or 30 where it has none.
+    #[arg(long, value_name = "DEGREES", value_parser = angle)]
+    crease: Option<f64>,
+
     /// Which way neighborhoods go on over the surface; by default followed.
     #[arg(long, value_enum, value_name = "HOW")]
     axes: Option<AxesName>,
@@ -116,6 +121,14 @@ pub(super) struct MatchArgs {
     paper: bool,
 }
 
+/// An angle from 0 to 180 degrees.
+fn angle(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(angle) if (0.0..=180.0).contains(&angle) => Ok(angle),
+        _ => Err(format!("{text:?} is no angle from 0 to 180 degrees")),
+    }
+}
+
 impl PlaneArgs {
     /// An option that was given.
     pub(super) fn given(&self) -> Option<&'static str> {
@@ -142,6 +155,7 @@ impl SurfaceArgs {
             ("texture-size", self.texture_size.is_some()),
             ("atlas", self.atlas.is_some()),
             ("padding", self.padding.is_some()),
+            ("crease", self.crease.is_some()),
             ("axes", self.axes.is_some()),
         ];
         given
@@ -160,6 +174,11 @@ impl SurfaceArgs {
 
     pub(super) fn padding(&self) -> u32 {
         self.padding.unwrap_or(PADDING)
+    }
+
+    /// The angle of a crease in radians, if there is one.
+    pub(super) fn crease(&self) -> Option<f64> {
+        self.crease.map(f64::to_radians)
     }
 
     /// The sites, in as many levels as are matched.

@@ -1,5 +1,6 @@
 //! Synthesis on a mesh, and the files that it gives.
 
+use super::corners::{own_uvs, shading};
 use super::options::AtlasName;
 use super::{Args, Input, STEPS, advise, shown};
 use crate::encode::{Format, default_format, encode, ramped};
@@ -8,11 +9,11 @@ use crate::input;
 use crate::job::{Context, Job, eprintln_if_possible};
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
-use anyhow::{Context as _, Result, anyhow, bail};
+use anyhow::{Context as _, Result, bail};
 use dapple::color::{LinearRgba, NormalY};
 use dapple::mesh::io::{gltf, obj, ply};
 use dapple::mesh::{EncodedImage, Mesh, Model, Repair, Surface};
-use dapple::points::glam::DVec2;
+use dapple::points::glam::DVec3;
 use dapple::synth::{
     Atlas, Direction, SurfaceTexture, Synthesizer, bake_colors, bake_normals, bake_values,
     site_model, textured_model,
@@ -57,6 +58,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         Product::Ply => None,
         _ => Some(atlas(args, &surface, &model, &repair)?),
     };
+    let shading = shading(args.surface.crease(), &surface, &model, &repair);
     let spinner = Progress::spinner("scattering sites", context.quiet);
     let sites = args.surface.sites(&args.matching);
     let synthesizer = Synthesizer::new(surface, &directions(args)?, &sites).map_err(advise)?;
@@ -74,6 +76,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
             synthesizer,
             texture,
             atlas,
+            shading,
             input,
         },
         &mut job,
@@ -89,6 +92,8 @@ struct Covered {
     synthesizer: Synthesizer,
     texture: SurfaceTexture,
     atlas: Option<Atlas>,
+    /// The normals of the corners of all faces.
+    shading: Vec<[DVec3; 3]>,
     input: Input,
 }
 
@@ -108,7 +113,14 @@ impl Covered {
             }
             Map::Normal(raster) => {
                 let normals = texture.transfer(raster)?;
-                Map::Normal(bake_normals(synthesizer, &normals, NormalY::OpenGl, atlas)?)
+                let y = NormalY::OpenGl;
+                Map::Normal(bake_normals(
+                    synthesizer,
+                    &normals,
+                    y,
+                    atlas,
+                    &self.shading,
+                )?)
             }
         })
     }
@@ -243,6 +255,7 @@ fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
     Ok(textured_model(
         covered.synthesizer.surface(),
         atlas,
+        covered.shading.clone(),
         EncodedImage::new(png)?,
     )?)
 }
@@ -280,32 +293,6 @@ fn atlas(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Resu
         }
     };
     atlas.map_err(advise)
-}
-
-/// The mesh's own texture coordinates, for the faces that repair has left.
-fn own_uvs(surface: &Surface, model: &Model, repair: &Repair) -> Result<Vec<[DVec2; 3]>> {
-    let Some(uvs) = &model.uvs else {
-        return Err(anyhow!("the mesh has no texture coordinates").hint("take --atlas area"));
-    };
-    let mesh = surface.mesh();
-    let mut own = Vec::with_capacity(mesh.faces().len());
-    for (face, &before) in mesh.faces().iter().zip(&repair.face_before) {
-        let corners_before = model.mesh.corners(before);
-        // Repair may have turned the face, or joined its vertices with others at the same places.
-        let uv = |vertex: dapple::mesh::VertexIdx| {
-            let at = mesh.positions()[vertex.index()];
-            let corner = corners_before.iter().position(|&other| other == at);
-            corner.map(|corner| uvs[before.index()][corner])
-        };
-        let [Some(a), Some(b), Some(c)] = face.map(uv) else {
-            return Err(
-                anyhow!("a face was cut in repair, and its texture coordinates are gone")
-                    .hint("take --atlas area, or repair the mesh before"),
-            );
-        };
-        own.push([a, b, c]);
-    }
-    Ok(own)
 }
 
 /// The directions that the user gave.
