@@ -56,6 +56,11 @@ pub struct Material {
     pub normal: Option<EncodedImage>,
     /// Roughness in green and metalness in blue.
     pub metallic_roughness: Option<EncodedImage>,
+    /// Whether textures may be shown by the coarser levels of a mipmap; true by default. Where pieces of a texture lie close
+    /// to each other, those mix pieces that are far apart on the mesh.
+    pub mipmaps: bool,
+    /// Whether the back of a face is seen, too; false by default.
+    pub double_sided: bool,
 }
 
 /// The bytes of an image file. They are not decoded; only their first ones are looked at.
@@ -144,6 +149,8 @@ impl Default for Material {
             base_color: None,
             normal: None,
             metallic_roughness: None,
+            mipmaps: true,
+            double_sided: false,
         }
     }
 }
