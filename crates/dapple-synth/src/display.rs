@@ -103,6 +103,7 @@ pub fn textured_model(
     model.uvs = Some(uvs.into_iter().map(|face| face.map(placed)).collect());
     model.corner_normals = Some(shading);
     model.material.base_color = Some(base_color);
+    model.material.mipmaps = atlas.mipmaps();
     Ok(model)
 }
 

@@ -4,7 +4,7 @@ use crate::args::{Axes, Size};
 use clap::ValueEnum;
 use dapple::hash::Seed;
 use dapple::mesh::HierarchyOptions;
-use dapple::synth::{Axes as FieldAxes, Edges, Options, PADDING};
+use dapple::synth::{Axes as FieldAxes, Edges, Options};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -77,7 +77,8 @@ pub(super) struct SurfaceArgs {
     #[arg(long, value_enum, value_name = "HOW")]
     atlas: Option<AtlasName>,
 
-    /// Pixels around each piece of the texture that continue it, 1 to 1024: 2^k for k mipmap levels; by default 1.
+    /// Pixels around each piece of the texture that continue it, 1 to 1024: 2^k for k mipmap levels. By default up to a
+    /// 16th of the room for two faces, and all that is free with --atlas uv.
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..=1024))]
     padding: Option<u32>,
 
@@ -172,8 +173,8 @@ impl SurfaceArgs {
         self.atlas.unwrap_or(AtlasName::Area)
     }
 
-    pub(super) fn padding(&self) -> u32 {
-        self.padding.unwrap_or(PADDING)
+    pub(super) fn padding(&self) -> Option<u32> {
+        self.padding
     }
 
     /// The angle of a crease in radians, if there is one.

@@ -284,12 +284,14 @@ fn stem(path: &Path) -> String {
 /// The layout of the texture.
 fn atlas(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Result<Atlas> {
     let (side, padding) = (args.surface.side(), args.surface.padding());
-    let atlas = match args.surface.atlas() {
-        AtlasName::Area => Atlas::by_area_padded(surface, side, padding),
-        AtlasName::Uniform => Atlas::uniform_padded(surface, side, padding),
-        AtlasName::Uv => {
+    let atlas = match (args.surface.atlas(), padding) {
+        (AtlasName::Area, None) => Atlas::by_area(surface, side),
+        (AtlasName::Area, Some(padding)) => Atlas::by_area_padded(surface, side, padding),
+        (AtlasName::Uniform, None) => Atlas::uniform(surface, side),
+        (AtlasName::Uniform, Some(padding)) => Atlas::uniform_padded(surface, side, padding),
+        (AtlasName::Uv, padding) => {
             let uvs = own_uvs(surface, model, repair)?;
-            Atlas::from_uvs(surface, &uvs, [side; 2], padding)
+            Atlas::from_uvs(surface, &uvs, [side; 2], padding.unwrap_or(side))
         }
     };
     atlas.map_err(advise)
