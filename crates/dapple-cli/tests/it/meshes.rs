@@ -1,6 +1,6 @@
-//! What covered meshes look like: hard edges.
+//! What covered meshes look like: hard edges, and sheets that are seen from both sides.
 
-use crate::support::{Folder, assert_done};
+use crate::support::{Folder, assert_done, stdout};
 use dapple::mesh::io::{read_model, write_model};
 use dapple::mesh::{CREASE, FaceIdx, Mesh, Model};
 use dapple::points::glam::DVec3;
@@ -89,4 +89,32 @@ fn hard_edges_of_a_mesh_stay_hard() {
     }
     let flat = most_off(&cover(&folder, &["--crease", "30"], "flat.glb"));
     assert!(flat < 1e-6, "off by {flat}");
+}
+
+#[test]
+fn both_sides_of_a_sheet_get_one_texture_and_are_seen() {
+    let folder = Folder::with_inputs("sides");
+    let cube = cube();
+    let corners = cube.faces().iter().map(|face| face.map(|vertex| vertex.0));
+    let outside: Vec<[u32; 3]> = corners.collect();
+    // The inside has vertices of its own.
+    let inside = outside.iter().map(|[a, b, c]| [a + 8, c + 8, b + 8]);
+    let positions = [cube.positions(), cube.positions()].concat();
+    let faces: Vec<[u32; 3]> = outside.iter().copied().chain(inside).collect();
+    let both = Mesh::new(positions, &faces).unwrap();
+    write_model(folder.path("hard.obj"), &both.into()).unwrap();
+    let info = stdout(&folder.run(&["info", "hard.obj"]));
+    assert!(
+        info.contains("12 faces back to back with another"),
+        "{info}"
+    );
+    assert!(info.contains("a material with two sides"), "{info}");
+    let model = cover(&folder, &[], "out.glb");
+    assert_eq!(model.mesh.faces().len(), 12, "one sheet");
+    assert!(model.material.double_sided);
+    let info = stdout(&folder.run(&["info", "out.glb"]));
+    assert!(info.contains("two sides"), "{info}");
+
+    write_model(folder.path("hard.obj"), &cube.into()).unwrap();
+    assert!(!cover(&folder, &[], "closed.glb").material.double_sided);
 }

@@ -59,6 +59,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         _ => Some(atlas(args, &surface, &model, &repair)?),
     };
     let shading = shading(args.surface.crease(), &surface, &model, &repair);
+    let double_sided = model.material.double_sided || repair.before.back_to_back_faces > 0;
     let spinner = Progress::spinner("scattering sites", context.quiet);
     let sites = args.surface.sites(&args.matching);
     let synthesizer = Synthesizer::new(surface, &directions(args)?, &sites).map_err(advise)?;
@@ -77,13 +78,17 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
             texture,
             atlas,
             shading,
+            double_sided,
             input,
         },
         &mut job,
     )?;
     drop(spinner);
     let repaired = repair.before != repair.after;
-    job.finish(args, json!({ "repaired": repaired }))?;
+    job.finish(
+        args,
+        json!({ "repaired": repaired, "double_sided": double_sided }),
+    )?;
     Ok(Exit::Done)
 }
 
@@ -94,6 +99,8 @@ struct Covered {
     atlas: Option<Atlas>,
     /// The normals of the corners of all faces.
     shading: Vec<[DVec3; 3]>,
+    /// Whether faces are seen from both sides.
+    double_sided: bool,
     input: Input,
 }
 
@@ -252,12 +259,14 @@ fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
     let Some(atlas) = &covered.atlas else {
         bail!("a mesh of sites has no texture");
     };
-    Ok(textured_model(
+    let mut model = textured_model(
         covered.synthesizer.surface(),
         atlas,
         covered.shading.clone(),
         EncodedImage::new(png)?,
-    )?)
+    )?;
+    model.material.double_sided = covered.double_sided;
+    Ok(model)
 }
 
 fn write_model(claimed: &Claimed, model: &Model, args: &Args, job: &Job<'_>) -> Result<()> {
