@@ -8,7 +8,7 @@
 use crate::args::{Alpha, Region};
 use crate::error::Hint;
 use anyhow::{Context, Error, Result, anyhow};
-use dapple::color::{Code, LinearRgba, Normal};
+use dapple::color::{Code, LinearRgb, LinearRgba, Normal};
 use dapple::image::{
     Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_image, read_image,
 };
@@ -46,6 +46,19 @@ pub(crate) struct Loaded {
     pub(crate) alpha: Option<Raster<f32>>,
     /// Whether the file has more than 8 bits per channel.
     pub(crate) is_deep: bool,
+    /// Whether its numbers are linear light, as in OpenEXR; in a photograph of another format they are sRGB codes.
+    is_linear: bool,
+}
+
+impl Loaded {
+    /// The color of a gray value of a picture.
+    pub(crate) fn color_of(&self, value: f32) -> LinearRgb {
+        if self.is_linear {
+            LinearRgb::gray(value)
+        } else {
+            LinearRgb::from_srgb([u16::from_unit(value); 3])
+        }
+    }
 }
 
 /// Reads an image; `-` is standard input.
@@ -147,11 +160,13 @@ fn part(
     alpha: Option<Raster<f32>>,
 ) -> Result<Loaded> {
     let is_deep = image.bits() > 8;
+    let is_linear = matches!(image, Image::Exr(_));
     let Some(region) = region else {
         return Ok(Loaded {
             map,
             alpha,
             is_deep,
+            is_linear,
         });
     };
     let cropped = alpha.map(|alpha| alpha.crop(region.first, region.size));
@@ -159,6 +174,7 @@ fn part(
         map: crop(&map, region).with_context(|| name(path))?,
         alpha: cropped.transpose().with_context(|| name(path))?,
         is_deep,
+        is_linear,
     })
 }
 

@@ -32,6 +32,8 @@ mod paths;
 pub mod ply;
 #[cfg(any(feature = "obj", feature = "ply", feature = "gltf", feature = "off"))]
 mod polygon;
+#[cfg(any(feature = "gltf", feature = "ply"))]
+mod split;
 #[cfg(any(feature = "obj", feature = "ply", feature = "off"))]
 mod text;
 

@@ -38,6 +38,8 @@ pub struct Model {
     pub uvs: Option<Vec<[DVec2; 3]>>,
     /// A normal for each vertex; zero where there is none.
     pub normals: Option<Vec<DVec3>>,
+    /// A normal for each corner of each face, which may differ at a crease; they go before those of the vertices.
+    pub corner_normals: Option<Vec<[DVec3; 3]>>,
     /// What all faces are made of.
     pub material: Material,
     /// What a reader had to leave out of a file that contradicts itself, in words for people; no writer writes it.
@@ -55,6 +57,11 @@ pub struct Material {
     pub normal: Option<EncodedImage>,
     /// Roughness in green and metalness in blue.
     pub metallic_roughness: Option<EncodedImage>,
+    /// Whether textures may be shown by the coarser levels of a mipmap; true by default. Where pieces of a texture lie close
+    /// to each other, those mix pieces that are far apart on the mesh.
+    pub mipmaps: bool,
+    /// Whether the back of a face is seen, too; false by default.
+    pub double_sided: bool,
 }
 
 /// The bytes of an image file. They are not decoded; only their first ones are looked at.
@@ -75,6 +82,21 @@ pub enum ImageFormat {
 }
 
 impl Model {
+    /// The normals of the corners of all faces, or else those of their vertices; nothing if there are neither.
+    #[must_use]
+    pub fn normals_of_corners(&self) -> Option<Vec<[DVec3; 3]>> {
+        if self.corner_normals.is_some() {
+            return self.corner_normals.clone();
+        }
+        let normals = self.normals.as_ref()?;
+        let faces = self.mesh.faces().iter();
+        Some(
+            faces
+                .map(|face| face.map(|vertex| normals[vertex.index()]))
+                .collect(),
+        )
+    }
+
     /// Whether the columns have the lengths of the mesh and only numbers that a file can hold.
     ///
     /// # Errors
@@ -92,6 +114,12 @@ impl Model {
         if let Some(normals) = &self.normals {
             check_count("normals", normals.len(), vertices, "one for each vertex")?;
             for part in normals.iter().flat_map(DVec3::to_array) {
+                check_part("part of a normal", part)?;
+            }
+        }
+        if let Some(normals) = &self.corner_normals {
+            check_count("faces with normals", normals.len(), faces, "all")?;
+            for part in normals.iter().flatten().flat_map(DVec3::to_array) {
                 check_part("part of a normal", part)?;
             }
         }
@@ -122,6 +150,8 @@ impl Default for Material {
             base_color: None,
             normal: None,
             metallic_roughness: None,
+            mipmaps: true,
+            double_sided: false,
         }
     }
 }
@@ -227,7 +257,10 @@ mod tests {
     fn model_refuses_columns_of_another_length() {
         let plain = Model::from(tetrahedron());
         assert!(plain.check().is_ok(), "no columns");
-        let (mut colors, mut uvs, mut normals) = (plain.clone(), plain.clone(), plain);
+        let (mut colors, mut uvs, mut normals) = (plain.clone(), plain.clone(), plain.clone());
+        let mut corner_normals = plain;
+        corner_normals.corner_normals = Some(vec![[DVec3::X; 3]; 2]);
+        assert_eq!(count(&corner_normals), 2);
         colors.colors = Some(vec![LinearRgba::default(); 3]);
         uvs.uvs = Some(vec![[DVec2::ZERO; 3]; 5]);
         normals.normals = Some(vec![]);
@@ -238,7 +271,8 @@ mod tests {
     fn model_refuses_numbers_that_are_not_finite() {
         let plain = Model::from(tetrahedron());
         for value in [f64::NAN, f64::INFINITY, -1.1e39] {
-            let mut models = [plain.clone(), plain.clone(), plain.clone(), plain.clone()];
+            let mut models = [(); 5].map(|()| plain.clone());
+            models[4].corner_normals = Some(vec![[DVec3::new(value, 0.0, 0.0); 3]; 4]);
             let gray = LinearRgba::opaque(LinearRgb::gray(value as f32));
             models[0].colors = Some(vec![gray; 4]);
             models[1].uvs = Some(vec![[DVec2::new(0.0, value); 3]; 4]);

@@ -33,6 +33,9 @@ pub struct MeshReport {
     pub degenerate_faces: usize,
     /// Faces with the same three vertices, in any order, as an earlier one.
     pub duplicate_faces: usize,
+    /// Faces at the same three positions as an earlier one that go around the other side: both sides of a sheet. Others
+    /// at the same positions do not count.
+    pub back_to_back_faces: usize,
     /// Vertices at the same position as an earlier one.
     pub duplicate_vertices: usize,
     /// Vertices that no face names.
@@ -59,6 +62,7 @@ impl Mesh {
 
     /// The report, and which faces are neighbors, also across edges where windings differ.
     pub(crate) fn report_and_adjacency(&self) -> (MeshReport, Adjacency) {
+        let first_at_position = self.first_at_position();
         let mut report = MeshReport {
             vertices: self.positions().len(),
             faces: self.faces().len(),
@@ -70,9 +74,10 @@ impl Mesh {
                 .windows(2)
                 .filter(|pair| pair[0].0 == pair[1].0)
                 .count(),
+            back_to_back_faces: self.back_to_back_faces(&first_at_position),
             duplicate_vertices: (0..)
-                .zip(self.first_at_position())
-                .filter(|(vertex, first)| vertex != first)
+                .zip(&first_at_position)
+                .filter(|(vertex, first)| vertex != *first)
                 .count(),
             ..MeshReport::default()
         };
@@ -95,6 +100,30 @@ impl Mesh {
         let mut faces: Vec<_> = corners.zip((0..).map(FaceIdx)).collect();
         faces.sort_unstable();
         faces
+    }
+
+    /// Counts the faces that go around the other side than the first one at the same positions.
+    fn back_to_back_faces(&self, first_at_position: &[u32]) -> usize {
+        let mut faces = Vec::with_capacity(self.faces().len());
+        for (face, &corners) in (0..).map(FaceIdx).zip(self.faces()) {
+            let mut corners = corners.map(|vertex| VertexIdx(first_at_position[vertex.index()]));
+            if names_twice(corners) {
+                continue;
+            }
+            // From the lowest on, the order of the other two says which side the face goes around.
+            while corners[0] > corners[1].min(corners[2]) {
+                corners.rotate_left(1);
+            }
+            let turned = corners[1] > corners[2];
+            corners.sort_unstable();
+            faces.push((corners, face, turned));
+        }
+        faces.sort_unstable();
+        let others = |same: &[([VertexIdx; 3], FaceIdx, bool)]| {
+            let first = same[0].2;
+            same.iter().filter(|face| face.2 != first).count()
+        };
+        faces.chunk_by(|a, b| a.0 == b.0).map(others).sum()
     }
 
     /// For each vertex the first one at the same position.

@@ -11,7 +11,7 @@ mod own_uvs;
 mod tangents;
 mod tiles;
 
-pub(crate) use tangents::Tangents;
+pub(crate) use tangents::{Tangents, mixed};
 
 use crate::{SynthError, SynthErrorKind};
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
@@ -24,13 +24,9 @@ pub struct Atlas {
     faces: Raster<u32>,
     /// The corners of every face, in texels; NaN for a face without a place.
     corners: Vec<[DVec2; 3]>,
+    /// Whether every level of a mipmap can be shown: in a layout of tiles, the coarse ones mix them.
+    mipmaps: bool,
 }
-
-/// The texels around a face that continue it, so that reading between texels does not mix in other faces.
-///
-/// 1 is enough for bilinear reading of the finest level; every coarser level of a mipmap doubles it, for which there is
-/// [`Atlas::uniform_padded`].
-pub const PADDING: u32 = 1;
 
 /// The most padding of tiles.
 const PADDING_MAX: u32 = 1 << 10;
@@ -41,12 +37,15 @@ const NONE: u32 = u32::MAX;
 impl Atlas {
     /// Right triangles of one size, two in a square tile, as in the paper. `side` is that of the square map in texels.
     ///
+    /// Texels around a triangle continue it, so that reading between texels mixes in no other face. This padding is the
+    /// largest power of two that is at most a 16th of a tile's side, and at least 1.
+    ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`] if a tile would have fewer texels than [`padding`](PADDING) needs, saying the side that is
-    /// needed, or if the map is larger than 2^14.
+    /// [`SynthErrorKind::Range`] if a tile would have fewer texels than padding needs, saying the side that is needed, or if
+    /// the map is larger than 2^14.
     pub fn uniform(surface: &Surface, side: u32) -> Result<Self, SynthError> {
-        tiles::uniform(surface, side, PADDING)
+        tiles::uniform(surface, side, tiles::padding(surface, side))
     }
 
     /// As [`uniform`](Self::uniform), with a padding of the caller's, from 1 to 1024.
@@ -62,13 +61,13 @@ impl Atlas {
     }
 
     /// Right triangles in tiles whose sides are powers of two and follow the areas of the faces, so that texels are of
-    /// about one size on the surface.
+    /// about one size on the surface. The padding is that of [`uniform`](Self::uniform).
     ///
     /// # Errors
     ///
     /// As [`uniform`](Self::uniform).
     pub fn by_area(surface: &Surface, side: u32) -> Result<Self, SynthError> {
-        tiles::by_area(surface, side, PADDING)
+        tiles::by_area(surface, side, tiles::padding(surface, side))
     }
 
     /// As [`by_area`](Self::by_area), with a padding of the caller's, as in [`uniform_padded`](Self::uniform_padded).
@@ -83,7 +82,8 @@ impl Atlas {
     /// The caller's own layout: uv of the three corners of every face, v down. Whole turns are taken off, so that a face may
     /// lie in any unit square, but not across two of them; what lies outside is not shown.
     ///
-    /// Where faces overlap, the one with the lower index is shown. `padding` texels around what is covered are filled, too.
+    /// Where faces overlap, the one with the lower index is shown. `padding` texels around what is covered are filled, too;
+    /// with as many as the map has, all are, and no level of a mipmap mixes in texels without a face.
     ///
     /// # Errors
     ///
@@ -109,6 +109,12 @@ impl Atlas {
         let size = self.faces.size().map(f64::from);
         let uv = |corner: DVec2| corner / DVec2::from(size);
         self.corners.iter().map(|face| face.map(uv)).collect()
+    }
+
+    /// Whether every level of a mipmap can be shown. Not in a layout of tiles: past a level that the padding allows, texels
+    /// mix faces that are far apart on the surface, and no padding is wide enough for the coarsest levels.
+    pub(crate) fn mipmaps(&self) -> bool {
+        self.mipmaps
     }
 
     /// The part of the texels that show a face, padding included: 0 to 1.

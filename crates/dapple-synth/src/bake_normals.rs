@@ -4,13 +4,15 @@
 //! directions P, O (which is down) and n of the site that copies it. Between sites the vectors along the surface are
 //! mixed in space, not their parts: near a singularity of the field, where frames turn fast, parts would not fit together.
 //!
-//! A texel's frame is that of glTF 2.0: N is the normal of the smooth surface (the mixed normals of the vertices), T the
+//! A texel's frame is that of glTF 2.0: N is the normal that the mesh is shaded by (those of the corners, mixed), T the
 //! tangent along +u at a right angle to it, and B = ± N × T points to the top of the map, with the sign that says whether
-//! the face is mirrored there. T is what programs work out when a file has no tangents.
+//! the face is mirrored there. T is what programs work out when a file has no tangents. Sites have the normals of the
+//! smooth surface; where the mesh is shaded by another, as beside a crease, vectors along the surface turn with it.
 //!
 //! Reference: Morten S. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", master's thesis, University of Copenhagen, 2008.
 
-use crate::atlas::Tangents;
+use crate::atlas::{self, Tangents};
+use crate::display::check_shading;
 use crate::maps::{check_column, check_finite};
 use crate::{Atlas, SynthError, Synthesizer, bake};
 use dapple_color::{Normal, NormalY};
@@ -20,24 +22,26 @@ use glam::DVec3;
 /// Bakes a normal for each finest site, as [`SurfaceTexture::transfer`](crate::SurfaceTexture::transfer) copies them from
 /// a normal map of the exemplar.
 ///
-/// `y` is where green points, in the exemplar and in the result. Texels without a face are flat.
+/// `y` is where green points, in the exemplar and in the result. `shading` has the normals of the corners of all faces by
+/// which the model is shaded, as [`textured_model`](crate::textured_model) takes them. Texels without a face are flat.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) unless there is a normal for each site,
+/// [`SynthErrorKind::Count`](crate::SynthErrorKind::Count) unless there is a normal for each site and for each corner,
 /// [`SynthErrorKind::Range`](crate::SynthErrorKind::Range) if a part of one is not finite.
 ///
 /// # Examples
 ///
 /// ```
 /// use dapple_color::{Normal, NormalY};
-/// use dapple_synth::mesh::{HierarchyOptions, Surface, models};
+/// use dapple_synth::mesh::{CREASE, HierarchyOptions, Surface, models};
 /// use dapple_synth::{Atlas, Synthesizer, bake_normals};
 ///
 /// let sites = HierarchyOptions { n_sites: 500, ..Default::default() };
 /// let ray = Synthesizer::new(Surface::new(models::ray(500)?)?, &[], &sites)?;
 /// let atlas = Atlas::uniform(ray.surface(), 128)?;
-/// let map = bake_normals(&ray, &[Normal::FLAT; 500], NormalY::OpenGl, &atlas)?;
+/// let shading = ray.surface().mesh().corner_normals(CREASE);
+/// let map = bake_normals(&ray, &[Normal::FLAT; 500], NormalY::OpenGl, &atlas, &shading)?;
 /// assert!(map.pixels().iter().all(|&normal| normal == Normal::FLAT));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -46,7 +50,9 @@ pub fn bake_normals(
     normals: &[Normal],
     y: NormalY,
     atlas: &Atlas,
+    shading: &[[DVec3; 3]],
 ) -> Result<Raster<Normal>, SynthError> {
+    check_shading(synthesizer.surface(), shading)?;
     check_column(synthesizer, "normals", normals.len())?;
     for part in normals.iter().flat_map(|normal| normal.to_array()) {
         check_finite("part of a normal", part)?;
@@ -54,19 +60,25 @@ pub fn bake_normals(
     let column = in_space(synthesizer, normals, y);
     let surface = synthesizer.surface();
     let flat = [0.0, 0.0, 0.0, 1.0];
-    let mixed = bake::<4>(surface, synthesizer.hierarchy(), &column, atlas, flat)?;
-    let tangents = Tangents::new(surface, atlas);
+    let values = bake::<4>(surface, synthesizer.hierarchy(), &column, atlas, flat)?;
+    let tangents = Tangents::new(surface, atlas, shading);
     let map = Raster::from_rows(atlas.size(), |row| {
-        let (mixed, tangents) = (&mixed, &tangents);
+        let (values, tangents) = (&values, &tangents);
         (0..atlas.size()[0]).map(move |column| {
-            let Some(point) = atlas.point(surface, [column, row]) else {
+            let texel = [column, row];
+            let (Some(face), Some(point)) = (atlas.face(texel), atlas.point(surface, texel)) else {
                 return Normal::FLAT;
             };
-            let out = surface.normal(point);
-            let frame = tangents.frame(atlas, [column, row], out);
-            let [x, y, z, rest] = mixed.row(row)[column as usize];
+            let out = atlas::mixed(atlas, face, texel, shading[face.index()]);
+            let out = out.normalize_or(surface.face_normal(face));
+            let frame = tangents.frame(atlas, texel, out);
+            let [x, y, z, rest] = values.row(row)[column as usize];
             let along = DVec3::new(x.into(), y.into(), z.into());
-            in_frame(along, rest.into(), frame)
+            in_frame(
+                turned(along, surface.normal(point), out),
+                rest.into(),
+                frame,
+            )
         })
     })?;
     Ok(match y {
@@ -90,6 +102,16 @@ fn in_space(synthesizer: &Synthesizer, normals: &[Normal], y: NormalY) -> Vec<f3
         [x, y, z, normal.z]
     };
     normals.iter().zip(outs).zip(downs).flat_map(site).collect()
+}
+
+/// A vector turned as the shortest way turns one unit vector to another.
+fn turned(vector: DVec3, from: DVec3, to: DVec3) -> DVec3 {
+    let (sum, cos) = (from + to, from.dot(to));
+    if cos <= -1.0 + 1e-9 {
+        // All ways are equally short.
+        return vector;
+    }
+    vector - sum * (sum.dot(vector) / (1.0 + cos)) + to * (2.0 * from.dot(vector))
 }
 
 /// The unit normal with a part along the surface, seen in a frame of a tangent and a bitangent, and a part out of it.

@@ -8,7 +8,7 @@ use crate::maps::check_column;
 use crate::{Atlas, SynthError, SynthErrorKind, Synthesizer};
 use dapple_color::LinearRgba;
 use dapple_mesh::{EncodedImage, Mesh, Model, Surface};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// The first display: the triangles of the finest sites, with a color for each.
 ///
@@ -55,19 +55,21 @@ pub fn point_model(
 
 /// The second display: the input mesh with a texture map, of which `base_color` is the file, in the layout of an atlas.
 ///
-/// Every corner of every face has a texture coordinate of its own, and every vertex a normal. More maps go into the
-/// model's [`material`](Model::material). Faces that have no place in the map show its first corner.
+/// Every corner of every face has a texture coordinate of its own, and the normal of `shading`: those of its file, or of
+/// [`Mesh::corner_normals`]. More maps go into the model's [`material`](Model::material). Faces that have no place in the
+/// map show its first corner. Textures are shown without mipmaps in layouts of tiles, whose coarse levels mix faces that
+/// are far apart, and with them in the caller's own.
 ///
 /// # Errors
 ///
-/// [`SynthErrorKind::Count`] if the atlas was made for another number of faces.
+/// [`SynthErrorKind::Count`] if the atlas or the normals are for another number of faces.
 ///
 /// # Examples
 ///
 /// ```
 /// use dapple_color::LinearRgb;
 /// use dapple_image::{Transfer, encode_png};
-/// use dapple_synth::mesh::{EncodedImage, HierarchyOptions, Surface, io::gltf, models};
+/// use dapple_synth::mesh::{CREASE, EncodedImage, HierarchyOptions, Surface, io::gltf, models};
 /// use dapple_synth::{Atlas, Synthesizer, bake_colors, textured_model};
 ///
 /// let sites = HierarchyOptions { n_sites: 500, ..Default::default() };
@@ -75,7 +77,8 @@ pub fn point_model(
 /// let atlas = Atlas::uniform(ray.surface(), 128)?;
 /// let map = bake_colors(&ray, &[LinearRgb::gray(0.2); 500], &atlas)?;
 /// let png = encode_png(map.map(|color| color.to_srgb::<u8>()).view(), Transfer::Srgb)?;
-/// let model = textured_model(ray.surface(), &atlas, EncodedImage::new(png)?)?;
+/// let shading = ray.surface().mesh().corner_normals(CREASE);
+/// let model = textured_model(ray.surface(), &atlas, shading, EncodedImage::new(png)?)?;
 /// let glb = gltf::write(&model)?;
 /// assert!(glb.starts_with(b"glTF"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -83,8 +86,10 @@ pub fn point_model(
 pub fn textured_model(
     surface: &Surface,
     atlas: &Atlas,
+    shading: Vec<[DVec3; 3]>,
     base_color: EncodedImage,
 ) -> Result<Model, SynthError> {
+    check_shading(surface, &shading)?;
     let uvs = atlas.uvs();
     if uvs.len() != surface.mesh().faces().len() {
         return Err(SynthError::new(SynthErrorKind::Count {
@@ -96,9 +101,22 @@ pub fn textured_model(
     let placed = |uv: DVec2| if uv.is_finite() { uv } else { DVec2::ZERO };
     let mut model = Model::from(surface.mesh().clone());
     model.uvs = Some(uvs.into_iter().map(|face| face.map(placed)).collect());
-    model.normals = Some(surface.mesh().vertex_normals());
+    model.corner_normals = Some(shading);
     model.material.base_color = Some(base_color);
+    model.material.mipmaps = atlas.mipmaps();
     Ok(model)
+}
+
+/// Refuses normals of the corners of another number of faces.
+pub(crate) fn check_shading(surface: &Surface, shading: &[[DVec3; 3]]) -> Result<(), SynthError> {
+    if shading.len() == surface.mesh().faces().len() {
+        return Ok(());
+    }
+    Err(SynthError::new(SynthErrorKind::Count {
+        what: "faces with normals",
+        count: shading.len(),
+        needed: "as many as the mesh has",
+    }))
 }
 
 /// A model whose vertices are the finest sites.

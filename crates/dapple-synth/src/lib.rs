@@ -129,7 +129,7 @@ mod turns;
 mod usage;
 mod visit;
 
-pub use atlas::{Atlas, PADDING};
+pub use atlas::Atlas;
 pub use bake::bake;
 pub use bake_normals::bake_normals;
 pub use candidates::{Candidates, CoarserCenter};

@@ -11,7 +11,7 @@ mod out;
 
 use dapple::color::LinearRgb;
 use dapple::image::{Depth, Transfer, encode_png, write_color_png};
-use dapple::mesh::{EncodedImage, HierarchyOptions, glam::DVec3, io, models};
+use dapple::mesh::{CREASE, EncodedImage, HierarchyOptions, glam::DVec3, io, models};
 use dapple::preview::{
     Camera, Light, Material, Mesh, Object, Scene, Shape, Supersampling, Surface,
 };
@@ -49,7 +49,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         map.map(|color| color.to_srgb::<u8>()).view(),
         Transfer::Srgb,
     )?;
-    let model = textured_model(zebra.surface(), &atlas, EncodedImage::new(png)?)?;
+    let shading = zebra.surface().mesh().corner_normals(CREASE);
+    let model = textured_model(zebra.surface(), &atlas, shading, EncodedImage::new(png)?)?;
     let path = out::path("12_baked_model.glb")?;
     io::write_model(&path, &model)?;
     out::wrote(&path);

@@ -4,7 +4,7 @@ use super::scene::{self, Model, N_SITES};
 use anyhow::Result;
 use dapple_image::{Transfer, encode_png};
 use dapple_mesh::io::{gltf, obj};
-use dapple_mesh::{EncodedImage, Mesh};
+use dapple_mesh::{CREASE, EncodedImage, Mesh};
 use dapple_synth::{Atlas, Exemplar, Options, bake, textured_model};
 
 /// The side of the texture map.
@@ -30,7 +30,8 @@ pub(super) fn run(model: &Model, exemplar: &Exemplar, options: &Options) -> Resu
     let code = |value: f32| (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
     let codes = map.map(|values| values.map(code));
     let png = encode_png(codes.view(), Transfer::Srgb)?;
-    let model = textured_model(surface, &atlas, EncodedImage::new(png)?)?;
+    let shading = surface.mesh().corner_normals(CREASE);
+    let model = textured_model(surface, &atlas, shading, EncodedImage::new(png)?)?;
     Ok(Written {
         glb: gltf::write(&model)?,
         coverage: atlas.coverage(),

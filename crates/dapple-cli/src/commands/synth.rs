@@ -1,5 +1,6 @@
 //! `dapple synth`: texture from an example, in the plane or on a mesh.
 
+mod corners;
 mod options;
 mod plane;
 mod surface;
@@ -48,7 +49,7 @@ enough; in between they are interpolated.";
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The example. Color is matched in sRGB, gray as it is.
+    /// The example. PNG and JPEG are sRGB, gray or color, and OpenEXR is linear. Color is matched in sRGB, gray as it is.
     #[arg(value_name = "IMAGE")]
     exemplar: PathBuf,
 

@@ -10,6 +10,7 @@ mod bakes;
 mod examples;
 mod files;
 mod interrupt;
+mod meshes;
 mod refusals;
 mod results;
 mod support;

@@ -1,7 +1,7 @@
 //! What comes out is what the libraries make.
 
 use crate::support::{Folder, assert_done, stderr, stdout};
-use dapple::image::{Limits, read_image};
+use dapple::image::{Depth, Limits, decode_image, read_image, write_gray_png};
 use dapple::mesh::io::read_model;
 use dapple::raster::Raster;
 use dapple::tile::{Method, Seamless, SoftCut};
@@ -314,6 +314,37 @@ fn a_covered_mesh_reads_back_with_its_texture() {
     }
     let info = stdout(&folder.run(&["info", "out.glb", "--json"]));
     assert!(info.contains("a texture of normals"), "{info}");
+}
+
+#[test]
+fn a_gray_photograph_keeps_its_codes_on_a_mesh() {
+    let folder = Folder::with_inputs("gray");
+    let squares = Raster::from_fn([32; 2], |x, y| [91, 131][((x / 8 + y / 8) % 2) as usize]);
+    let codes: Raster<u8> = squares.unwrap();
+    let values = codes.map(|&code| f32::from(code) / 255.0);
+    write_gray_png(folder.path("gray.png"), &values, Depth::Eight).unwrap();
+    let arguments = ["synth", "gray.png", "--mesh", "model.obj", "--sites", "600"];
+    for name in ["out.glb", "out.obj", "out.ply"] {
+        assert_done(&folder.run(&[&arguments[..], &["-o", name]].concat()), name);
+        let model = read_model(folder.path(name)).unwrap();
+        let colors = match &model.material.base_color {
+            Some(texture) => {
+                let image = decode_image(texture.bytes(), &Limits::default()).unwrap();
+                image.color().unwrap().pixels().to_vec()
+            }
+            None => model.colors.unwrap().iter().map(|at| at.color).collect(),
+        };
+        let codes = colors.iter().flat_map(|color| color.to_srgb::<u8>());
+        // Between sites, codes are mixed.
+        assert!(
+            codes.clone().all(|code| (91..=131).contains(&code)),
+            "{name}"
+        );
+        let n_codes = codes.clone().count() as f64;
+        let mean = codes.map(f64::from).sum::<f64>() / n_codes;
+        // The squares need not be used equally often.
+        assert!((mean - 111.0).abs() < 5.0, "{name} has a mean of {mean}");
+    }
 }
 
 #[test]

@@ -4,9 +4,9 @@
 //! follow `v x y z`, as many programs write them. Wavefront's v goes up, so that v becomes 1 - v on the way in and out.
 //!
 //! All faces become one mesh, whatever their objects, groups and materials, since a texture is to run across these; the
-//! material is the first that a face has. Of normals, which OBJ gives to corners, those are kept that are the same at
-//! all corners of each vertex; if one vertex has two, as at a crease, the model has none. Texture coordinates and normals
-//! that corners name and that there are not are left out, which [`Model::left_out`] says. Lines, points and free-form
+//! material is the first that a face has. Normals, which OBJ gives to corners, become those of vertices if no vertex has
+//! two, and stay with the corners otherwise; where a corner has none, all are left out. Texture coordinates and normals
+//! that corners name and that there are not are left out, too, which [`Model::left_out`] says. Lines, points and free-form
 //! surfaces are left out. Of a material its `Kd` (linear, and only without a texture, since with one it is seldom
 //! meant), `d`, `map_Kd` and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is left
 //! out.
@@ -253,7 +253,10 @@ impl Draft {
         // The corners name vertices that there are before normals are spread over these.
         let count = self.positions.len();
         let mesh = Mesh::new(core::mem::take(&mut self.positions), &faces)?;
-        let normals = self.vertex_normals(count);
+        let corner_normals = self.corner_normals();
+        let normals = self.vertex_normals(count, corner_normals.as_deref());
+        // Only at creases corners have normals of their own.
+        let corner_normals = corner_normals.filter(|_| normals.is_none());
         if !self.colors.is_empty() {
             self.colors.resize(count, WHITE);
         }
@@ -264,6 +267,7 @@ impl Draft {
             uvs,
             normals,
             left_out,
+            corner_normals,
             ..Model::default()
         };
         model.check()?;
@@ -279,25 +283,35 @@ impl Draft {
         Some(self.faces.iter().map(|face| face.map(uv)).collect())
     }
 
-    /// The normals of the vertices, if each vertex of a face has exactly one; those of a cloud of points in their
-    /// order.
-    fn vertex_normals(&self, count: usize) -> Option<Vec<DVec3>> {
+    /// The normals of the corners of all faces, if each corner has one.
+    fn corner_normals(&self) -> Option<Vec<[DVec3; 3]>> {
+        if self.faces.is_empty() {
+            return None;
+        }
+        let normal = |&[_, _, number]: &Corner| self.normals.get(number as usize).copied();
+        let of_face = |[a, b, c]: &[Corner; 3]| Some([normal(a)?, normal(b)?, normal(c)?]);
+        self.faces.iter().map(of_face).collect()
+    }
+
+    /// The normals of the vertices, if no vertex has two at its corners; those of a cloud of points in their order.
+    fn vertex_normals(
+        &self,
+        count: usize,
+        corner_normals: Option<&[[DVec3; 3]]>,
+    ) -> Option<Vec<DVec3>> {
         if self.faces.is_empty() {
             let whole = count > 0 && self.normals.len() == count;
             return whole.then(|| self.normals.clone());
         }
         let mut normals = vec![None; count];
-        let mut whole = true;
-        for &[vertex, _, number] in self.faces.iter().flatten() {
-            match self.normals.get(number as usize) {
-                None => whole = false,
-                Some(&normal) => {
-                    whole &= *normals[vertex as usize].get_or_insert(normal) == normal;
+        for (face, of_corners) in self.faces.iter().zip(corner_normals?) {
+            for (&[vertex, ..], &normal) in face.iter().zip(of_corners) {
+                if *normals[vertex as usize].get_or_insert(normal) != normal {
+                    return None;
                 }
             }
         }
-        let spread = || normals.into_iter().map(Option::unwrap_or_default).collect();
-        whole.then(spread)
+        Some(normals.into_iter().map(Option::unwrap_or_default).collect())
     }
 }
 

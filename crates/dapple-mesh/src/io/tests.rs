@@ -22,6 +22,46 @@ fn model() -> Model {
     model
 }
 
+/// The same with a normal for each corner, which differ at every edge.
+fn creased() -> Model {
+    let mut model = model();
+    model.normals = None;
+    model.corner_normals = Some(model.mesh.corner_normals(crate::CREASE));
+    model
+}
+
+/// The places of all corners with their normals.
+fn corners(model: &Model) -> Vec<(DVec3, DVec3)> {
+    let normals = model.normals_of_corners().expect("it has normals");
+    let corners = model.mesh.faces().iter().zip(&normals);
+    let corners = corners.flat_map(|(face, normals)| face.iter().zip(normals));
+    let positions = model.mesh.positions();
+    corners
+        .map(|(vertex, &normal)| (positions[vertex.index()], normal))
+        .collect()
+}
+
+#[test]
+fn normals_of_corners_go_through_every_format() {
+    let model = creased();
+    let read = [
+        ("OBJ", obj::read(&obj::write(&model).expect("it is valid"))),
+        ("PLY", ply::read(&ply::write(&model).expect("it is valid"))),
+        (
+            "GLB",
+            gltf::read(&gltf::write(&model).expect("it is valid")),
+        ),
+    ];
+    for (format, read) in read {
+        let read = read.expect("it is valid");
+        assert_eq!(corners(&read), corners(&model), "{format}");
+        assert_eq!(read.uvs, model.uvs, "{format}");
+        // From file to file once more.
+        let again = gltf::read(&gltf::write(&read).expect("it is valid")).expect("it is valid");
+        assert_eq!(corners(&again), corners(&model), "{format} to GLB");
+    }
+}
+
 /// One valid file of each format.
 fn files() -> Vec<Vec<u8>> {
     let mut files = Vec::new();
@@ -30,6 +70,7 @@ fn files() -> Vec<Vec<u8>> {
         [ply::write(&model()), ply::write_text(&model())].map(|file| file.expect("it is valid")),
     );
     files.push(gltf::write(&model()).expect("it is valid"));
+    files.push(obj::write(&creased()).expect("it is valid"));
     files.push(b"STCNOFF # all\n3 1 0\n0 0 0 0 0 1 1 0 0 1 .5 .5\n1 0 0 0 0 1 0 1 0 0 1 1\n0 1 0 0 0 1 255 0 0 255 0 1\n3 0 1 2\n".to_vec());
     files
 }

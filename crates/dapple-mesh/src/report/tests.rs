@@ -87,6 +87,9 @@ fn naive_report(mesh: &Mesh) -> MeshReport {
             .is_none_or(|vector| vector.length() <= 8e-16 * longest * longest);
         report.degenerate_faces += usize::from(directed(corners).is_empty() || flat);
     }
+    report.back_to_back_faces = (0..faces.len())
+        .filter(|&face| is_back_to_back(mesh, face))
+        .count();
     let all: Vec<usize> = (0..faces.len()).collect();
     report.components = count_sets(&all, |one, other| {
         let both = [one.min(other), one.max(other)];
@@ -95,6 +98,22 @@ fn naive_report(mesh: &Mesh) -> MeshReport {
             .any(|&edge| matches!(faces_at(mesh, edge)[..], [f, g] if [f.0, g.0] == both))
     });
     report
+}
+
+/// Whether the first face at the same places as one goes around the other side.
+fn is_back_to_back(mesh: &Mesh, face: usize) -> bool {
+    let at = mesh.positions();
+    let place = |vertex: VertexIdx| at.iter().position(|&other| other == at[vertex.index()]);
+    let places = |face: usize| mesh.faces()[face].map(place);
+    let set = |face: usize| {
+        let mut places = places(face);
+        places.sort();
+        places
+    };
+    let [a, b, c] = places(face);
+    let first = (0..face).find(|&other| set(other) == set(face));
+    let is_other = |first| ![[a, b, c], [b, c, a], [c, a, b]].contains(&places(first));
+    a != b && b != c && c != a && first.is_some_and(is_other)
 }
 
 #[test]
@@ -146,6 +165,7 @@ fn report_counts_every_defect() {
         winding_edges: 2,
         degenerate_faces: 2,
         duplicate_faces: 1,
+        back_to_back_faces: 0,
         duplicate_vertices: 1,
         unused_vertices: 1,
     };
@@ -187,5 +207,22 @@ proptest! {
     #[test]
     fn report_equals_the_naive_count_on_any_soup(mesh in soup()) {
         prop_assert_eq!(mesh.report(), naive_report(&mesh));
+    }
+}
+
+#[test]
+fn both_sides_of_a_sheet_are_back_to_back() {
+    let square = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    // The vertices of the other side are at the same places.
+    let both = [square, square].concat();
+    for (faces, count) in [
+        (&[[0, 1, 2], [0, 2, 3]][..], 0),
+        (&[[0, 1, 2], [0, 2, 3], [2, 1, 0], [3, 2, 0]], 2),
+        (&[[0, 1, 2], [0, 2, 3], [6, 5, 4], [4, 7, 6]], 2),
+        (&[[0, 1, 2], [5, 6, 4], [2, 0, 1]], 0),
+        (&[[0, 1, 2], [2, 1, 4], [1, 2, 0]], 1),
+    ] {
+        let report = mesh(&both, faces).report();
+        assert_eq!(report.back_to_back_faces, count, "{faces:?}");
     }
 }

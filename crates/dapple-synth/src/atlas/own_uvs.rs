@@ -31,14 +31,12 @@ pub(super) fn from_uvs(
     for (face, corners) in (0..).zip(&corners) {
         cover(&mut faces, face, corners);
     }
-    for _ in 0..padding {
-        let wider = spread(&faces);
-        if wider == faces {
-            break;
-        }
-        faces = wider;
-    }
-    Ok(Atlas { faces, corners })
+    spread(&mut faces, padding);
+    Ok(Atlas {
+        faces,
+        corners,
+        mipmaps: true,
+    })
 }
 
 /// The corners in texels, brought into the unit square; NaN for a face without an area or far outside of it.
@@ -79,21 +77,43 @@ fn cover(faces: &mut Raster<u32>, face: u32, corners: &[DVec2; 3]) {
     }
 }
 
-/// Gives every free texel beside a face that face; beside several the one with the lowest index.
-fn spread(faces: &Raster<u32>) -> Raster<u32> {
-    let [width, height] = faces.size();
-    let mut wider = faces.clone();
-    for row in 0..height {
-        for column in 0..width {
-            let texel = &mut wider.pixels_mut()[(row * width + column) as usize];
-            if *texel != NONE {
-                continue;
+/// Gives free texels beside a face that face, ring after ring; beside several the one with the lowest index.
+fn spread(faces: &mut Raster<u32>, padding: u32) {
+    let covered = faces.pixels().iter().enumerate();
+    let mut ring: Vec<usize> = covered
+        .filter_map(|(texel, &face)| (face != NONE).then_some(texel))
+        .collect();
+    let mut next: Vec<(usize, u32)> = Vec::new();
+    for _ in 0..padding {
+        next.clear();
+        for &texel in &ring {
+            let face = faces.pixels()[texel];
+            for near in neighbors(texel, faces.size()) {
+                if faces.pixels()[near] == NONE {
+                    next.push((near, face));
+                }
             }
-            let rows = row.saturating_sub(1)..=(row + 1).min(height - 1);
-            let columns = column.saturating_sub(1) as usize..=(column + 1).min(width - 1) as usize;
-            let near = rows.flat_map(|row| faces.row(row)[columns.clone()].iter().copied());
-            *texel = near.min().unwrap_or(NONE);
         }
+        if next.is_empty() {
+            return;
+        }
+        next.sort_unstable();
+        next.dedup_by_key(|(texel, _)| *texel);
+        for &(texel, face) in &next {
+            faces.pixels_mut()[texel] = face;
+        }
+        ring.clear();
+        ring.extend(next.iter().map(|(texel, _)| texel));
     }
-    wider
+}
+
+/// The texels around one, and itself.
+fn neighbors(texel: usize, size: [u32; 2]) -> impl Iterator<Item = usize> {
+    let [width, height] = size.map(|length| length as usize);
+    let (row, column) = (texel / width, texel % width);
+    let rows = row.saturating_sub(1)..=(row + 1).min(height - 1);
+    rows.flat_map(move |row| {
+        let columns = column.saturating_sub(1)..=(column + 1).min(width - 1);
+        columns.map(move |column| row * width + column)
+    })
 }

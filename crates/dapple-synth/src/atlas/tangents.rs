@@ -17,13 +17,14 @@ pub(crate) struct Tangents {
     is_mirrored: Vec<bool>,
 }
 
-/// What corners have in common that share a tangent: the vertex, the bits of the place in the map, and the handedness.
-type Key = (u32, [u64; 2], bool);
+/// What corners have in common that share a tangent: the vertex, the bits of the place in the map and of the normal, and
+/// the handedness.
+type Key = (u32, [u64; 2], [u64; 3], bool);
 
 impl Tangents {
-    pub(crate) fn new(surface: &Surface, atlas: &Atlas) -> Self {
+    /// The tangents of a mesh that is shaded by these normals of the corners of its faces.
+    pub(crate) fn new(surface: &Surface, atlas: &Atlas, shading: &[[DVec3; 3]]) -> Self {
         let mesh = surface.mesh();
-        let normals = mesh.vertex_normals();
         let mut tangents = Self {
             corners: Vec::with_capacity(mesh.faces().len()),
             is_mirrored: Vec::with_capacity(mesh.faces().len()),
@@ -36,12 +37,14 @@ impl Tangents {
             tangents.corners.push([tangent; 3]);
             tangents.is_mirrored.push(is_mirrored);
             for corner in 0..3 {
-                let vertex = vertices[corner];
-                let flat = flat_part(tangent, normals[vertex.index()]).normalize_or_zero();
+                let normal = shading[face.index()][corner];
+                let flat = flat_part(tangent, normal).normalize_or_zero();
                 // Adding zero makes both zeros the same.
                 let place = (places[corner] + 0.0).to_array().map(f64::to_bits);
+                let normal = (normal + 0.0).to_array().map(f64::to_bits);
                 let share = flat * angle(corners, corner);
-                shares.push(((vertex.0, place, is_mirrored), face, corner, share));
+                let key = (vertices[corner].0, place, normal, is_mirrored);
+                shares.push((key, face, corner, share));
             }
         }
         // Stable, so that sums run in the order of the faces.
@@ -63,19 +66,21 @@ impl Tangents {
             let tangent = normal.any_orthonormal_vector();
             return [tangent, normal.cross(tangent)];
         };
-        let weights = weights(atlas.corners[face.index()], center(texel));
-        let corners = self.corners[face.index()];
-        // In the padding, the tangent of the border goes on.
-        let mixed: DVec3 = corners
-            .iter()
-            .zip(weights)
-            .map(|(&corner, weight)| corner * weight.clamp(0.0, 1.0))
-            .sum();
+        let mixed = mixed(atlas, face, texel, self.corners[face.index()]);
         let tangent = flat_part(mixed, normal).normalize_or(normal.any_orthonormal_vector());
         let up = normal.cross(tangent);
         let is_mirrored = self.is_mirrored[face.index()];
         [tangent, if is_mirrored { -up } else { up }]
     }
+}
+
+/// The mean of vectors at the corners of a face as it is at a texel; in the padding, that of the border goes on.
+pub(crate) fn mixed(atlas: &Atlas, face: FaceIdx, texel: [u32; 2], corners: [DVec3; 3]) -> DVec3 {
+    let weights = weights(atlas.corners[face.index()], center(texel));
+    let parts = corners.iter().zip(weights);
+    parts
+        .map(|(&corner, weight)| corner * weight.clamp(0.0, 1.0))
+        .sum()
 }
 
 /// Where the center of a texel is, in texels.

@@ -1,6 +1,6 @@
 //! Layouts on small meshes.
 
-use super::{Atlas, NONE, PADDING, Tangents, weights};
+use super::{Atlas, NONE, Tangents, weights};
 use crate::SynthErrorKind;
 use crate::shapes::{cap, moved, square};
 use dapple_mesh::{FaceIdx, Mesh, Surface};
@@ -67,8 +67,8 @@ fn uniform_tiles_are_right_triangles_of_one_size_with_the_longest_edge_across() 
         let lengths = |[a, b, c]: [f64; 3]| (a.max(b).max(c), a.min(b).min(c));
         let [a, b, c] = *corners;
         let (long, short) = lengths([a.distance(b), b.distance(c), c.distance(a)]);
-        // Twelve faces in six tiles, three across: 21 texels each, of which the frame takes 4 PADDING + 1.
-        assert_eq!(short, f64::from(21 - 4 * PADDING - 1), "legs of {face:?}");
+        // Twelve faces in six tiles, three across: 21 texels each, of which the frame takes 4 paddings of 1, and 1.
+        assert_eq!(short, f64::from(21 - 4 - 1), "legs of {face:?}");
         assert!(
             (long - short * 2.0_f64.sqrt()).abs() < 1e-9,
             "not right: {face:?}"
@@ -346,7 +346,8 @@ fn tangents_do_not_jump_across_the_edges_of_a_continuous_layout() {
     let mesh = moved(&cap(), |at| at + DVec3::new(0.5, 0.5, 0.0));
     let surface = Surface::new(mesh).unwrap();
     let atlas = Atlas::from_uvs(&surface, &from_above(&surface), [200, 200], 0).unwrap();
-    let tangents = Tangents::new(&surface, &atlas);
+    let smooth = surface.mesh().corner_normals(core::f64::consts::PI);
+    let tangents = Tangents::new(&surface, &atlas, &smooth);
     let mut jumps = 0;
     for row in 0..200 {
         for column in 1..200 {

@@ -36,6 +36,21 @@ impl Frame {
     }
 }
 
+/// The padding of tiles of one size for a map of this side, also where they are of several sizes.
+///
+/// Padding takes about four times itself off the legs of the triangles: this leaves them three quarters of a tile.
+pub(super) fn padding(surface: &Surface, side: u32) -> u32 {
+    let part = side / tiles_across(surface) / 16;
+    part.checked_ilog2().map_or(1, |log| 1 << log.min(10))
+}
+
+/// How many tiles of one size lie side by side.
+fn tiles_across(surface: &Surface) -> u32 {
+    let n_tiles = (surface.mesh().faces().len() as u32).div_ceil(2);
+    let root = n_tiles.isqrt();
+    root + u32::from(root * root < n_tiles)
+}
+
 /// A tile of two faces, or one.
 struct Tile {
     first: [u32; 2],
@@ -47,13 +62,7 @@ pub(super) fn uniform(surface: &Surface, side: u32, padding: u32) -> Result<Atla
     check_side(side)?;
     let frame = Frame::new(padding)?;
     let n_faces = surface.mesh().faces().len() as u32;
-    let n_tiles = n_faces.div_ceil(2);
-    let root = n_tiles.isqrt();
-    let across = if root * root < n_tiles {
-        root + 1
-    } else {
-        root
-    };
+    let (n_tiles, across) = (n_faces.div_ceil(2), tiles_across(surface));
     let tile = side / across / frame.step() * frame.step();
     if tile < frame.tile_min() {
         return Err(too_small(side));
@@ -155,7 +164,11 @@ fn fill(
             }
         }
     }
-    Ok(Atlas { faces, corners })
+    Ok(Atlas {
+        faces,
+        corners,
+        mipmaps: false,
+    })
 }
 
 /// The corner across from the longest edge, where the right angle distorts least; of equal ones the first.

@@ -3,6 +3,7 @@
 use super::*;
 use crate::SynthErrorKind;
 use crate::shapes::{sphere, square, synthesizer};
+use dapple_mesh::{CREASE, Mesh};
 use glam::DVec2;
 
 const N: usize = 400;
@@ -26,6 +27,14 @@ fn plane(angle: f64, mirrored: bool) -> (Synthesizer, Atlas) {
     (plane, atlas)
 }
 
+/// Shading without a crease.
+fn smooth(synthesizer: &Synthesizer) -> Vec<[DVec3; 3]> {
+    synthesizer
+        .surface()
+        .mesh()
+        .corner_normals(core::f64::consts::PI)
+}
+
 fn assert_all(map: &Raster<Normal>, want: [f64; 3], what: &str) {
     for normal in map.pixels() {
         for (got, want) in normal.to_array().into_iter().zip(want) {
@@ -42,7 +51,14 @@ fn assert_all(map: &Raster<Normal>, want: [f64; 3], what: &str) {
 fn rotated_field_rotates_the_normals() {
     for angle in [0.0, 0.3, 1.5, 3.0, -2.0] {
         let (plane, atlas) = plane(angle, false);
-        let map = bake_normals(&plane, &[TILTED; N], NormalY::OpenGl, &atlas).unwrap();
+        let map = bake_normals(
+            &plane,
+            &[TILTED; N],
+            NormalY::OpenGl,
+            &atlas,
+            &smooth(&plane),
+        )
+        .unwrap();
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
         let (x, y) = (0.48, 0.36);
         // Counterclockwise, as the field.
@@ -54,7 +70,14 @@ fn rotated_field_rotates_the_normals() {
 #[test]
 fn mirrored_layout_mirrors_the_normals() {
     let (plane, atlas) = plane(0.0, true);
-    let map = bake_normals(&plane, &[TILTED; N], NormalY::OpenGl, &atlas).unwrap();
+    let map = bake_normals(
+        &plane,
+        &[TILTED; N],
+        NormalY::OpenGl,
+        &atlas,
+        &smooth(&plane),
+    )
+    .unwrap();
     assert_all(&map, [-0.48, 0.36, 0.8], "mirrored");
 }
 
@@ -65,8 +88,22 @@ fn green_points_down_for_directx() {
         y: -TILTED.y,
         ..TILTED
     };
-    let up = bake_normals(&plane, &[TILTED; N], NormalY::OpenGl, &atlas).unwrap();
-    let down = bake_normals(&plane, &[down; N], NormalY::DirectX, &atlas).unwrap();
+    let up = bake_normals(
+        &plane,
+        &[TILTED; N],
+        NormalY::OpenGl,
+        &atlas,
+        &smooth(&plane),
+    )
+    .unwrap();
+    let down = bake_normals(
+        &plane,
+        &[down; N],
+        NormalY::DirectX,
+        &atlas,
+        &smooth(&plane),
+    )
+    .unwrap();
     for (up, down) in up.pixels().iter().zip(down.pixels()) {
         assert_eq!((up.x, up.y, up.z), (down.x, -down.y, down.z));
     }
@@ -80,7 +117,8 @@ fn flat_normals_stay_flat() {
         Atlas::by_area(sphere.surface(), 300).unwrap(),
     ] {
         for y in [NormalY::OpenGl, NormalY::DirectX] {
-            let map = bake_normals(&sphere, &[Normal::FLAT; N], y, &atlas).unwrap();
+            let map =
+                bake_normals(&sphere, &[Normal::FLAT; N], y, &atlas, &smooth(&sphere)).unwrap();
             assert!(map.pixels().iter().all(|&normal| normal == Normal::FLAT));
         }
     }
@@ -94,7 +132,7 @@ fn normals_cancel_to_flat() {
         y: 0.0,
         z: 0.0,
     }; N];
-    let map = bake_normals(&plane, &inward, NormalY::OpenGl, &atlas).unwrap();
+    let map = bake_normals(&plane, &inward, NormalY::OpenGl, &atlas, &smooth(&plane)).unwrap();
     assert_all(&map, [0.0, 0.0, 1.0], "nothing");
 }
 
@@ -104,7 +142,14 @@ fn decoded_normals_are_the_mixed_vectors_of_the_sites() {
     let sphere = synthesizer(sphere(), N, |at, _| DVec3::Y.cross(at) + DVec3::splat(0.2));
     let surface = sphere.surface();
     let atlas = Atlas::uniform(surface, 300).unwrap();
-    let map = bake_normals(&sphere, &[TILTED; N], NormalY::OpenGl, &atlas).unwrap();
+    let map = bake_normals(
+        &sphere,
+        &[TILTED; N],
+        NormalY::OpenGl,
+        &atlas,
+        &smooth(&sphere),
+    )
+    .unwrap();
     let (sites, downs) = (sphere.hierarchy().sites(), sphere.orientation().vectors());
     let along: Vec<DVec3> = sites
         .normals()
@@ -149,16 +194,75 @@ fn decoded_normals_are_the_mixed_vectors_of_the_sites() {
 }
 
 #[test]
+fn normals_keep_their_tilt_where_the_mesh_is_shaded_flat() {
+    let roof = Mesh::new(
+        vec![
+            DVec3::ZERO,
+            DVec3::new(2.0, 0.0, 0.0),
+            DVec3::new(2.0, 1.0, 1.0),
+            DVec3::new(0.0, 1.0, 1.0),
+            DVec3::new(2.0, 2.0, 0.0),
+            DVec3::new(0.0, 2.0, 0.0),
+        ],
+        &[[0, 1, 2], [0, 2, 3], [3, 2, 4], [3, 4, 5]],
+    )
+    .unwrap();
+    // Down of the example is along the ridge, which lies on both sides.
+    let roof = synthesizer(roof, N, |_, _| DVec3::X);
+    let flat = roof.surface().mesh().corner_normals(CREASE);
+    let atlas = Atlas::uniform(roof.surface(), 128).unwrap();
+    let map = bake_normals(&roof, &[TILTED; N], NormalY::OpenGl, &atlas, &flat).unwrap();
+    let mut shown = 0;
+    for row in 0..128 {
+        for column in 0..128 {
+            let texel = [column, row];
+            let Some(point) = atlas.point(roof.surface(), texel) else {
+                continue;
+            };
+            // Nearer to the ridge than sites reach, the vectors of both sides are mixed.
+            let from_ridge = 1.0 - roof.surface().position(point).z;
+            if from_ridge > 0.25 {
+                shown += 1;
+                let z = map.row(row)[column as usize].z;
+                // Sites near the ridge have normals between those of both sides.
+                assert!((z - TILTED.z).abs() < 0.02, "{z} at {texel:?}");
+            }
+        }
+    }
+    assert!(shown > 5000, "only {shown} texels");
+}
+
+#[test]
 fn bad_normals_are_refused() {
     let (plane, atlas) = plane(0.0, false);
-    let error = bake_normals(&plane, &[TILTED; N + 1], NormalY::OpenGl, &atlas).unwrap_err();
+    let error = bake_normals(
+        &plane,
+        &[TILTED; N + 1],
+        NormalY::OpenGl,
+        &atlas,
+        &smooth(&plane),
+    )
+    .unwrap_err();
     assert!(
         matches!(error.kind(), SynthErrorKind::Count { count: 401, .. }),
         "{error}"
     );
+    let normals = [TILTED; N];
+    let error = bake_normals(&plane, &normals, NormalY::OpenGl, &atlas, &[]).unwrap_err();
+    assert!(
+        matches!(error.kind(), SynthErrorKind::Count { count: 0, .. }),
+        "{error}"
+    );
     for bad in [f32::NAN, f32::INFINITY] {
         let normal = Normal { y: bad, ..TILTED };
-        let error = bake_normals(&plane, &[normal; N], NormalY::OpenGl, &atlas).unwrap_err();
+        let error = bake_normals(
+            &plane,
+            &[normal; N],
+            NormalY::OpenGl,
+            &atlas,
+            &smooth(&plane),
+        )
+        .unwrap_err();
         assert!(
             matches!(error.kind(), SynthErrorKind::Range { .. }),
             "{error}"
@@ -169,7 +273,14 @@ fn bad_normals_are_refused() {
 #[test]
 fn value_stability_bake_normals() {
     let (plane, atlas) = plane(0.3, false);
-    let map = bake_normals(&plane, &[TILTED; N], NormalY::OpenGl, &atlas).unwrap();
+    let map = bake_normals(
+        &plane,
+        &[TILTED; N],
+        NormalY::OpenGl,
+        &atlas,
+        &smooth(&plane),
+    )
+    .unwrap();
     let bits = map.row(7)[9].to_array().map(f32::to_bits);
     assert_eq!(bits, [1_052_004_398, 1_056_487_156, 1_061_997_773]);
 }
@@ -179,7 +290,16 @@ fn value_stability_bake_normals() {
 fn normals_have_the_same_bits_on_any_number_of_threads() {
     let sphere = synthesizer(sphere(), N, |_, _| DVec3::NEG_Y);
     let atlas = Atlas::uniform(sphere.surface(), 200).unwrap();
-    let bake = || bake_normals(&sphere, &[TILTED; N], NormalY::OpenGl, &atlas).unwrap();
+    let bake = || {
+        bake_normals(
+            &sphere,
+            &[TILTED; N],
+            NormalY::OpenGl,
+            &atlas,
+            &smooth(&sphere),
+        )
+        .unwrap()
+    };
     let [one, two, seven] = crate::shapes::on_threads(bake);
     assert_eq!(one, two, "2 threads");
     assert_eq!(one, seven, "7 threads");

@@ -2,13 +2,19 @@
 
 use super::*;
 use crate::shapes::{sphere, square, synthesizer};
-use crate::{bake_colors, displaced_sites};
+use crate::{bake_colors, bake_values, displaced_sites};
 use dapple_color::LinearRgb;
 use dapple_image::{Transfer, encode_png};
 use dapple_mesh::io::gltf;
+use dapple_raster::Raster;
 use glam::DVec3;
 
 const N: usize = 300;
+
+/// Shading without a crease.
+fn smooth(surface: &Surface) -> Vec<[DVec3; 3]> {
+    surface.mesh().corner_normals(core::f64::consts::PI)
+}
 
 fn png() -> EncodedImage {
     EncodedImage::new(b"\x89PNG\r\n\x1a\n and more".to_vec()).unwrap()
@@ -52,7 +58,13 @@ fn textured_model_comes_back_from_its_file() {
     let map = bake_colors(&sphere, &[LinearRgb::new(1.0, 0.5, 0.0); N], &atlas).unwrap();
     let codes = map.map(|color| color.to_srgb::<u8>());
     let png = EncodedImage::new(encode_png(codes.view(), Transfer::Srgb).unwrap()).unwrap();
-    let model = textured_model(sphere.surface(), &atlas, png.clone()).unwrap();
+    let model = textured_model(
+        sphere.surface(),
+        &atlas,
+        smooth(sphere.surface()),
+        png.clone(),
+    )
+    .unwrap();
     model.check().unwrap();
     let read = gltf::read(&gltf::write(&model).unwrap()).unwrap();
     assert_eq!(read.material.base_color, Some(png));
@@ -70,7 +82,7 @@ fn faces_without_a_place_have_texture_coordinates_all_the_same() {
     let plane = synthesizer(square(), N, |_, _| DVec3::NEG_Y);
     let nowhere = vec![[DVec2::NAN; 3]; plane.surface().mesh().faces().len()];
     let atlas = Atlas::from_uvs(plane.surface(), &nowhere, [8, 8], 1).unwrap();
-    let model = textured_model(plane.surface(), &atlas, png()).unwrap();
+    let model = textured_model(plane.surface(), &atlas, smooth(plane.surface()), png()).unwrap();
     model.check().unwrap();
     assert_eq!(model.uvs.unwrap()[3], [DVec2::ZERO; 3]);
 }
@@ -80,9 +92,104 @@ fn atlas_of_another_mesh_is_refused() {
     let plane = synthesizer(square(), N, |_, _| DVec3::NEG_Y);
     let other = synthesizer(sphere(), N, |_, _| DVec3::NEG_Y);
     let atlas = Atlas::uniform(other.surface(), 256).unwrap();
-    let error = textured_model(plane.surface(), &atlas, png()).unwrap_err();
+    let shading = smooth(plane.surface());
+    let error = textured_model(plane.surface(), &atlas, shading, png()).unwrap_err();
     assert!(
         matches!(error.kind(), SynthErrorKind::Count { .. }),
         "{error}"
     );
+}
+
+/// The level of a mipmap after one of it: each texel is the mean of 2 x 2.
+fn halved(level: &Raster<f32>) -> Raster<f32> {
+    let size = level.size().map(|length| length / 2);
+    let mean = |column: u32, row: u32| {
+        let pair = |row: u32| &level.row(row)[2 * column as usize..][..2];
+        let (above, below) = (pair(2 * row), pair(2 * row + 1));
+        (above[0] + above[1] + below[0] + below[1]) / 4.0
+    };
+    Raster::from_fn(size, mean).unwrap()
+}
+
+/// What is between the texels of a level that repeats.
+fn bilinear(level: &Raster<f32>, uv: DVec2) -> f64 {
+    let side = f64::from(level.width());
+    let at = uv * side - 0.5;
+    let (first, part) = (at.floor(), at - at.floor());
+    let texel = |right: f64, down: f64| {
+        let [column, row] = [first.x + right, first.y + down].map(|at| at.rem_euclid(side) as u32);
+        f64::from(level.row(row)[column as usize])
+    };
+    let mix = |a: f64, b: f64, part: f64| a + (b - a) * part;
+    mix(
+        mix(texel(0.0, 0.0), texel(1.0, 0.0), part.x),
+        mix(texel(0.0, 1.0), texel(1.0, 1.0), part.x),
+        part.y,
+    )
+}
+
+/// The unit square is shown by levels of a mipmap as by its map itself. Its values rise by 1 over its side, along which the
+/// map has `texels`.
+fn assert_shown(atlas: &Atlas, n_levels: u32, texels: f64) {
+    let plane = synthesizer(square(), N, |_, _| DVec3::NEG_Y);
+    let sites = plane.hierarchy().sites().positions().iter();
+    let values: Vec<f32> = sites.map(|at| at.x as f32).collect();
+    let map = bake_values(&plane, &values, atlas).unwrap();
+    let mut level = map.clone();
+    for number in 0..n_levels {
+        let texel = f64::from(1 << number) / texels;
+        for [a, b, c] in atlas.uvs() {
+            for step in 0..45_u32 {
+                let [to_b, to_c] = [step % 9, step / 9].map(|step| f64::from(step) / 8.0);
+                let uv = a + (b - a) * to_b * (1.0 - to_c) + (c - a) * to_c;
+                let (shown, baked) = (bilinear(&level, uv), bilinear(&map, uv));
+                // Two texels of the level are mixed; between sites values may rise faster than by 1.
+                let off = (shown - baked).abs();
+                assert!(
+                    off < 3.0 * texel,
+                    "level {number} at {uv}: {shown} for {baked}"
+                );
+            }
+        }
+        if number + 1 < n_levels {
+            level = halved(&level);
+        }
+    }
+}
+
+#[test]
+fn mesh_looks_the_same_at_every_level_that_its_sampler_allows() {
+    let surface = Surface::new(square()).unwrap();
+    let place = |at: DVec3| DVec2::new(0.2 + 0.6 * at.x, 0.8 - 0.6 * at.y);
+    let mesh = surface.mesh();
+    let faces = mesh.faces().iter();
+    let uvs: Vec<[DVec2; 3]> = faces
+        .map(|face| face.map(|vertex| place(mesh.positions()[vertex.index()])))
+        .collect();
+    let own = Atlas::from_uvs(&surface, &uvs, [256; 2], 256).unwrap();
+    for (atlas, texels) in [
+        // Four tiles of 128 texels lie side by side, of which a padding of 8 leaves 95 to a quarter of the square.
+        (Atlas::uniform(&surface, 512).unwrap(), 4.0 * 95.0),
+        (Atlas::by_area(&surface, 512).unwrap(), 4.0 * 95.0),
+        (own, 0.6 * 256.0),
+    ] {
+        let model = textured_model(&surface, &atlas, smooth(&surface), png()).unwrap();
+        let n_levels = match model.material.mipmaps {
+            true => atlas.size()[0].ilog2() + 1,
+            false => 1,
+        };
+        assert_shown(&atlas, n_levels, texels);
+    }
+}
+
+#[test]
+fn padding_by_default_follows_from_the_size_and_the_number_of_faces() {
+    let surface = Surface::new(square()).unwrap();
+    // It doubles with the side, which carries one level more.
+    for (side, n_levels) in [(64, 1), (128, 2), (256, 3), (512, 4), (1024, 5)] {
+        let padding = f64::from(1 << (n_levels - 1));
+        let texels = 4.0 * (f64::from(side) / 4.0 - 4.0 * padding - 1.0);
+        assert_shown(&Atlas::uniform(&surface, side).unwrap(), n_levels, texels);
+        assert_shown(&Atlas::by_area(&surface, side).unwrap(), n_levels, texels);
+    }
 }

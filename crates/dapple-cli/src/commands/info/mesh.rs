@@ -34,6 +34,9 @@ pub(super) fn findings(path: &Path) -> Result<Findings> {
     if let Some([least, most]) = bounds(&model) {
         text += &format!("\n  from {least:.4} to {most:.4}");
     }
+    if report.back_to_back_faces > 0 {
+        text += "\n  dapple synth gives both sides of such faces one texture, in a material with two sides";
+    }
     let columns = columns(&model);
     if !columns.is_empty() {
         text += &format!("\n  with {}", columns.join(", "));
@@ -64,7 +67,7 @@ pub(super) fn findings(path: &Path) -> Result<Findings> {
     })
 }
 
-fn counts(report: &MeshReport) -> [(&'static str, usize); 11] {
+fn counts(report: &MeshReport) -> [(&'static str, usize); 12] {
     [
         ("vertices", report.vertices),
         ("faces", report.faces),
@@ -81,6 +84,7 @@ fn counts(report: &MeshReport) -> [(&'static str, usize); 11] {
         ),
         ("faces without an area", report.degenerate_faces),
         ("faces that are there twice", report.duplicate_faces),
+        ("faces back to back with another", report.back_to_back_faces),
         (
             "vertices at the place of another",
             report.duplicate_vertices,
@@ -103,7 +107,11 @@ fn columns(model: &Model) -> Vec<&'static str> {
     let all = [
         ("colors", model.colors.is_some()),
         ("texture coordinates", model.uvs.is_some()),
-        ("normals", model.normals.is_some()),
+        (
+            "normals",
+            model.normals.is_some() || model.corner_normals.is_some(),
+        ),
+        ("two sides", material.double_sided),
         ("a texture of colors", material.base_color.is_some()),
         ("a texture of normals", material.normal.is_some()),
         (

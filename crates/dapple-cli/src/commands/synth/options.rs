@@ -4,7 +4,7 @@ use crate::args::{Axes, Size};
 use clap::ValueEnum;
 use dapple::hash::Seed;
 use dapple::mesh::HierarchyOptions;
-use dapple::synth::{Axes as FieldAxes, Edges, Options, PADDING};
+use dapple::synth::{Axes as FieldAxes, Edges, Options};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -77,9 +77,15 @@ pub(super) struct SurfaceArgs {
     #[arg(long, value_enum, value_name = "HOW")]
     atlas: Option<AtlasName>,
 
-    /// Pixels around each piece of the texture that continue it, 1 to 1024: 2^k for k mipmap levels; by default 1.
+    /// Pixels around each piece of the texture that continue it, 1 to 1024: 2^k for k mipmap levels. By default up to a
+    /// 16th of the room for two faces, and all that is free with --atlas uv.
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..=1024))]
     padding: Option<u32>,
+
+    /// The angle of an edge, in degrees, above which it is a crease: 0 shades every face flat, 180 everything smooth. By
+    /// default the normals of the mesh, or 30 where it has none.
+    #[arg(long, value_name = "DEGREES", value_parser = angle)]
+    crease: Option<f64>,
 
     /// Which way neighborhoods go on over the surface; by default followed.
     #[arg(long, value_enum, value_name = "HOW")]
@@ -116,6 +122,14 @@ pub(super) struct MatchArgs {
     paper: bool,
 }
 
+/// An angle from 0 to 180 degrees.
+fn angle(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(angle) if (0.0..=180.0).contains(&angle) => Ok(angle),
+        _ => Err(format!("{text:?} is no angle from 0 to 180 degrees")),
+    }
+}
+
 impl PlaneArgs {
     /// An option that was given.
     pub(super) fn given(&self) -> Option<&'static str> {
@@ -142,6 +156,7 @@ impl SurfaceArgs {
             ("texture-size", self.texture_size.is_some()),
             ("atlas", self.atlas.is_some()),
             ("padding", self.padding.is_some()),
+            ("crease", self.crease.is_some()),
             ("axes", self.axes.is_some()),
         ];
         given
@@ -158,8 +173,13 @@ impl SurfaceArgs {
         self.atlas.unwrap_or(AtlasName::Area)
     }
 
-    pub(super) fn padding(&self) -> u32 {
-        self.padding.unwrap_or(PADDING)
+    pub(super) fn padding(&self) -> Option<u32> {
+        self.padding
+    }
+
+    /// The angle of a crease in radians, if there is one.
+    pub(super) fn crease(&self) -> Option<f64> {
+        self.crease.map(f64::to_radians)
     }
 
     /// The sites, in as many levels as are matched.

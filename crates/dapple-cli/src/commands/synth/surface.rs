@@ -1,5 +1,6 @@
 //! Synthesis on a mesh, and the files that it gives.
 
+use super::corners::{own_uvs, shading};
 use super::options::AtlasName;
 use super::{Args, Input, STEPS, advise, shown};
 use crate::encode::{Format, default_format, encode, ramped};
@@ -8,11 +9,11 @@ use crate::input;
 use crate::job::{Context, Job, eprintln_if_possible};
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
-use anyhow::{Context as _, Result, anyhow, bail};
-use dapple::color::{LinearRgb, LinearRgba, NormalY};
+use anyhow::{Context as _, Result, bail};
+use dapple::color::{LinearRgba, NormalY};
 use dapple::mesh::io::{gltf, obj, ply};
 use dapple::mesh::{EncodedImage, Mesh, Model, Repair, Surface};
-use dapple::points::glam::DVec2;
+use dapple::points::glam::DVec3;
 use dapple::synth::{
     Atlas, Direction, SurfaceTexture, Synthesizer, bake_colors, bake_normals, bake_values,
     site_model, textured_model,
@@ -57,6 +58,8 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         Product::Ply => None,
         _ => Some(atlas(args, &surface, &model, &repair)?),
     };
+    let shading = shading(args.surface.crease(), &surface, &model, &repair);
+    let double_sided = model.material.double_sided || repair.before.back_to_back_faces > 0;
     let spinner = Progress::spinner("scattering sites", context.quiet);
     let sites = args.surface.sites(&args.matching);
     let synthesizer = Synthesizer::new(surface, &directions(args)?, &sites).map_err(advise)?;
@@ -74,13 +77,18 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
             synthesizer,
             texture,
             atlas,
+            shading,
+            double_sided,
             input,
         },
         &mut job,
     )?;
     drop(spinner);
     let repaired = repair.before != repair.after;
-    job.finish(args, json!({ "repaired": repaired }))?;
+    job.finish(
+        args,
+        json!({ "repaired": repaired, "double_sided": double_sided }),
+    )?;
     Ok(Exit::Done)
 }
 
@@ -89,6 +97,10 @@ struct Covered {
     synthesizer: Synthesizer,
     texture: SurfaceTexture,
     atlas: Option<Atlas>,
+    /// The normals of the corners of all faces.
+    shading: Vec<[DVec3; 3]>,
+    /// Whether faces are seen from both sides.
+    double_sided: bool,
     input: Input,
 }
 
@@ -108,7 +120,14 @@ impl Covered {
             }
             Map::Normal(raster) => {
                 let normals = texture.transfer(raster)?;
-                Map::Normal(bake_normals(synthesizer, &normals, NormalY::OpenGl, atlas)?)
+                let y = NormalY::OpenGl;
+                Map::Normal(bake_normals(
+                    synthesizer,
+                    &normals,
+                    y,
+                    atlas,
+                    &self.shading,
+                )?)
             }
         })
     }
@@ -120,7 +139,8 @@ impl Covered {
             Map::Color(raster) => self.texture.transfer(raster)?,
             Map::Value(raster) => {
                 let values = self.texture.transfer(raster)?;
-                values.into_iter().map(LinearRgb::gray).collect()
+                let color = |value| self.input.base.color_of(value);
+                values.into_iter().map(color).collect()
             }
             Map::Normal(_) => bail!("normals are no colors"),
         };
@@ -231,7 +251,7 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
 /// The input mesh with its texture. A gray one becomes a color, which is what models have.
 fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
     let base = match base {
-        Map::Value(values) => Map::Color(values.map(|&value| LinearRgb::gray(value))),
+        Map::Value(values) => Map::Color(values.map(|&value| covered.input.base.color_of(value))),
         other => other.clone(),
     };
     let default = default_format(&base, covered.input.base.is_deep);
@@ -239,11 +259,14 @@ fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
     let Some(atlas) = &covered.atlas else {
         bail!("a mesh of sites has no texture");
     };
-    Ok(textured_model(
+    let mut model = textured_model(
         covered.synthesizer.surface(),
         atlas,
+        covered.shading.clone(),
         EncodedImage::new(png)?,
-    )?)
+    )?;
+    model.material.double_sided = covered.double_sided;
+    Ok(model)
 }
 
 fn write_model(claimed: &Claimed, model: &Model, args: &Args, job: &Job<'_>) -> Result<()> {
@@ -270,41 +293,17 @@ fn stem(path: &Path) -> String {
 /// The layout of the texture.
 fn atlas(args: &Args, surface: &Surface, model: &Model, repair: &Repair) -> Result<Atlas> {
     let (side, padding) = (args.surface.side(), args.surface.padding());
-    let atlas = match args.surface.atlas() {
-        AtlasName::Area => Atlas::by_area_padded(surface, side, padding),
-        AtlasName::Uniform => Atlas::uniform_padded(surface, side, padding),
-        AtlasName::Uv => {
+    let atlas = match (args.surface.atlas(), padding) {
+        (AtlasName::Area, None) => Atlas::by_area(surface, side),
+        (AtlasName::Area, Some(padding)) => Atlas::by_area_padded(surface, side, padding),
+        (AtlasName::Uniform, None) => Atlas::uniform(surface, side),
+        (AtlasName::Uniform, Some(padding)) => Atlas::uniform_padded(surface, side, padding),
+        (AtlasName::Uv, padding) => {
             let uvs = own_uvs(surface, model, repair)?;
-            Atlas::from_uvs(surface, &uvs, [side; 2], padding)
+            Atlas::from_uvs(surface, &uvs, [side; 2], padding.unwrap_or(side))
         }
     };
     atlas.map_err(advise)
-}
-
-/// The mesh's own texture coordinates, for the faces that repair has left.
-fn own_uvs(surface: &Surface, model: &Model, repair: &Repair) -> Result<Vec<[DVec2; 3]>> {
-    let Some(uvs) = &model.uvs else {
-        return Err(anyhow!("the mesh has no texture coordinates").hint("take --atlas area"));
-    };
-    let mesh = surface.mesh();
-    let mut own = Vec::with_capacity(mesh.faces().len());
-    for (face, &before) in mesh.faces().iter().zip(&repair.face_before) {
-        let corners_before = model.mesh.corners(before);
-        // Repair may have turned the face, or joined its vertices with others at the same places.
-        let uv = |vertex: dapple::mesh::VertexIdx| {
-            let at = mesh.positions()[vertex.index()];
-            let corner = corners_before.iter().position(|&other| other == at);
-            corner.map(|corner| uvs[before.index()][corner])
-        };
-        let [Some(a), Some(b), Some(c)] = face.map(uv) else {
-            return Err(
-                anyhow!("a face was cut in repair, and its texture coordinates are gone")
-                    .hint("take --atlas area, or repair the mesh before"),
-            );
-        };
-        own.push([a, b, c]);
-    }
-    Ok(own)
 }
 
 /// The directions that the user gave.

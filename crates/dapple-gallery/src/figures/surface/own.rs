@@ -7,7 +7,7 @@ use anyhow::{Result, ensure};
 use dapple_color::LinearRgb;
 use dapple_image::{Transfer, encode_png};
 use dapple_raster::Raster;
-use dapple_synth::mesh::{EncodedImage, HierarchyOptions, Mesh, Model};
+use dapple_synth::mesh::{CREASE, EncodedImage, HierarchyOptions, Mesh, Model};
 use dapple_synth::{Direction, Edges, textured_model};
 use glam::DVec3;
 
@@ -107,6 +107,7 @@ fn model(textured: &Textured) -> Result<Model> {
     Ok(textured_model(
         surface,
         &textured.atlas,
+        surface.mesh().corner_normals(CREASE),
         EncodedImage::new(png)?,
     )?)
 }

@@ -1,5 +1,6 @@
 //! Writing GLB.
 
+use super::super::split::with_vertex_normals;
 use super::container::{BIN, JSON, MAGIC};
 use crate::adjacency::sorted_edges;
 use crate::{EncodedImage, Mesh, MeshError, MeshErrorKind, Model};
@@ -13,8 +14,12 @@ const UNSIGNED_INT: u32 = 5125;
 const ARRAY_BUFFER: u32 = 34962;
 /// The target of a buffer view of indices.
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-/// The minification filter that blends between mipmaps, the magnification filter, and the wrapping.
-const SAMPLER: [u32; 3] = [9987, 9729, 10497];
+/// The filter that blends between texels, for magnification, and for minification without a mipmap.
+const LINEAR: u32 = 9729;
+/// The filter for minification that blends between levels of a mipmap.
+const LINEAR_MIPMAP_LINEAR: u32 = 9987;
+/// The texture goes on past its edges as a tile.
+const REPEAT: u32 = 10497;
 
 /// The largest number that is written, so that rounding leads to none that [`Model::check`] refuses.
 const PART_MAX: f32 = 1e30f32.next_down();
@@ -38,11 +43,13 @@ struct Split {
 
 /// The model as a GLB file.
 ///
-/// Numbers are rounded to `f32`. Vertices keep their numbers; where corners have different texture coordinates, further
-/// vertices follow. Faces have the normals of the model, of unit length, or else those of
+/// Numbers are rounded to `f32`. Vertices keep their numbers; where corners have different texture coordinates or
+/// normals, further vertices follow. Faces have the normals of the model, of unit length, or else those of
 /// [`Mesh::vertex_normals`](crate::Mesh::vertex_normals); +z stands for a zero, which glTF does not have. Colors are
 /// clamped to 0 to 1. Without texture coordinates, textures are left out. The material is rough and not metallic where
-/// no texture says otherwise; it has two sides if the mesh is open, and blends if its base color factor is not opaque.
+/// no texture says otherwise; it has two sides if it says so or the mesh is open, and blends if its base color factor is
+/// not opaque. Samplers of textures that may not be shown by mipmaps have a minification filter without one: how many
+/// levels there are is up to who shows them, and all are asked for by any other.
 /// A model without faces becomes a cloud of points, and one without vertices an empty scene.
 ///
 /// # Errors
@@ -67,10 +74,14 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshError> {
         document["buffers"] = json!([{ "byteLength": bin.bytes.len() }]);
     }
     if !bin.images.is_empty() {
-        let [min_filter, mag_filter, wrap] = SAMPLER;
+        let min_filter = if model.material.mipmaps {
+            LINEAR_MIPMAP_LINEAR
+        } else {
+            LINEAR
+        };
         let texture = |source: usize| json!({ "sampler": 0, "source": source });
         document["textures"] = (0..bin.images.len()).map(texture).collect();
-        document["samplers"] = json!([{ "minFilter": min_filter, "magFilter": mag_filter, "wrapS": wrap, "wrapT": wrap }]);
+        document["samplers"] = json!([{ "minFilter": min_filter, "magFilter": LINEAR, "wrapS": REPEAT, "wrapT": REPEAT }]);
         document["images"] = bin.images.into();
     }
     container(document.to_string().into_bytes(), bin.bytes)
@@ -78,8 +89,9 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshError> {
 
 /// Adds the columns and gives the primitive that names them.
 fn primitive(model: &Model, bin: &mut Bin) -> Value {
+    let model = with_vertex_normals(model);
     let mesh = &model.mesh;
-    let split = Split::new(model);
+    let split = Split::new(&model);
     let spread = |vectors: &[DVec3]| -> Vec<[f32; 3]> {
         let part = |&vertex: &usize| vectors[vertex].to_array().map(narrow);
         split.vertex.iter().map(part).collect()
@@ -143,7 +155,7 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
     if let Some(texture) = texture(&material.normal) {
         value["normalTexture"] = texture;
     }
-    if is_open(&model.mesh) {
+    if material.double_sided || is_open(&model.mesh) {
         value["doubleSided"] = true.into();
     }
     if material.base_color_factor.alpha < 1.0 {

@@ -73,18 +73,23 @@ fn corners_without_a_texture_coordinate_have_zero() {
 }
 
 #[test]
-fn normals_are_kept_only_without_creases() {
+fn normals_stay_with_the_corners_at_creases() {
     let head = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nvn 0 0 1\nvn 1 0 0\nvn 0 0 1\n";
-    let of = |faces: &str| {
-        read(format!("{head}{faces}").as_bytes())
-            .expect("it is valid")
-            .normals
-    };
+    let model = |faces: &str| read(format!("{head}{faces}").as_bytes()).expect("it is valid");
+    let of = |faces: &str| model(faces).normals;
     assert_eq!(
         of("f 1//1 2//2 3//1\nf 3//3 2//2 1//1"),
         Some(vec![DVec3::Z, DVec3::X, DVec3::Z, DVec3::ZERO])
     );
-    assert_eq!(of("f 1//1 2//2 3//1\nf 3//2 2//2 1//1"), None, "a crease");
+    let crease = model("f 1//1 2//2 3//1\nf 3//2 2//2 1//1");
+    assert_eq!(crease.normals, None, "a vertex has two");
+    let corners = vec![
+        [DVec3::Z, DVec3::X, DVec3::Z],
+        [DVec3::X, DVec3::X, DVec3::Z],
+    ];
+    assert_eq!(crease.corner_normals, Some(corners));
+    let again = read(&write(&crease).expect("it is valid")).expect("it is valid");
+    assert_eq!(again, crease, "they are written");
     assert_eq!(of("f 1//1 2 3//1"), None, "a corner without");
     assert_eq!(of(""), None, "four points and three normals");
 }

@@ -97,20 +97,18 @@ fn text(model: &Model, library: Option<&str>) -> Result<String, MeshError> {
         text.push('\n');
     }
     let uv_faces = uvs(model, &mut text);
-    for &normal in model.normals.iter().flatten() {
-        text.push_str("vn");
-        numbers(&mut text, normal);
-        text.push('\n');
-    }
+    let normal_faces = normals(model, &mut text);
     for (i, face) in model.mesh.faces().iter().enumerate() {
         text.push('f');
         for (corner, vertex) in face.iter().enumerate() {
             let v = vertex.index() + 1;
-            let _ = match (uv_faces.get(i), model.normals.is_some()) {
-                (None, false) => write!(text, " {v}"),
-                (None, true) => write!(text, " {v}//{v}"),
-                (Some(uvs), false) => write!(text, " {v}/{}", uvs[corner]),
-                (Some(uvs), true) => write!(text, " {v}/{}/{v}", uvs[corner]),
+            let _ = match (uv_faces.get(i), normal_faces.get(i)) {
+                (None, None) => write!(text, " {v}"),
+                (None, Some(normals)) => write!(text, " {v}//{}", normals[corner]),
+                (Some(uvs), None) => write!(text, " {v}/{}", uvs[corner]),
+                (Some(uvs), Some(normals)) => {
+                    write!(text, " {v}/{}/{}", uvs[corner], normals[corner])
+                }
             };
         }
         text.push('\n');
@@ -129,6 +127,37 @@ fn numbers(text: &mut String, vector: DVec3) {
 fn coded(color: LinearRgb) -> DVec3 {
     let unit = |code: u16| (f64::from(code.to_unit()) * 1e6).round() / 1e6;
     DVec3::from_array(color.to_srgb::<u16>().map(unit))
+}
+
+/// Writes the normals and gives their numbers, from 1, for each corner: those of vertices in their order, or each of the
+/// corners' once.
+fn normals(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
+    let mut line = |normal: DVec3| {
+        text.push_str("vn");
+        numbers(text, normal);
+        text.push('\n');
+    };
+    if let Some(corners) = &model.corner_normals {
+        let mut known = BTreeMap::new();
+        let mut number = |normal: DVec3| {
+            let next = known.len() + 1;
+            *known
+                .entry(normal.to_array().map(f64::to_bits))
+                .or_insert_with(|| {
+                    line(normal);
+                    next
+                })
+        };
+        return corners.iter().map(|face| face.map(&mut number)).collect();
+    }
+    let Some(normals) = &model.normals else {
+        return Vec::new();
+    };
+    normals.iter().copied().for_each(line);
+    let faces = model.mesh.faces().iter();
+    faces
+        .map(|face| face.map(|vertex| vertex.index() + 1))
+        .collect()
 }
 
 /// Writes each texture coordinate once and gives their numbers, from 1, for each corner.

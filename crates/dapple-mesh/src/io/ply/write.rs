@@ -1,5 +1,6 @@
 //! Writing PLY.
 
+use super::super::split::with_vertex_normals;
 use super::super::text::shortest;
 use crate::{MeshError, Model};
 use dapple_color::LinearRgba;
@@ -19,7 +20,8 @@ struct Out {
 ///
 /// Positions, normals and texture coordinates are each written as `float` if that loses nothing for any of them, and
 /// else as `double`, so that all come back bit for bit, but for 1 - v. Colors are 8 bits of sRGB per channel, with
-/// `alpha` if there is one. A model without faces becomes a cloud of points, oriented if it has normals. The material
+/// `alpha` if there is one. Where corners have different normals, further vertices follow, since PLY has normals only for
+/// vertices. A model without faces becomes a cloud of points, oriented if it has normals. The material
 /// is left out.
 ///
 /// # Errors
@@ -40,6 +42,7 @@ pub fn write_text(model: &Model) -> Result<Vec<u8>, MeshError> {
 
 fn encode(model: &Model, line: Option<String>) -> Result<Vec<u8>, MeshError> {
     model.check()?;
+    let model = &*with_vertex_normals(model);
     let positions = model.mesh.positions();
     let wide_vectors = |vectors: &[DVec3]| {
         vectors

@@ -1,0 +1,120 @@
+//! What covered meshes look like: hard edges, and sheets that are seen from both sides.
+
+use crate::support::{Folder, assert_done, stdout};
+use dapple::mesh::io::{read_model, write_model};
+use dapple::mesh::{CREASE, FaceIdx, Mesh, Model};
+use dapple::points::glam::DVec3;
+
+/// The cube from 0 to 1.
+fn cube() -> Mesh {
+    let corner = |bits: u32| {
+        DVec3::new(
+            (bits & 1).into(),
+            (bits >> 1 & 1).into(),
+            (bits >> 2).into(),
+        )
+    };
+    let sides = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let faces = sides.map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).concat();
+    Mesh::new((0..8).map(corner).collect(), &faces).unwrap()
+}
+
+/// Covers `hard.obj` of a folder.
+fn cover(folder: &Folder, extra: &[&str], output: &str) -> Model {
+    let arguments = [
+        "synth",
+        "checker.png",
+        "--mesh",
+        "hard.obj",
+        "--sites",
+        "500",
+    ];
+    let sizes = ["--texture-size", "128", "-o", output];
+    let run = folder.run(&[&arguments[..], &sizes, extra].concat());
+    assert_done(&run, output);
+    read_model(folder.path(output)).unwrap()
+}
+
+/// How far normals of corners are from those of their faces, at most.
+fn most_off(model: &Model) -> f64 {
+    let normals = model.normals_of_corners().unwrap();
+    let faces = (0..).map(FaceIdx).zip(&normals);
+    let off = faces.map(|(face, corners)| {
+        let [a, b, c] = model.mesh.corners(face);
+        let flat = (b - a).cross(c - a).normalize();
+        let off = corners.iter().map(|corner| corner.distance(flat));
+        off.fold(0.0, f64::max)
+    });
+    off.fold(0.0, f64::max)
+}
+
+#[test]
+fn hard_edges_of_a_mesh_stay_hard() {
+    let folder = Folder::with_inputs("hard");
+    write_model(folder.path("hard.obj"), &cube().into()).unwrap();
+    for output in ["out.glb", "out.obj"] {
+        let flat = most_off(&cover(&folder, &[], output));
+        assert!(flat < 1e-6, "{output} is off by {flat}");
+    }
+    let smooth = most_off(&cover(&folder, &["--crease", "100"], "smooth.glb"));
+    assert!(smooth > 0.5, "off by {smooth}");
+
+    // Its own normals go before creases: here the upper side is bent up at its rim.
+    let mut bent = Model::from(cube());
+    let mut normals = bent.mesh.corner_normals(CREASE);
+    let middle = DVec3::new(0.5, 0.5, 0.0);
+    for (face, normals) in bent.mesh.faces().iter().zip(&mut normals) {
+        for (vertex, normal) in face.iter().zip(normals) {
+            if *normal == DVec3::Z {
+                *normal =
+                    (DVec3::Z + 0.5 * (bent.mesh.positions()[vertex.index()] - middle)).normalize();
+            }
+        }
+    }
+    bent.corner_normals = Some(normals.clone());
+    write_model(folder.path("hard.obj"), &bent).unwrap();
+    for output in ["bent.glb", "bent.obj"] {
+        let kept = cover(&folder, &[], output).normals_of_corners().unwrap();
+        for (kept, own) in kept.iter().flatten().zip(normals.iter().flatten()) {
+            // GLB has single precision.
+            assert!(kept.distance(*own) < 1e-6, "{output}: {kept} for {own}");
+        }
+    }
+    let flat = most_off(&cover(&folder, &["--crease", "30"], "flat.glb"));
+    assert!(flat < 1e-6, "off by {flat}");
+}
+
+#[test]
+fn both_sides_of_a_sheet_get_one_texture_and_are_seen() {
+    let folder = Folder::with_inputs("sides");
+    let cube = cube();
+    let corners = cube.faces().iter().map(|face| face.map(|vertex| vertex.0));
+    let outside: Vec<[u32; 3]> = corners.collect();
+    // The inside has vertices of its own.
+    let inside = outside.iter().map(|[a, b, c]| [a + 8, c + 8, b + 8]);
+    let positions = [cube.positions(), cube.positions()].concat();
+    let faces: Vec<[u32; 3]> = outside.iter().copied().chain(inside).collect();
+    let both = Mesh::new(positions, &faces).unwrap();
+    write_model(folder.path("hard.obj"), &both.into()).unwrap();
+    let info = stdout(&folder.run(&["info", "hard.obj"]));
+    assert!(
+        info.contains("12 faces back to back with another"),
+        "{info}"
+    );
+    assert!(info.contains("a material with two sides"), "{info}");
+    let model = cover(&folder, &[], "out.glb");
+    assert_eq!(model.mesh.faces().len(), 12, "one sheet");
+    assert!(model.material.double_sided);
+    let info = stdout(&folder.run(&["info", "out.glb"]));
+    assert!(info.contains("two sides"), "{info}");
+
+    write_model(folder.path("hard.obj"), &cube.into()).unwrap();
+    assert!(!cover(&folder, &[], "closed.glb").material.double_sided);
+}

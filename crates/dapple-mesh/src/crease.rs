@@ -1,0 +1,94 @@
+//! Normals of corners, which are smooth across blunt edges and split at sharp ones.
+//!
+//! Reference: our own; it is what modelling programs call automatic smoothing by an angle.
+
+use crate::adjacency::{Adjacency, FaceEdge};
+use crate::{FaceIdx, Mesh};
+use glam::DVec3;
+
+/// The angle of an edge, in radians, above which it is shaded as a crease where nobody says otherwise: 30 degrees.
+pub const CREASE: f64 = core::f64::consts::FRAC_PI_6;
+
+impl Mesh {
+    /// The unit normals of the corners of all faces, split at creases: edges at which the directions of the two faces
+    /// differ by more than `crease`, in radians.
+    ///
+    /// The corners at a vertex whose faces follow each other without a crease between them have one normal: the sum of
+    /// those of their faces, weighted by area; zero where there is none. Edges of one face, or of three or more, are
+    /// creases, too.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_mesh::{CREASE, Mesh, glam::DVec3};
+    ///
+    /// let roof = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z], &[[0, 1, 2], [0, 2, 3]])?;
+    /// assert_eq!(roof.corner_normals(CREASE), [[DVec3::Z; 3], [DVec3::X; 3]]);
+    /// # Ok::<(), dapple_mesh::MeshError>(())
+    /// ```
+    #[must_use]
+    pub fn corner_normals(&self, crease: f64) -> Vec<[DVec3; 3]> {
+        let cos = libm::cos(crease);
+        // As long as twice the areas.
+        let normals: Vec<DVec3> = (0..self.faces.len() as u32)
+            .map(|face| {
+                let [a, b, c] = self.corners(FaceIdx(face));
+                (b - a).cross(c - a)
+            })
+            .collect();
+        let mut adjacency = Adjacency::new(self);
+        for face in (0..self.faces.len() as u32).map(FaceIdx) {
+            for edge in 0..3 {
+                let from = FaceEdge { face, edge };
+                if let Some(to) = adjacency.across(from) {
+                    let [here, there] = [face, to.face].map(|face| normals[face.index()]);
+                    if here.dot(there) < cos * (here.length() * there.length()) {
+                        adjacency.set(from, None);
+                        adjacency.set(to, None);
+                    }
+                }
+            }
+        }
+        let fans = adjacency.fans(self);
+        let mut sums = vec![DVec3::ZERO; fans.len()];
+        for (corner, &fan) in fans.iter().enumerate() {
+            sums[fan] += normals[corner / 3];
+        }
+        let normal = |&fan: &usize| sums[fan].normalize_or_zero();
+        let corners = fans.chunks_exact(3);
+        corners
+            .map(|corners| [0, 1, 2].map(|corner| normal(&corners[corner])))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_meshes::{cube, plane, tetrahedron};
+
+    #[test]
+    fn corners_of_a_cube_have_the_normals_of_their_sides() {
+        let cube = cube();
+        let flat = cube.corner_normals(CREASE);
+        for (face, corners) in (0..).map(FaceIdx).zip(&flat) {
+            let [a, b, c] = cube.corners(face);
+            let normal = (b - a).cross(c - a).normalize();
+            assert!(corners.iter().all(|&corner| corner == normal), "{face:?}");
+        }
+    }
+
+    #[test]
+    fn corners_have_the_normals_of_vertices_where_no_edge_is_a_crease() {
+        for mesh in [cube(), tetrahedron(), plane(3, 2)] {
+            let normals = mesh.vertex_normals();
+            let smooth = mesh.corner_normals(core::f64::consts::PI);
+            for (face, corners) in mesh.faces().iter().zip(smooth) {
+                for (vertex, corner) in face.iter().zip(corners) {
+                    // Sums of the same vectors in the same order.
+                    assert_eq!(corner, normals[vertex.index()]);
+                }
+            }
+        }
+    }
+}
