@@ -5,8 +5,8 @@ use crate::ground::{Ground, Plain, Rows, Samples, Square};
 use crate::mesh_ground::MeshGround;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::{
-    Axes, Candidates, Edges, Exemplar, Options, Pyramid, Schedule, Shape, SynthErrorKind,
-    Synthesizer, distance_sq,
+    Axes, Candidates, Coherence, Edges, Exemplar, Options, Pyramid, Schedule, Shape,
+    SynthErrorKind, Synthesizer, distance_sq,
 };
 use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
@@ -147,7 +147,7 @@ fn passes_are_those_of_the_pseudo_code() {
         let options = Options {
             n_levels: 2,
             schedule: Some(schedule.clone()),
-            coherence: 0.0,
+            coherence: Coherence::Factor(0.0),
             evenness: 0.0,
             ..Options::default()
         };
@@ -171,7 +171,7 @@ fn texture_has_the_same_bits_on_any_number_of_threads() {
     for (coherence, evenness) in [(0.0, 0.0), (1.0, 0.0), (0.0, 2.0), (1.5, 0.5)] {
         let options = Options {
             n_levels: 2,
-            coherence,
+            coherence: Coherence::Factor(coherence),
             evenness,
             ..Options::default()
         };
@@ -199,7 +199,7 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
     let continued = |coherence: f32| {
         let options = Options {
             n_levels: 2,
-            coherence,
+            coherence: Coherence::Factor(coherence),
             evenness: 0.0,
             ..Options::default()
         };
@@ -304,7 +304,7 @@ fn value_stability_of_a_texture() {
     let pyramid = pyramid(Edges::Wrap, 2);
     let options = Options {
         n_levels: 2,
-        coherence: 0.5,
+        coherence: Coherence::Factor(0.5),
         evenness: 0.0,
         ..Options::default()
     };

@@ -4,7 +4,7 @@ use crate::args::{Axes, Size};
 use clap::ValueEnum;
 use dapple::hash::Seed;
 use dapple::mesh::HierarchyOptions;
-use dapple::synth::{Axes as FieldAxes, Edges, Options, PADDING};
+use dapple::synth::{Axes as FieldAxes, Coherence, Edges, Options, PADDING};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -104,8 +104,8 @@ pub(super) struct MatchArgs {
 
     /// How much worse a match may be that continues what lies beside it, at least 0: higher copies larger pieces; by
     /// default 2, or 0 with --paper.
-    #[arg(long, value_name = "N")]
-    coherence: Option<f32>,
+    #[arg(long, value_name = "auto|N")]
+    coherence: Option<Coherence>,
 
     /// How evenly the example is used, 0 to 1000; by default 1, or 0 with --paper.
     #[arg(long, value_name = "N")]
