@@ -62,7 +62,8 @@
 //!
 //! # What the paper leaves open
 //!
-//! [`Options::paper`] takes every literal choice, the default what turned out better:
+//! [`Options::paper`] takes the paper at its word, and says where even it departs; the default takes what turned out
+//! better:
 //!
 //! * The neighborhood on the coarser level is centered at exactly half of the coordinates ([`CoarserCenter`]). Rounded
 //!   down, four pixels have the same one, and the first of them always wins.

@@ -111,7 +111,23 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Every literal choice of the paper.
+    /// The paper at its word: neighborhoods on the coarser level are centered at rounded coordinates and laid out straight
+    /// on, and the least difference always wins.
+    ///
+    /// What differs from its text all the same, on every surface and with any options:
+    ///
+    /// * Where fewer than 400 neighborhoods of a level lie within an exemplar that does not wrap, those that reach past its
+    ///   edges are compared as well, as if it were mirrored there. The paper compares none of them; of 8 × 8 pixels, which
+    ///   64 × 64 have on the fourth level, ten would be left.
+    /// * In the sweep distance neighbors count less that disagree by about a spacing or more (Cauchy's weights), so that a
+    ///   distance that cannot grow everywhere jumps along few lines. In the paper all count by their edge lengths alone.
+    /// * Directions and the sweep distance are solved for on the coarsest level by conjugate gradients, where the paper
+    ///   repeats equations 4 and 5: the averages that those would settle at, but for the weights.
+    /// * A level of sites begins with the middles of the edges between the sites before it, where the paper scatters random
+    ///   points, and sites push each other with another force than in Turk's paper of 1991 (see
+    ///   [`mesh::nested_points`](crate::mesh::nested_points)).
+    ///
+    /// The documentation of [this crate](crate) lists how it reads what the paper leaves open.
     #[must_use]
     pub fn paper() -> Self {
         Self {

@@ -111,7 +111,7 @@ pub(super) struct MatchArgs {
     #[arg(long, value_name = "N")]
     evenness: Option<f32>,
 
-    /// Take every literal choice of Turk's paper.
+    /// Match as in Turk's paper: the least difference wins, and neighborhoods go straight on.
     #[arg(long)]
     paper: bool,
 }
