@@ -36,6 +36,7 @@ pub(crate) fn run<G: Ground>(
     callback: Callback<'_>,
 ) -> Result<Vec<Vec<u32>>, SynthError> {
     let passes = options.passes()?.passes;
+    let coherence = options.coherence.factor(&pyramid.levels()[0]);
     let mut levels: Vec<Vec<AtomicU32>> = Vec::new();
     levels.resize_with(pyramid.levels().len(), Vec::new);
     let mut kept = Kept::default();
@@ -53,7 +54,7 @@ pub(crate) fn run<G: Ground>(
             levels[pass.level] = first.into_iter().map(AtomicU32::new).collect();
         }
         let keep = side_to_keep(pass, passes.get(index + 1));
-        let visit = Visit::new(ground, pyramid, pass, options)?;
+        let visit = Visit::new(ground, pyramid, pass, options, coherence)?;
         let mut tell = |done| {
             let progress = Progress {
                 pass: index,

@@ -62,12 +62,13 @@
 //!
 //! # What the paper leaves open
 //!
-//! [`Options::paper`] takes every literal choice, the default what turned out better:
+//! [`Options::paper`] takes the paper at its word, and says where even it departs; the default takes what turned out
+//! better:
 //!
 //! * The neighborhood on the coarser level is centered at exactly half of the coordinates ([`CoarserCenter`]). Rounded
 //!   down, four pixels have the same one, and the first of them always wins.
-//! * A match may be worse if it goes on with what a neighbor took ([`Options::coherence`]). The least difference alone
-//!   tends to repeat smooth parts of the exemplar and to blur away structure like bricks.
+//! * A match may be worse if it goes on with what a neighbor took, unless the exemplar is regular ([`Coherence::Auto`]).
+//!   The least difference alone tends to repeat smooth parts of photographs and to blur away their detail.
 //! * Pixels that were used cost more on the coarsest level, and those near an edge of the exemplar are used, too
 //!   ([`Options::evenness`]). The least difference alone leaves out a third of the exemplar and most colors that are rare.
 //! * The rows and columns of a neighborhood turn as the field around its site does ([`Axes`]). Straight on, features that
@@ -119,6 +120,7 @@ mod options;
 mod orientation;
 mod parents;
 mod plane;
+mod regularity;
 #[cfg(test)]
 mod shapes;
 mod solve;
@@ -143,7 +145,7 @@ pub use likeness::Likeness;
 pub use maps::{bake_colors, bake_values};
 pub use matcher::{Match, Matcher, MatcherMemory, distance_sq};
 pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
-pub use options::{Axes, Options};
+pub use options::{Axes, Coherence, Options};
 pub use orientation::{Direction, Orientation};
 pub use plane::{PlaneTexture, synthesize_plane, synthesize_plane_with};
 pub use surface_texture::SurfaceTexture;

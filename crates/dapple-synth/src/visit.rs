@@ -71,12 +71,13 @@ struct State<'a> {
 }
 
 impl<'a, G: Ground> Visit<'a, G> {
-    /// Prepares a pass.
+    /// Prepares a pass, with the coherence as a factor.
     pub(crate) fn new(
         ground: &'a G,
         pyramid: &'a Pyramid,
         pass: &Pass,
         options: &Options,
+        coherence: f32,
     ) -> Result<Self, SynthError> {
         let candidates = Candidates::for_options(pyramid, pass, options)?;
         let exemplar = &pyramid.levels()[pass.level];
@@ -91,8 +92,8 @@ impl<'a, G: Ground> Visit<'a, G> {
             [same, coarser].map(|half| half.map_or(0, |half| half.half)),
         );
         let (coherence, evenness) = match coarser {
-            None => (0.5 * options.coherence, options.evenness),
-            Some(_) => (options.coherence, 0.0),
+            None => (0.5 * coherence, options.evenness),
+            Some(_) => (coherence, 0.0),
         };
         Ok(Self {
             ground,

@@ -7,7 +7,7 @@ use dapple_image::{Limits, read_image};
 use dapple_mesh::models::bunny;
 use dapple_mesh::{HierarchyOptions, Surface};
 use dapple_raster::Raster;
-use dapple_synth::{Direction, Edges, Exemplar, Options, SurfaceTexture, Synthesizer};
+use dapple_synth::{Coherence, Direction, Edges, Exemplar, Options, SurfaceTexture, Synthesizer};
 use glam::DVec3;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -116,7 +116,7 @@ impl Picture {
 pub(super) fn exact(n_levels: usize) -> Options {
     Options {
         n_levels,
-        coherence: 0.0,
+        coherence: Coherence::Factor(0.0),
         evenness: 0.0,
         ..Options::default()
     }

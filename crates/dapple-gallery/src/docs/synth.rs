@@ -7,7 +7,7 @@ use crate::figures::surface::exemplar::{EXEMPLARS, Edges as Ends};
 use anyhow::Context;
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
-use dapple_synth::{Edges, Exemplar, Options, synthesize_plane};
+use dapple_synth::{Coherence, Edges, Exemplar, Options, synthesize_plane};
 
 /// The crate with its strips, in the order of its documentation.
 pub(super) const DOCUMENTED: Documented = Documented {
@@ -50,7 +50,7 @@ const COHERENCE: Strip = Strip {
             .into_iter()
             .map(|(label, coherence)| {
                 let options = Options {
-                    coherence,
+                    coherence: Coherence::Factor(coherence),
                     ..Options::default()
                 };
                 grown(label, &image, &exemplar, SMALL, &options)

@@ -5,8 +5,8 @@ use crate::ground::{Ground, Plain, Rows, Samples, Square};
 use crate::mesh_ground::MeshGround;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::{
-    Axes, Candidates, Edges, Exemplar, Options, Pyramid, Schedule, Shape, SynthErrorKind,
-    Synthesizer, distance_sq,
+    Axes, Candidates, Coherence, Edges, Exemplar, Options, Pyramid, Schedule, Shape,
+    SynthErrorKind, Synthesizer, distance_sq,
 };
 use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
@@ -147,7 +147,7 @@ fn passes_are_those_of_the_pseudo_code() {
         let options = Options {
             n_levels: 2,
             schedule: Some(schedule.clone()),
-            coherence: 0.0,
+            coherence: Coherence::Factor(0.0),
             evenness: 0.0,
             ..Options::default()
         };
@@ -168,7 +168,14 @@ fn texture_has_the_same_bits_on_any_number_of_threads() {
     let case = sphere(3000);
     let ground = case.ground(Axes::Carried);
     let pyramid = pyramid(Edges::Wrap, 2);
-    for (coherence, evenness) in [(0.0, 0.0), (1.0, 0.0), (0.0, 2.0), (1.5, 0.5)] {
+    let [least, one, more] = [0.0, 1.0, 1.5].map(Coherence::Factor);
+    for (coherence, evenness) in [
+        (least, 0.0),
+        (one, 0.0),
+        (least, 2.0),
+        (more, 0.5),
+        (Coherence::Auto, 1.0),
+    ] {
         let options = Options {
             n_levels: 2,
             coherence,
@@ -182,11 +189,11 @@ fn texture_has_the_same_bits_on_any_number_of_threads() {
         });
         assert!(
             textures[0] == textures[1],
-            "2 threads, coherence {coherence}, evenness {evenness}"
+            "2 threads, {coherence:?}, evenness {evenness}"
         );
         assert!(
             textures[0] == textures[2],
-            "7 threads, coherence {coherence}, evenness {evenness}"
+            "7 threads, {coherence:?}, evenness {evenness}"
         );
     }
 }
@@ -199,7 +206,7 @@ fn coherent_texture_has_more_neighbors_that_continue_each_other() {
     let continued = |coherence: f32| {
         let options = Options {
             n_levels: 2,
-            coherence,
+            coherence: Coherence::Factor(coherence),
             evenness: 0.0,
             ..Options::default()
         };
@@ -304,7 +311,7 @@ fn value_stability_of_a_texture() {
     let pyramid = pyramid(Edges::Wrap, 2);
     let options = Options {
         n_levels: 2,
-        coherence: 0.5,
+        coherence: Coherence::Factor(0.5),
         evenness: 0.0,
         ..Options::default()
     };

@@ -3,8 +3,8 @@
 use super::{MAX_PIXELS, PlaneGround, SLANT, synthesize_plane, synthesize_plane_with};
 use crate::ground::Ground;
 use crate::{
-    Candidates, CoarserCenter, Edges, Exemplar, Likeness, Options, Part, Pass, Pyramid, Reads,
-    Schedule, Shape, SynthErrorKind, distance_sq,
+    Candidates, CoarserCenter, Coherence, Edges, Exemplar, Likeness, Options, Part, Pass, Pyramid,
+    Reads, Schedule, Shape, SynthErrorKind, distance_sq,
 };
 use core::ops::ControlFlow;
 use dapple_hash::{Seed, hash1, hash2, unit_f32};
@@ -211,7 +211,7 @@ fn textures_do_not_depend_on_threads() {
     for edges in [[Edges::Wrap; 2], [Edges::Cut; 2]] {
         for (coherence, evenness) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)] {
             let options = Options {
-                coherence,
+                coherence: Coherence::Factor(coherence),
                 evenness,
                 ..Options::default()
             };
@@ -464,7 +464,7 @@ fn bad_options_are_refused() {
     );
     for coherence in [-1.0, f32::NAN, f32::INFINITY] {
         let options = Options {
-            coherence,
+            coherence: Coherence::Factor(coherence),
             ..three.clone()
         };
         assert!(

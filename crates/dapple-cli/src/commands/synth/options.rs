@@ -4,7 +4,7 @@ use crate::args::{Axes, Size};
 use clap::ValueEnum;
 use dapple::hash::Seed;
 use dapple::mesh::HierarchyOptions;
-use dapple::synth::{Axes as FieldAxes, Edges, Options};
+use dapple::synth::{Axes as FieldAxes, Coherence, Edges, Options};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -108,16 +108,16 @@ pub(super) struct MatchArgs {
     #[arg(long, value_name = "N", default_value_t = 3)]
     levels: usize,
 
-    /// How much worse a match may be that continues what lies beside it, at least 0: higher copies larger pieces; by
-    /// default 2, or 0 with --paper.
-    #[arg(long, value_name = "N")]
-    coherence: Option<f32>,
+    /// How much worse a match may be that continues what lies beside it, at least 0: higher copies larger pieces. With auto
+    /// it is 0 for a regular example and 2 for any other; by default auto, or 0 with --paper.
+    #[arg(long, value_name = "auto|N")]
+    coherence: Option<Coherence>,
 
     /// How evenly the example is used, 0 to 1000; by default 1, or 0 with --paper.
     #[arg(long, value_name = "N")]
     evenness: Option<f32>,
 
-    /// Take every literal choice of Turk's paper.
+    /// Match as in Turk's paper: the least difference wins, and neighborhoods go straight on.
     #[arg(long)]
     paper: bool,
 }

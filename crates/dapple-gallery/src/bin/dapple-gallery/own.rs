@@ -8,7 +8,7 @@ use dapple_gallery::{Own, Picture};
 use dapple_image::{Depth, Limits, read_image, write_color_png};
 use dapple_synth::mesh::HierarchyOptions;
 use dapple_synth::mesh::io::{read_model, write_model};
-use dapple_synth::{Direction, Edges, Options};
+use dapple_synth::{Coherence, Direction, Edges, Options};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -39,9 +39,10 @@ pub(crate) struct OwnArguments {
     #[arg(long, value_name = "N", default_value_t = 3, requires = "mesh")]
     levels: usize,
 
-    /// How much worse a match may be that continues its neighbors; 0 as in the paper.
-    #[arg(long, value_name = "K", default_value_t = Options::default().coherence, requires = "mesh")]
-    coherence: f32,
+    /// How much worse a match may be that continues its neighbors; by default auto: 0, as in the paper, for a regular
+    /// exemplar, and 2 for any other.
+    #[arg(long, value_name = "auto|K", requires = "mesh")]
+    coherence: Option<Coherence>,
 }
 
 /// Renders the mesh from four sides and writes it with its texture map.
@@ -64,7 +65,7 @@ pub(crate) fn run(arguments: &OwnArguments, size: u32, out: &Path) -> Result<()>
             n_levels: arguments.levels,
             ..HierarchyOptions::default()
         },
-        coherence: arguments.coherence,
+        coherence: arguments.coherence.unwrap_or(Options::default().coherence),
         map_side: 2048,
     };
     let textured = own.render(size)?;

@@ -88,4 +88,6 @@ pub(crate) const EXEMPLARS: [Exemplar; 9] = [
 ];
 
 #[cfg(test)]
+mod regularity;
+#[cfg(test)]
 mod tests;

@@ -1,5 +1,6 @@
 //! From a few directions to an order: the user's directions, the field that they are interpolated to, and the distance along
-//! the field, whose colors repeat as it grows.
+//! the field, whose colors repeat as it grows. The last two also from behind, where the distance jumps along tears: it cannot
+//! grow all the way around a tube.
 
 use super::stage::lit;
 use super::subject::TORI;
@@ -64,6 +65,14 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         ),
         Panel::color("the field", lit(mesh, &TORI.view, [size; 2], field)?),
         Panel::color("sweep distance", lit(mesh, &TORI.view, [size; 2], sweep)?),
+        Panel::color(
+            "the field from behind",
+            lit(mesh, &TORI.view.from_behind(), [size; 2], field)?,
+        ),
+        Panel::color(
+            "sweep distance from behind",
+            lit(mesh, &TORI.view.from_behind(), [size; 2], sweep)?,
+        ),
     ])
 }
 

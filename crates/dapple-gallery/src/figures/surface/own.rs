@@ -8,7 +8,7 @@ use dapple_color::LinearRgb;
 use dapple_image::{Transfer, encode_png};
 use dapple_raster::Raster;
 use dapple_synth::mesh::{CREASE, EncodedImage, HierarchyOptions, Mesh, Model};
-use dapple_synth::{Direction, Edges, textured_model};
+use dapple_synth::{Coherence, Direction, Edges, textured_model};
 use glam::DVec3;
 
 /// What is to be put on what, and how.
@@ -24,8 +24,8 @@ pub struct Own {
     pub directions: Vec<Direction>,
     /// The points and their levels.
     pub sites: HierarchyOptions,
-    /// See [`dapple_synth::Options::coherence`].
-    pub coherence: f32,
+    /// How much worse a match may be that continues its neighbors.
+    pub coherence: Coherence,
     /// The side of the texture map in texels.
     pub map_side: u32,
 }

@@ -17,6 +17,16 @@ pub(crate) struct View {
     pub(crate) fov: f64,
 }
 
+impl View {
+    /// The far side: from just as far behind the target, below where the eye was above.
+    pub(crate) fn from_behind(self) -> Self {
+        Self {
+            eye: self.target * 2.0 - self.eye,
+            ..self
+        }
+    }
+}
+
 /// A mesh in a plain room, with two lights from above that follow the eye.
 pub(crate) fn lit(
     mesh: &dapple_synth::mesh::Mesh,

@@ -5,7 +5,7 @@ use dapple_color::LinearRgb;
 use dapple_preview::Surface;
 use dapple_raster::{Raster, Wrap};
 use dapple_synth::mesh::{self, HierarchyOptions, Mesh};
-use dapple_synth::{Atlas, Direction, Edges, Exemplar, Options, Synthesizer, bake};
+use dapple_synth::{Atlas, Coherence, Direction, Edges, Exemplar, Options, Synthesizer, bake};
 use glam::DVec2;
 
 /// What is to be made.
@@ -16,7 +16,7 @@ pub(super) struct Job {
     pub(super) edges: Edges,
     pub(super) directions: Vec<Direction>,
     pub(super) sites: HierarchyOptions,
-    pub(super) coherence: f32,
+    pub(super) coherence: Coherence,
     /// The side of the texture map in texels.
     pub(super) map_side: u32,
 }

@@ -1,0 +1,244 @@
+//! How regular an exemplar is: whether what lies around a pixel is found elsewhere in it, too.
+//!
+//! The measure is of this crate. The neighborhoods of some pixels, each without its mean, are compared with all that lie
+//! apart from them. The mean of the least squared distances over the mean of all is near 0 where an exemplar is drawn by a
+//! rule, as hooks, bricks and checkers are, and about a half for grass and sand, where no detail occurs twice. Means are
+//! taken off because clouds would pass for regular: they are alike in what is smooth, and their detail is not.
+//!
+//! A peak of the autocorrelation says less: photographs that were made to tile have one, and wiggly checkers have none.
+
+use crate::{Candidates, CoarserCenter, Edges, Exemplar, Part, Pass, Reads, Shape, distance_sq};
+
+/// The side of the part in the middle of the exemplar that is compared. A side of 128 ranks the exemplars at hand alike, and
+/// takes four times as long.
+const WINDOW: u32 = 64;
+
+/// The side of a neighborhood: that of the finest passes.
+const SIDE: u32 = 7;
+
+/// How far apart two pixels lie along one axis at least to be compared: most of one's neighborhood is then not the other's.
+const APART: u32 = 5;
+
+/// About how many neighborhoods are compared with all others.
+const N_QUERIES: usize = 128;
+
+impl Exemplar {
+    /// How well the surroundings of a pixel are found elsewhere in the exemplar, from 0 (not at all) to 1 (exactly).
+    ///
+    /// It is 1 less a ratio: the squared distance of a neighborhood of 7 × 7 pixels to the nearest one that lies apart from
+    /// it, over that to any one, each neighborhood without its mean. Only the middle 64 × 64 pixels are compared. 0 for an
+    /// exemplar that is too small to have neighborhoods apart from each other.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_raster::Raster;
+    /// use dapple_synth::{Edges, Exemplar};
+    ///
+    /// let stripes = Raster::from_fn([32, 32], |x, _| (x % 8) as f32)?;
+    /// let stripes = Exemplar::from_planes(&[(&stripes, 1.0)], Edges::Wrap)?;
+    /// assert_eq!(stripes.regularity(), 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn regularity(&self) -> f64 {
+        let Some(details) = Details::new(&self.middle(WINDOW)) else {
+            return 0.0;
+        };
+        let n_rows = details.neighborhoods.len();
+        // Odd, so that no pixels in columns or in rows of four, eight and so on are always passed over.
+        let step = (n_rows / N_QUERIES) | 1;
+        let mut nearest = Mean::default();
+        let mut any = Mean::default();
+        for query in (0..n_rows).step_by(step) {
+            let least = details.least_from(query, &mut any);
+            if least.is_finite() {
+                nearest.add(least);
+            }
+        }
+        match (nearest.count > 0.0, any.sum > 0.0) {
+            (true, true) => 1.0 - nearest.get() / any.get(),
+            // All alike.
+            (true, false) => 1.0,
+            (false, _) => 0.0,
+        }
+    }
+
+    /// The part in the middle with sides up to a limit. It is cut if it is less than all.
+    fn middle(&self, side: u32) -> Self {
+        let size = self.size.map(|whole| whole.min(side));
+        let [left, top] = [0, 1].map(|axis| ((self.size[axis] - size[axis]) / 2) as usize);
+        let len = size[0] as usize * self.n_channels;
+        let rows = self
+            .pixels
+            .chunks_exact((self.size[0] as usize * self.n_channels).max(1));
+        let rows = rows.skip(top).take(size[1] as usize);
+        Self {
+            size,
+            n_channels: self.n_channels,
+            edges: if size == self.size {
+                self.edges
+            } else {
+                Edges::Cut
+            },
+            pixels: rows
+                .flat_map(|row| &row[left * self.n_channels..][..len])
+                .copied()
+                .collect(),
+        }
+    }
+}
+
+/// The neighborhoods of an image, each without its mean.
+struct Details {
+    neighborhoods: Candidates,
+    size: [u32; 2],
+    edges: Edges,
+}
+
+impl Details {
+    /// None if the image is smaller than half of a neighborhood.
+    fn new(image: &Exemplar) -> Option<Self> {
+        let pass = Pass {
+            level: 0,
+            parts: vec![Part::new(Shape::Full, SIDE, Reads::Same)],
+        };
+        let pyramid = image.pyramid(1).ok()?;
+        let mut neighborhoods = Candidates::new(&pyramid, &pass, CoarserCenter::Exact).ok()?;
+        let dims = neighborhoods.dims();
+        for row in neighborhoods.rows.chunks_exact_mut(dims) {
+            for channel in 0..image.n_channels {
+                let values = || (channel..dims).step_by(image.n_channels);
+                let sum: f32 = values().map(|at| row[at]).sum();
+                let mean = sum / values().count() as f32;
+                values().for_each(|at| row[at] -= mean);
+            }
+        }
+        Some(Self {
+            neighborhoods,
+            size: image.size,
+            edges: image.edges,
+        })
+    }
+
+    /// The least squared distance to a neighborhood that lies apart, and infinity if there is none; all of them go into a
+    /// mean.
+    fn least_from(&self, query: usize, mean: &mut Mean) -> f32 {
+        let from = self.neighborhoods.pixel(query);
+        let values = self.neighborhoods.row(query);
+        let mut least = f32::INFINITY;
+        for row in 0..self.neighborhoods.len() {
+            if self.lie_apart(from, self.neighborhoods.pixel(row)) {
+                let distance_sq = distance_sq(values, self.neighborhoods.row(row));
+                least = least.min(distance_sq);
+                mean.add(distance_sq);
+            }
+        }
+        least
+    }
+
+    /// Whether two pixels are so far from each other that their neighborhoods are to be compared.
+    fn lie_apart(&self, a: [u32; 2], b: [u32; 2]) -> bool {
+        (0..2).any(|axis| {
+            let step = a[axis].abs_diff(b[axis]);
+            let around = match self.edges {
+                Edges::Cut => step,
+                Edges::Wrap => self.size[axis] - step,
+            };
+            step.min(around) >= APART
+        })
+    }
+}
+
+/// The mean of numbers.
+#[derive(Default)]
+struct Mean {
+    sum: f64,
+    count: f64,
+}
+
+impl Mean {
+    fn add(&mut self, value: f32) {
+        self.sum += f64::from(value);
+        self.count += 1.0;
+    }
+
+    fn get(&self) -> f64 {
+        self.sum / self.count
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Edges, Exemplar};
+    use dapple_hash::{Seed, hash2, unit_f32};
+    use dapple_raster::Raster;
+
+    fn exemplar(size: [u32; 2], edges: Edges, value: impl Fn(u32, u32) -> f32) -> Exemplar {
+        let plane = Raster::from_fn(size, value).unwrap();
+        Exemplar::from_planes(&[(&plane, 1.0)], edges).unwrap()
+    }
+
+    fn noise(x: u32, y: u32) -> f32 {
+        unit_f32((hash2(Seed(3), [x.into(), y.into()], 0) >> 32) as u32)
+    }
+
+    #[test]
+    fn regularity_is_one_for_what_repeats_and_for_what_is_flat() {
+        for edges in [Edges::Cut, Edges::Wrap] {
+            let repeating = exemplar([64, 48], edges, |x, y| noise(x % 16, y % 16));
+            assert_eq!(repeating.regularity(), 1.0, "{edges:?}, repeating");
+            let flat = exemplar([16, 16], edges, |_, _| 0.5);
+            assert_eq!(flat.regularity(), 1.0, "{edges:?}, flat");
+        }
+    }
+
+    #[test]
+    fn regularity_is_low_for_noise_and_for_clouds() {
+        let white = exemplar([64, 64], Edges::Cut, noise).regularity();
+        // Of 3364 distances with 48 terms each, the least is about half of the mean.
+        assert!((0.3..0.6).contains(&white), "{white}");
+        let clouds = exemplar([64, 64], Edges::Cut, |x, y| {
+            0.1 * (x + y) as f32 + noise(x, y)
+        });
+        assert!(clouds.regularity() < 0.6, "{}", clouds.regularity());
+    }
+
+    #[test]
+    fn regularity_does_not_depend_on_contrast_and_brightness() {
+        let plain = exemplar([40, 40], Edges::Cut, noise).regularity();
+        // Powers of two round nothing; a shift rounds values to 2^-21.
+        let scaled = exemplar([40, 40], Edges::Cut, |x, y| 4.0 * noise(x, y)).regularity();
+        let shifted = exemplar([40, 40], Edges::Cut, |x, y| 2.0 + noise(x, y)).regularity();
+        assert_eq!(plain, scaled, "contrast");
+        assert!((plain - shifted).abs() < 1e-5, "{plain} {shifted}");
+    }
+
+    #[test]
+    fn regularity_is_of_the_middle_of_a_large_exemplar() {
+        let at = |x: u32, y: u32| (100..164).contains(&x) && (8..72).contains(&y);
+        let value = |x: u32, y: u32| {
+            if at(x, y) {
+                noise(x % 8, y % 8)
+            } else {
+                noise(x, y)
+            }
+        };
+        assert_eq!(exemplar([264, 80], Edges::Wrap, value).regularity(), 1.0);
+    }
+
+    #[test]
+    fn exemplars_too_small_to_say_have_no_regularity() {
+        for size in [[1, 1], [3, 80], [4, 4]] {
+            for edges in [Edges::Cut, Edges::Wrap] {
+                assert_eq!(exemplar(size, edges, noise).regularity(), 0.0, "{size:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn value_stability_regularity() {
+        let found = exemplar([32, 24], Edges::Wrap, noise).regularity();
+        assert_eq!(found, 0.4552760316491423, "noise");
+    }
+}
