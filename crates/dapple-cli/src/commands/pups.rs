@@ -71,7 +71,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PART", help_heading = "Texture")]
     probability: Option<f64>,
 
-    /// Let spots merge, as the paper's recipe does, for giraffe.
+    /// Draw each radius of a spot on its own, as the paper's recipe does, for giraffe: spots break into pieces.
     #[arg(long, help_heading = "Texture")]
     literal: bool,
 

@@ -3,6 +3,7 @@
 use dapple_color::LinearRgb;
 use dapple_graph::Graph;
 use dapple_points::PointIdx;
+use std::collections::BTreeSet;
 
 /// A color for a label: neighboring labels get colors far apart, and a label has the same color everywhere.
 #[must_use]
@@ -26,26 +27,59 @@ pub fn label_gray(label: u32) -> f32 {
     0.25 + 0.75 * spread as f32
 }
 
-/// A shade of gray, from 0.25 to 1, for each point of a graph, so that neighbors are easy to tell apart.
+/// A shade of gray, from 0.25 to 1, for each label of the points of a graph, so that labels that meet are easy to tell
+/// apart: where an edge joins two of them, they have different ones of [`SHADES`] shades.
 ///
-/// Each point takes the one of eight shades that differs most from those of its neighbors that have one already.
+/// Labels are numbers from 0 on without gaps. They take shades one after another, always the label that sees the most
+/// different ones around it, and it takes the one that is furthest from those. (D. Brélaz, "New methods to color the
+/// vertices of a graph", 1979, `doi:10.1145/359094.359101`.)
 #[must_use]
-pub fn graph_grays(graph: &Graph) -> Vec<f32> {
-    let mut shades: Vec<f32> = Vec::new();
-    for point in (0..graph.n_points() as u32).map(PointIdx) {
-        let axes = graph.axes(point).iter();
-        let taken: Vec<f32> = axes
-            .filter_map(|axis| shades.get(axis.to.index()).copied())
-            .collect();
-        let contrast = |shade: f32| {
-            let gaps = taken.iter().map(|other| (other - shade).abs());
-            gaps.fold(f32::INFINITY, f32::min)
+pub fn graph_grays(graph: &Graph, labels: &[u32]) -> Vec<f32> {
+    let neighbors = neighbors(graph, labels);
+    let mut taken = vec![None; neighbors.len()];
+    for _ in 0..neighbors.len() {
+        let seen = |label: usize| -> BTreeSet<u32> {
+            neighbors[label]
+                .iter()
+                .filter_map(|&other| taken[other])
+                .collect()
         };
-        let candidates = (0..8).map(|turn| label_gray(point.0 * 8 + turn));
-        let best = candidates.max_by(|a, b| contrast(*a).total_cmp(&contrast(*b)));
-        shades.push(best.unwrap_or_default());
+        let free = (0..neighbors.len())
+            .rev()
+            .filter(|&label| taken[label].is_none());
+        let Some(next) = free.max_by_key(|&label| (seen(label).len(), neighbors[label].len()))
+        else {
+            break;
+        };
+        let around = seen(next);
+        let contrast = |shade: u32| around.iter().map(|other| other.abs_diff(shade)).min();
+        // Where nothing is around, the shade is as good as random.
+        let candidates = (0..SHADES).map(|turn| (turn + next as u32 * 5) % SHADES);
+        taken[next] = candidates.max_by_key(|&shade| contrast(shade).unwrap_or(SHADES));
     }
-    shades
+    let step = 0.75 / (SHADES - 1) as f32;
+    taken
+        .iter()
+        .map(|shade| 0.25 + step * shade.unwrap_or(0) as f32)
+        .collect()
+}
+
+/// How many shades a graph in the plane is given. Four are enough for each such graph, and this method needs up to six.
+const SHADES: u32 = 6;
+
+/// The labels that edges join to each label.
+fn neighbors(graph: &Graph, labels: &[u32]) -> Vec<BTreeSet<usize>> {
+    let n_labels = labels.iter().max().map_or(0, |&label| label as usize + 1);
+    let mut neighbors = vec![BTreeSet::new(); n_labels];
+    for (point, &label) in (0..).map(PointIdx).zip(labels) {
+        let others = graph.axes(point).iter().map(|axis| labels[axis.to.index()]);
+        neighbors[label as usize].extend(
+            others
+                .filter(|&other| other != label)
+                .map(|other| other as usize),
+        );
+    }
+    neighbors
 }
 
 fn fraction(value: f64) -> f64 {
@@ -57,6 +91,7 @@ mod tests {
     use super::{graph_grays, label_color, label_gray};
     use dapple_graph::delaunay;
     use dapple_points::{Domain, PointIdx, hash::Seed, poisson_disk};
+    use dapple_pups::{grouped_labels, own_labels};
 
     #[test]
     fn neighboring_labels_differ_visibly() {
@@ -72,14 +107,23 @@ mod tests {
     }
 
     #[test]
-    fn neighbors_in_a_graph_differ_visibly() {
+    fn cells_that_meet_differ_visibly() {
         let points = poisson_disk(Domain::paper_torus(), 0.1, Seed(1)).unwrap();
         let graph = delaunay(&points).unwrap();
-        let grays = graph_grays(&graph);
-        for point in (0..graph.n_points() as u32).map(PointIdx) {
-            for axis in graph.axes(point) {
-                let gap = (grays[point.index()] - grays[axis.to.index()]).abs();
-                assert!(gap > 0.01, "{point:?} and {:?} differ by {gap}", axis.to);
+        let groups = grouped_labels(&graph, [3, 4], Seed(9)).unwrap();
+        for labels in [own_labels(points.len()), groups] {
+            let grays = graph_grays(&graph, &labels);
+            let gray = |point: PointIdx| grays[labels[point.index()] as usize];
+            for point in (0..graph.n_points() as u32).map(PointIdx) {
+                for axis in graph.axes(point) {
+                    let apart = labels[point.index()] != labels[axis.to.index()];
+                    let gap = (gray(point) - gray(axis.to)).abs();
+                    assert!(
+                        !apart || gap > 0.14,
+                        "{point:?} and {:?} differ by {gap}",
+                        axis.to
+                    );
+                }
             }
         }
     }

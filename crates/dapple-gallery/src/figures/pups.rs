@@ -64,15 +64,22 @@ fn picture(label: impl Into<String>, texture: &dyn Field, size: u32) -> Result<P
     Ok(Panel::gray(label, texture.to_raster(&square(size)?)?).repeating())
 }
 
-/// The same for a texture of labels, whose hard edges are smoothed: every pixel is the mean of 4 × 4 samples.
+/// The same for a texture of labels, whose hard edges are smoothed.
 fn picture_of_labels(
     label: impl Into<String>,
     texture: &dyn Field,
     size: u32,
 ) -> Result<Panel, RasterError> {
-    const SIDE: u32 = 4;
-    let fine = texture.to_raster(&square(size.saturating_mul(SIDE))?)?;
+    let fine = texture.to_raster(&fine_square(size)?)?;
     Ok(Panel::gray(label, shrink(&fine, SIDE)?).repeating())
+}
+
+/// How many samples along each side of a pixel smooth a hard edge.
+const SIDE: u32 = 4;
+
+/// The samples of the paper's square for a picture of `size` pixels.
+fn fine_square(size: u32) -> Result<Window, RasterError> {
+    square(size.saturating_mul(SIDE))
 }
 
 /// The pixels of the paper's square.

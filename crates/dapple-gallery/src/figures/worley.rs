@@ -20,7 +20,7 @@ use dapple_color::{ColorRamp, LinearRgb, NormalOptions, NormalY, normal_map};
 use dapple_preview::{Scene, Supersampling};
 use dapple_pups::hash::Seed;
 use dapple_raster::{Raster, Window, Wrap};
-use dapple_worley::{Cellular, Combination, Plane};
+use dapple_worley::{Cellular, Plane};
 use glam::{DVec2, DVec3};
 
 /// The paper, with its figures in its own order.
@@ -44,9 +44,6 @@ pub(super) const PAPER: Paper = Paper {
 
 /// How many positions the range of a texture is measured at: the paper's "several thousand".
 const N_POSITIONS: u32 = 8000;
-
-/// `F3 − F1`.
-const F3_MINUS_F1: Combination = Combination::new([-1.0, 0.0, 1.0, 0.0]);
 
 /// The slice `z = 0.5` through a texture in space, `cells` cells wide, with the texture's range as 0 to 1.
 fn slice(texture: Cellular<3>, cells: f64, size: [u32; 2]) -> anyhow::Result<Raster<f32>> {

@@ -1,13 +1,13 @@
 //! Cells of (a) an original point set, (b) the same point set with all orientations pointing to the right and (c) with
 //! all orientations pointing away from the center.
 
-use crate::draw::{Canvas, graph_grays};
+use super::{SIDE, fine_square, square};
+use crate::draw::{Canvas, graph_grays, shrink};
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_graph::delaunay;
 use dapple_points::{Domain, poisson_disk};
-use dapple_pups::{Orientation, Pups, PupsOptions, hash::Seed, outward_orientations};
-use dapple_raster::Window;
+use dapple_pups::{Orientation, Pups, PupsOptions, hash::Seed, outward_orientations, own_labels};
 use glam::{DVec2, DVec3};
 
 pub(super) const FIGURE: Figure = Figure {
@@ -18,13 +18,11 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let domain = Domain::paper_torus();
-    let points = poisson_disk(domain, 0.3, Seed(5))?;
+    let points = poisson_disk(Domain::paper_torus(), 0.3, Seed(5))?;
     let graph = delaunay(&points)?;
-    let shades = graph_grays(&graph);
+    let shades = graph_grays(&graph, &own_labels(points.len()));
     let outward = outward_orientations(&points, DVec2::ZERO)?;
 
-    let window = Window::new(domain.origin, domain.size, [size; 2])?;
     let mut panels = Vec::new();
     for (label, orientation) in [
         ("a", None),
@@ -35,8 +33,9 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
             orientation,
             ..PupsOptions::default()
         };
-        let cells = Pups::new(&points, &graph, options)?.label_raster(&window, &shades)?;
-        let mut canvas = Canvas::over(&window, cells)?;
+        let pups = Pups::new(&points, &graph, options)?;
+        let cells = pups.label_raster(&fine_square(size)?, &shades)?;
+        let mut canvas = Canvas::over(&square(size)?, shrink(&cells, SIDE)?)?;
         canvas.points(&points, 4.0 * f64::from(size) / 512.0, 0.0);
         panels.push(Panel::gray(label, canvas.into_raster()).repeating());
     }

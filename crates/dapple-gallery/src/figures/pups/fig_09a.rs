@@ -1,10 +1,12 @@
 //! Cells made of one point per cell, with random orientations.
 
 use super::picture_of_labels;
-use crate::draw::label_gray;
+use crate::draw::graph_grays;
 use crate::figure::source;
 use crate::{Figure, Panel};
-use dapple_pups::{CellsOptions, Spacing, cells, hash::Seed};
+use dapple_graph::delaunay;
+use dapple_points::{Domain, poisson_disk};
+use dapple_pups::{LabelTexture, NetOptions, hash::Seed, own_labels};
 
 pub(super) const FIGURE: Figure = Figure {
     number: "9a",
@@ -18,12 +20,12 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let options = CellsOptions {
-        spacing: Spacing::from(0.2),
-        ..CellsOptions::default()
-    };
-    let texture = cells(&options, Seed(9))?;
-    let shades = (0..).take(texture.values().len()).map(label_gray);
-    let texture = texture.with_values(shades.collect())?;
+    let points = poisson_disk(Domain::paper_torus(), 0.2, Seed(9))?;
+    let graph = delaunay(&points)?;
+    let labels = own_labels(points.len());
+    let shades = graph_grays(&graph, &labels);
+
+    let pups = NetOptions::randomly_oriented().with_graph(&points, &graph, Seed(9))?;
+    let texture = LabelTexture::new(pups, labels, shades)?;
     Ok(vec![picture_of_labels("", &texture, size)?])
 }

@@ -1,10 +1,12 @@
 //! Cells made of a few points per cell: three or four that the graph connects.
 
 use super::picture_of_labels;
-use crate::draw::label_gray;
+use crate::draw::graph_grays;
 use crate::figure::source;
 use crate::{Figure, Panel};
-use dapple_pups::{CellsOptions, cells, hash::Seed};
+use dapple_graph::delaunay;
+use dapple_points::{Domain, poisson_disk};
+use dapple_pups::{LabelTexture, NetOptions, grouped_labels, hash::Seed};
 
 pub(super) const FIGURE: Figure = Figure {
     number: "9b",
@@ -18,8 +20,12 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let texture = cells(&CellsOptions::of_three_or_four(), Seed(9))?;
-    let shades = (0..).take(texture.values().len()).map(label_gray);
-    let texture = texture.with_values(shades.collect())?;
+    let points = poisson_disk(Domain::paper_torus(), 0.1, Seed(9))?;
+    let graph = delaunay(&points)?;
+    let groups = grouped_labels(&graph, [3, 4], Seed(9))?;
+    let shades = graph_grays(&graph, &groups);
+
+    let pups = NetOptions::randomly_oriented().with_graph(&points, &graph, Seed(9))?;
+    let texture = LabelTexture::new(pups, groups, shades)?;
     Ok(vec![picture_of_labels("", &texture, size)?])
 }

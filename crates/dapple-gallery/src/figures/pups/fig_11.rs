@@ -1,9 +1,15 @@
 //! Two “cow texture” examples: Poisson disc distribution of control points with random assignment of binary labels.
+//!
+//! In the first two a place has the label whose control points weigh more together, which is where the texture of the
+//! labels as values, 0 and 1, is above ½: its patches have round corners. The third is the first one after the letter of
+//! the paper, where the strongest point decides alone: its patches are polygons, nearly, and meet in points.
 
-use super::picture_of_labels;
+use super::{SIDE, fine_square, picture_of_labels};
+use crate::draw::shrink;
 use crate::figure::source;
 use crate::{Figure, Panel};
-use dapple_pups::{CowOptions, cow, hash::Seed};
+use dapple_pups::{CowOptions, LabelTexture, cow, hash::Seed};
+use dapple_raster::Field;
 
 pub(super) const FIGURE: Figure = Figure {
     number: "11",
@@ -16,9 +22,19 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let texture = |seed| cow(&CowOptions::default(), seed);
+    let [first, second] = [11, 111].map(|seed| cow(&CowOptions::default(), Seed(seed)));
+    let (first, second) = (first?, second?);
     Ok(vec![
-        picture_of_labels("first", &texture(Seed(11))?, size)?,
-        picture_of_labels("second", &texture(Seed(111))?, size)?,
+        summed("first", &first, size)?,
+        summed("second", &second, size)?,
+        picture_of_labels("first, by the strongest point alone", &first, size)?,
     ])
+}
+
+/// The label with the larger sum of weights at each place.
+fn summed(label: &str, cow: &LabelTexture, size: u32) -> anyhow::Result<Panel> {
+    let white = cow.labels().iter().map(|&label| label as f32).collect();
+    let share = cow.pups().texture(white)?.to_raster(&fine_square(size)?)?;
+    let labels = share.map(|&share| if share > 0.5 { 1.0 } else { 0.0 });
+    Ok(Panel::gray(label, shrink(&labels, SIDE)?).repeating())
 }

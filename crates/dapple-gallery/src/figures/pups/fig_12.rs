@@ -1,12 +1,13 @@
 //! Space giraffe patterns.
 //!
 //! Around the center of each spot stand 10 to 20 pairs of points, the inner one in the spot and the outer one in the
-//! background. Spots never merge; with `spots: Spots::Literal`, the paper's recipe as it is, a few do.
+//! background. In the first two their radii vary smoothly along the angle, and spots are whole and never merge. In the
+//! third each radius is random on its own, after the letter of the paper.
 
 use super::picture_of_labels;
 use crate::figure::source;
 use crate::{Figure, Panel};
-use dapple_pups::{SpaceGiraffeOptions, hash::Seed, space_giraffe};
+use dapple_pups::{SpaceGiraffeOptions, Spots, hash::Seed, space_giraffe};
 
 pub(super) const FIGURE: Figure = Figure {
     number: "12",
@@ -19,9 +20,21 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let giraffe = |seed| space_giraffe(&SpaceGiraffeOptions::default(), seed);
-    Ok(vec![
-        picture_of_labels("first", &giraffe(Seed(12))?, size)?,
-        picture_of_labels("second", &giraffe(Seed(122))?, size)?,
-    ])
+    let literal = SpaceGiraffeOptions {
+        spots: Spots::Literal,
+        ..SpaceGiraffeOptions::default()
+    };
+    let mut panels = Vec::new();
+    for (label, options, seed) in [
+        ("first", SpaceGiraffeOptions::default(), Seed(12)),
+        ("second", SpaceGiraffeOptions::default(), Seed(122)),
+        ("first, each radius on its own", literal, Seed(12)),
+    ] {
+        panels.push(picture_of_labels(
+            label,
+            &space_giraffe(&options, seed)?,
+            size,
+        )?);
+    }
+    Ok(panels)
 }

@@ -1,19 +1,24 @@
-//! Flagstones: each cell has a color of its own from the identity of its feature point, F2 − F1 carves the joints between
+//! Flagstones: each cell has a color of its own from the identity of its feature point, F1 and F2 carve the joints between
 //! them as a bump, and fractal noise discolors each stone in its own way.
+//!
+//! F2 − F1 alone makes joints that widen into dents between feature points that are close together. (F2² − F1²) / 2d, with
+//! d the distance of the two feature points, is how far the border between them is, and makes joints of one width. F3 and
+//! F4 are asked as well, for the corners where three stones meet.
 
 use super::{FractalNoise, photo};
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_color::{ColorRamp, LinearRgb};
 use dapple_preview::{Camera, Light, Material, Object, Scene, Shadows, Shape, Surface};
-use dapple_worley::{Combination, Octaves, Profile, Worley2, hash::Seed};
+use dapple_worley::{Combination, Feature, Octaves, Profile, Scatter, Worley2, hash::Seed};
 use glam::{DVec2, DVec3};
 
 pub(super) const FIGURE: Figure = Figure {
     number: "2",
     parameters: &[
-        ("joints", "F2 − F1 below 0.07"),
-        ("depth of the joints", "0.04"),
+        ("joints", "nearer than 0.035 to the border"),
+        ("depth of the joints", "0.035"),
+        ("feature points", "one in each cell, jittered by 0.8"),
         (
             "discoloration",
             "5 octaves of noise, another place for each stone",
@@ -25,7 +30,7 @@ pub(super) const FIGURE: Figure = Figure {
 };
 
 /// How deep the joints are, in cells.
-const DEPTH: f64 = 0.04;
+const DEPTH: f64 = 0.035;
 /// How high the grain of the stones is, in cells.
 const GRAIN: f64 = 0.01;
 
@@ -36,8 +41,8 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let stones = ColorRamp::from_hex(&stones)?;
     let rust = LinearRgb::from_srgb([104_u8, 66, 38]);
     let joint = LinearRgb::from_srgb([58_u8, 54, 48]);
-    let worley = Worley2::new(Seed(2));
-    let channels = Profile::channels(0.07)?;
+    let worley = Worley2::new(Seed(2)).with_scatter(Scatter::Jittered { jitter: 0.8 })?;
+    let channels = Profile::channels(0.035)?;
     let grain = Worley2::new(Seed(3))
         .combine(Combination::F1)
         .fractal(Octaves {
@@ -48,11 +53,12 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
 
     let flags = |surface: &Surface| {
         let at = DVec2::new(surface.position.x, surface.position.z);
-        let [first, second] = worley.sample(at);
-        let border = second.distance - first.distance;
+        let [first, others @ ..] = worley.sample::<4>(at);
+        let (border, across) = nearest_border(&first, &others);
+        // Edges are chipped.
+        let chips = stain.at(at * 2.0) - 0.5;
+        let border = border + 0.03 * chips;
         let height = channels.height(border);
-        // The gradient of F_n is the unit vector away from its feature point.
-        let across = second.vector.normalize_or_zero() - first.vector.normalize_or_zero();
         let bump = across * (DEPTH * f64::from(channels.slope(border)))
             + grain.gradient(at * 4.0) * (4.0 * GRAIN);
         let shift = DVec2::new(
@@ -75,4 +81,17 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         )
         .with_ambient(LinearRgb::new(0.2, 0.23, 0.3));
     Ok(vec![photo(&scene, [size, size * 3 / 4])?])
+}
+
+/// How far the nearest border of the cell is, and its gradient.
+fn nearest_border(first: &Feature<DVec2>, others: &[Feature<DVec2>]) -> (f32, DVec2) {
+    let border = |other: &Feature<DVec2>| {
+        let way = other.vector - first.vector;
+        let gap = other.vector.length_squared() - first.vector.length_squared();
+        let distance = gap / (2.0 * way.length());
+        (distance as f32, way.normalize_or_zero())
+    };
+    let borders = others.iter().map(border);
+    let nearest = borders.min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.unwrap_or((f32::INFINITY, DVec2::ZERO))
 }

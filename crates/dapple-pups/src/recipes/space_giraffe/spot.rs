@@ -2,6 +2,7 @@
 //!
 //! Positions are relative to the center, in units of the domain.
 
+use super::{SpaceGiraffeOptions, Spots};
 use core::f64::consts::TAU;
 use dapple_graph::Axis;
 use dapple_hash::{CellHash, Seed, unit_f64};
@@ -24,26 +25,35 @@ pub(super) struct Spot {
 }
 
 impl Spot {
-    /// The literal spot of a center.
-    pub(super) fn random(radius: f64, n_pairs: [u32; 2], seed: Seed, center: PointIdx) -> Self {
+    /// The spot of a center before it is fitted into its room.
+    pub(super) fn random(
+        radius: f64,
+        options: &SpaceGiraffeOptions,
+        seed: Seed,
+        center: PointIdx,
+    ) -> Self {
         let random = CellHash::new(seed, [i64::from(center.0)]);
-        let more = (random.at(0) >> 32) * u64::from(n_pairs[1] - n_pairs[0] + 1);
-        let n_pairs = n_pairs[0] + (more >> 32) as u32;
+        let [least, most] = options.pairs;
+        let more = (random.at(0) >> 32) * u64::from(most - least + 1);
+        let n_pairs = least + (more >> 32) as u32;
         let first = unit_f64(random.at(1));
-        let pair = |index: u32| {
+        let draw = |index: u32| [2, 3].map(|lane| unit_f64(random.at(2 * index + lane)));
+        let radii: Vec<[f64; 2]> = match options.spots {
+            Spots::Literal => (0..n_pairs).map(|index| sorted(draw(index))).collect(),
+            Spots::Separated => {
+                // Evenly over the area of the disk.
+                let even = (0..n_pairs).map(|index| sorted(draw(index).map(f64::sqrt)));
+                filled(&smoothed(&even.collect::<Vec<_>>()))
+            }
+        };
+        let place = |(index, pair): (u32, &[f64; 2])| {
             let angle = TAU * (f64::from(index) + first) / f64::from(n_pairs);
             let direction = DVec2::new(libm::cos(angle), libm::sin(angle)) * radius;
-            let [a, b] = [2, 3].map(|lane| {
-                let part = unit_f64(random.at(2 * index + lane));
-                GAP + (1.0 - 2.0 * GAP) * part
-            });
-            let outer = a.max(b).max(2.0 * GAP);
-            let inner = a.min(b).min(outer - GAP);
-            [direction * inner, direction * outer]
+            pair.map(|part| direction * part)
         };
         Self {
             radius,
-            pairs: (0..n_pairs).map(pair).collect(),
+            pairs: (0..).zip(&radii).map(place).collect(),
         }
     }
 
@@ -94,6 +104,42 @@ impl Spot {
         }
         corners
     }
+}
+
+/// The radii of a pair from two random numbers: the inner one first, and off the center, the rim and each other.
+fn sorted(parts: [f64; 2]) -> [f64; 2] {
+    let [a, b] = parts.map(|part| GAP + (1.0 - 2.0 * GAP) * part);
+    let outer = a.max(b).max(2.0 * GAP);
+    let inner = a.min(b).min(outer - GAP);
+    [inner, outer]
+}
+
+/// The radii around a spot, each the mean of its neighbors within a fifth of a turn to either side, with weights that
+/// fall off in a line. Inner points stay inside of outer ones, as they do before.
+fn smoothed(radii: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let n_pairs = radii.len();
+    let reach = (n_pairs / 5).max(3);
+    let total = (reach * reach) as f64;
+    let mean = |at: usize| {
+        let mut sum = [0.0; 2];
+        for tap in 1..2 * reach {
+            let weight = tap.min(2 * reach - tap) as f64;
+            let [inner, outer] = radii[(at + reach * n_pairs + tap - reach) % n_pairs];
+            sum = [sum[0] + weight * inner, sum[1] + weight * outer];
+        }
+        sum.map(|sum| sum / total)
+    };
+    (0..n_pairs).map(mean).collect()
+}
+
+/// The radii, scaled so that the outermost point stands at the rim.
+fn filled(radii: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let outermost = radii.iter().map(|&[_, outer]| outer).fold(0.0, f64::max);
+    let scale = (1.0 - GAP) / outermost;
+    radii
+        .iter()
+        .map(|pair| pair.map(|part| part * scale))
+        .collect()
 }
 
 /// The part of a convex polygon in which `normal · position ≤ limit`.

@@ -169,7 +169,7 @@ fn value_stability_recipes() {
             ("cells of three or four", 17659775131150400474),
             ("cow", 2292993172515091237),
             ("cellular noise", 11005285225756051155),
-            ("space giraffe", 10427205954245784357),
+            ("space giraffe", 2937035135665074981),
             ("reference", 1735835802462090021),
             ("iterated reference", 274647018259932788)
         ]

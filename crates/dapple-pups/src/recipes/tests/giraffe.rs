@@ -188,3 +188,47 @@ fn spots_at_open_borders_are_whole() {
     let wide = Window::new(DVec2::new(-1.5, -1.0), DVec2::new(3.0, 2.0), [192, 128]).unwrap();
     assert_eq!(strays(&options, Seed(1), &wide), 0);
 }
+/// How many connected pieces the pixels of a label make on the torus, where pixels that share an edge are connected.
+fn pieces(labels: &Raster<u32>, label: u32) -> usize {
+    let [width, height] = labels.size();
+    let mut seen: Vec<bool> = labels
+        .pixels()
+        .iter()
+        .map(|&found| found != label)
+        .collect();
+    let mut pieces = 0;
+    for start in 0..width * height {
+        let mut stack = vec![[start % width, start / width]];
+        let before = pieces;
+        while let Some([x, y]) = stack.pop() {
+            let pixel = (y * width + x) as usize;
+            if core::mem::replace(&mut seen[pixel], true) {
+                continue;
+            }
+            pieces = before + 1;
+            let [right, down] = [(x + 1) % width, (y + 1) % height];
+            let [left, up] = [(x + width - 1) % width, (y + height - 1) % height];
+            stack.extend([[right, y], [left, y], [x, up], [x, down]]);
+        }
+    }
+    pieces
+}
+
+#[test]
+fn spots_are_whole_and_cover_about_a_third() {
+    let options = SpaceGiraffeOptions::default();
+    for seed in (0..8).map(Seed) {
+        let texture = space_giraffe(&options, seed).unwrap();
+        let labels = texture.label_raster(&paper_window(512)).unwrap();
+        let centers = options
+            .spacing
+            .points(options.domain, seed.child("points", 0))
+            .unwrap();
+        assert_eq!(pieces(&labels, 1), centers.len(), "spots of {seed:?}");
+        // A hole would be a second piece of the background.
+        assert_eq!(pieces(&labels, 0), 1, "backgrounds of {seed:?}");
+        let spots = labels.pixels().iter().filter(|&&label| label == 1);
+        let share = spots.count() as f64 / f64::from(512 * 512);
+        assert!((0.27..0.38).contains(&share), "{share} of {seed:?} is spot");
+    }
+}
