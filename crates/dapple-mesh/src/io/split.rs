@@ -34,6 +34,7 @@ pub(super) fn with_vertex_normals(model: &Model) -> Cow<'_, Model> {
         normals: Some(normals.collect()),
         corner_normals: None,
         material: model.material.clone(),
+        left_out: Vec::new(),
     })
 }
 
