@@ -6,11 +6,11 @@ use crate::input;
 use crate::job::Job;
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
+use crate::words::with_dashes;
 use anyhow::{Context as _, Error, Result};
 use dapple::image::{Content, RowWriter};
 use dapple::recipe::{
-    Bake, BakeOptions, Images, MapKind, MapRows, Picture, Plan, Recipe, RecipeError,
-    RecipeErrorKind,
+    Bake, Images, MapKind, MapRows, Picture, Recipe, RecipeError, RecipeErrorKind,
 };
 use dapple::tile::Map;
 use rayon::prelude::*;
@@ -34,14 +34,15 @@ pub(crate) struct MapFile {
 /// If there is none, or it cannot be read, with what was perhaps meant.
 pub(crate) fn read_recipe(name: &str) -> Result<(Recipe, &Path)> {
     let path = Path::new(name);
-    let is_builtin = Recipe::builtin_names().any(|builtin| builtin == name);
+    let builtin = with_dashes(name);
+    let is_builtin = Recipe::builtin_names().any(|known| known == builtin);
     let looks_like_a_path =
         path.extension().is_some() || path.components().count() > 1 || name == "-";
     if is_builtin && !path.is_file() {
-        return Ok((Recipe::builtin(name).map_err(advise)?, Path::new("")));
+        return Ok((Recipe::builtin(&builtin).map_err(advise)?, Path::new("")));
     }
     if !looks_like_a_path && !path.exists() {
-        let error = Recipe::builtin(name).map(drop).map_err(advise);
+        let error = Recipe::builtin(&builtin).map(drop).map_err(advise);
         error.hint("`dapple recipe --list` names the built-in recipes; a recipe of your own ends in .toml or .json")?;
     }
     let text = input::text(path)?;
@@ -93,18 +94,12 @@ pub(crate) fn read_picture(path: &Path) -> Result<Picture> {
     })
 }
 
-/// Draws the maps of a plan into files that were claimed.
+/// Draws the maps of a bake into files that were claimed.
 ///
 /// # Errors
 ///
 /// What the recipe or the operating system refuses.
-pub(crate) fn bake(
-    job: &mut Job<'_>,
-    plan: &Plan,
-    options: &BakeOptions,
-    files: &[MapFile],
-) -> Result<()> {
-    let mut bake = Bake::new(plan, options).map_err(advise)?;
+pub(crate) fn write(job: &mut Job<'_>, bake: &mut Bake<'_>, files: &[MapFile]) -> Result<()> {
     let size = bake.size();
     let mut rows = Vec::new();
     for file in files {
@@ -115,7 +110,7 @@ pub(crate) fn bake(
         });
     }
     let progress = Progress::bar("baking", size[1].into(), job.is_quiet());
-    for band in &mut bake {
+    for band in bake {
         let band = band.map_err(advise)?;
         let height = band.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
         let work = rows.par_iter_mut().zip(&band.maps);
@@ -141,7 +136,12 @@ pub(crate) fn format(asked: Option<Format>, target: &Target) -> Result<Format> {
 /// Adds what can be done about an error of a recipe.
 pub(crate) fn advise(error: RecipeError) -> Error {
     let hint = match error.kind() {
-        RecipeErrorKind::Global { .. } => "bake it without --banded",
+        RecipeErrorKind::Global { .. } => {
+            return Error::new(error)
+                .hint("bake it without --banded")
+                .wrong_value();
+        }
+        RecipeErrorKind::UnknownRecipe { .. } => return Error::new(error).wrong_value(),
         RecipeErrorKind::NoImage { .. } => "images lie in the folder of the recipe",
         RecipeErrorKind::Schema { .. } => "see the changelog for what has changed in recipes",
         _ => return error.into(),

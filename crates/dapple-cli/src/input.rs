@@ -82,7 +82,10 @@ pub(crate) fn map(path: &Path, kind: Kind, region: Option<Region>) -> Result<Loa
     };
     let map = map.with_context(|| name(path))?;
     let map = match region {
-        Some(region) => crop(&map, region).with_context(|| name(path))?,
+        Some(region) => {
+            let part = crop(&map, region).wrong_value();
+            part.with_context(|| name(path))?
+        }
         None => map,
     };
     let is_deep = image.bits() > 8;

@@ -1,25 +1,25 @@
 //! `dapple bake`: the maps of a recipe.
 
-use crate::args::{OutputArgs, Region, Size};
+use crate::args::{OutputArgs, Region, Size, seed};
 use crate::baking::{self, MapFile, advise, read_images, read_recipe};
 use crate::encode::Format;
-use crate::error::{Exit, Hint, usage};
+use crate::error::{Exit, Hint};
 use crate::job::{Context, Job};
-use crate::output::Target;
+use crate::words::{Word, nearest, with_underscores};
 use anyhow::Result;
-use clap::ValueEnum;
 use dapple::color::NormalY;
 use dapple::hash::Seed;
-use dapple::recipe::{BakeMemory, BakeOptions, MapKind, Plan, Recipe};
-use serde::Serialize;
+use dapple::recipe::{Bake, BakeMemory, BakeOptions, MapKind, Plan, Recipe};
+use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
+use std::str::FromStr;
 
 const EXAMPLES: &str = "\
 Examples:
   dapple bake giraffe -o giraffe/
   dapple bake flagstone -o out/ --size 512 \\
     --maps height,normal,ao,albedo,roughness
-  dapple bake my-rock.toml --maps orm,normal --normal directx -o rock/
+  dapple bake my-rock.toml --maps orm,normal --normal-y directx -o rock/
   dapple bake marble --maps albedo -o marble.png --size 1024x512
   dapple bake clouds --maps height --size 4096 --region 0,0,512,512 -o part.exr
   dapple bake craters --maps height --size 4096x256 --banded -o wide.exr
@@ -44,13 +44,16 @@ pub(crate) struct Args {
     #[arg(long, value_name = "WxH", default_value = "1024")]
     size: Size,
 
-    /// The maps, with commas between them.
-    #[arg(long, value_name = "MAPS", value_delimiter = ',', default_value = "height,normal,ao,albedo,roughness", value_parser = map_kind)]
-    #[serde(serialize_with = "names")]
-    maps: Vec<MapKind>,
+    /// The maps, with commas between them, or all.
+    #[arg(
+        long,
+        value_name = "MAPS",
+        default_value = "height,normal,ao,albedo,roughness"
+    )]
+    maps: Maps,
 
     /// Another seed than that of the recipe.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = seed)]
     seed: Option<u64>,
 
     /// Make only this part of the tile, in pixels: bit for bit the crop of the whole.
@@ -59,8 +62,8 @@ pub(crate) struct Args {
 
     /// Where green points in normal maps: up (opengl: Blender, Unity, Godot, glTF) or down (directx: Unreal). By default as
     /// the recipe has it, which is up unless it says otherwise.
-    #[arg(long, value_enum, value_name = "WAY")]
-    normal: Option<NormalWay>,
+    #[arg(long, value_name = "WAY", value_parser = Word::<NormalY>::of(&["opengl", "directx"]))]
+    normal_y: Option<NormalY>,
 
     /// How many units of the plane a height of 1 stands for, instead of what the recipe says.
     #[arg(long, value_name = "UNITS")]
@@ -79,16 +82,41 @@ pub(crate) struct Args {
     files: OutputArgs,
 }
 
-/// Where green points.
-#[derive(Clone, Copy, Debug, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum NormalWay {
-    /// Up.
-    #[value(name = "opengl")]
-    OpenGl,
-    /// Down.
-    #[value(name = "directx")]
-    DirectX,
+/// The maps that are baked, each once.
+#[derive(Clone, Debug)]
+struct Maps(Vec<MapKind>);
+
+impl FromStr for Maps {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if with_underscores(text) == "all" {
+            return Ok(Self(MapKind::ALL.to_vec()));
+        }
+        let mut maps = Vec::new();
+        for name in text.split(',') {
+            let names = || MapKind::ALL.into_iter().map(MapKind::name);
+            let word = with_underscores(name);
+            let kind = MapKind::from_name(&word).ok_or_else(|| match nearest(&word, names()) {
+                Some(near) => format!("{name:?} is no map; did you mean {near}?"),
+                None => format!(
+                    "{name:?} is no map; there are {}, or all",
+                    names().collect::<Vec<_>>().join(", ")
+                ),
+            })?;
+            if maps.contains(&kind) {
+                return Err(format!("the map {} is asked for twice", kind.name()));
+            }
+            maps.push(kind);
+        }
+        Ok(Self(maps))
+    }
+}
+
+impl Serialize for Maps {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.0.iter().map(|kind| kind.name()))
+    }
 }
 
 /// Runs it.
@@ -101,14 +129,11 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.change(&mut recipe);
     let mut job = Job::new(context, "bake", &args.files);
     let files = claim(args, &recipe, &mut job)?;
-    let sidecar = args
-        .files
-        .folder()
-        .map(|folder| folder.join(file_name(&recipe.name) + ".json"));
-    job.claim_sidecar_or(sidecar)?;
     let images = read_images(&recipe, folder)?;
     let plan = Plan::new(&recipe, &images, 0.0).map_err(advise)?;
-    baking::bake(&mut job, &plan, &args.options(), &files)?;
+    let mut bake =
+        Bake::new(&plan, &args.options()).map_err(|error| advise(error).wrong_value())?;
+    baking::write(&mut job, &mut bake, &files)?;
     job.finish(
         &Told {
             args,
@@ -148,10 +173,8 @@ impl Args {
         if let Some(relief) = self.relief {
             recipe.material.relief = relief;
         }
-        match self.normal {
-            Some(NormalWay::OpenGl) => recipe.material.normal_y = NormalY::OpenGl,
-            Some(NormalWay::DirectX) => recipe.material.normal_y = NormalY::DirectX,
-            None => {}
+        if let Some(normal_y) = self.normal_y {
+            recipe.material.normal_y = normal_y;
         }
     }
 
@@ -159,7 +182,7 @@ impl Args {
         BakeOptions {
             size: self.size.0,
             region: self.region.map(Region::of_recipe),
-            maps: self.maps.clone(),
+            maps: self.maps.0.clone(),
             memory: if self.banded {
                 BakeMemory::Banded
             } else {
@@ -169,91 +192,44 @@ impl Args {
     }
 }
 
-/// Claims a file for each map: in a folder as `NAME_MAP.png`, or the output itself for a single map.
+/// Claims a file for each map: the output itself for a single map, unless that is a folder, and else `NAME_MAP.png`.
 fn claim(args: &Args, recipe: &Recipe, job: &mut Job<'_>) -> Result<Vec<MapFile>> {
-    for (index, kind) in args.maps.iter().enumerate() {
-        if args.maps[..index].contains(kind) {
-            return Err(usage(format!("the map {} is asked for twice", kind.name())));
-        }
-    }
-    let file = |job: &mut Job<'_>, kind, target: &Target| -> Result<MapFile> {
+    let names: Vec<_> = args.maps.0.iter().map(|kind| kind.name()).collect();
+    let ending = args.format.map_or("png", Format::ending);
+    let targets = args.files.targets(&recipe.name, &names, ending)?;
+    let mut files = Vec::new();
+    for (&kind, target) in args.maps.0.iter().zip(&targets.files) {
         let format = baking::format(args.format, target)?;
-        Ok(MapFile {
+        files.push(MapFile {
             kind,
             output: job.claim(target)?,
             format,
-        })
-    };
-    let Some(folder) = args.files.folder() else {
-        let target = args.files.target()?;
-        let &[kind] = &args.maps[..] else {
-            return Err(usage("several maps need a folder")
-                .hint("let -o end with a slash, as in -o out/, or ask for one map with --maps"));
-        };
-        return Ok(vec![file(job, kind, &target)?]);
-    };
-    job.make_folder(folder)?;
-    let ending = args.format.map_or("png", Format::ending);
-    let mut files = Vec::new();
-    for &kind in &args.maps {
-        let name = format!("{}_{}.{ending}", file_name(&recipe.name), kind.name());
-        files.push(file(job, kind, &Target::Path(folder.join(name)))?);
+        });
     }
+    job.claim_sidecar(&targets.main)?;
     Ok(files)
-}
-
-/// The name of a recipe as a part of file names: what is no letter, digit or `.` becomes `-`.
-fn file_name(name: &str) -> String {
-    let plain = |c: char| {
-        if c.is_alphanumeric() || c == '.' || c == '_' {
-            c
-        } else {
-            '-'
-        }
-    };
-    let name: String = name.chars().map(plain).collect();
-    let name = name.trim_start_matches('.');
-    if name.is_empty() {
-        "recipe".to_owned()
-    } else {
-        name.to_owned()
-    }
-}
-
-fn map_kind(text: &str) -> Result<MapKind, String> {
-    MapKind::from_name(text.trim()).ok_or_else(|| {
-        let names: Vec<_> = MapKind::ALL.iter().map(|kind| kind.name()).collect();
-        format!("{text:?} is no map; there are {}", names.join(", "))
-    })
-}
-
-fn names<S: serde::Serializer>(maps: &[MapKind], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(maps.iter().map(|kind| kind.name()))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{file_name, map_kind};
+    use super::Maps;
 
     #[test]
-    fn names_of_recipes_are_safe_in_file_names() {
-        for (name, expected) in [
-            ("giraffe", "giraffe"),
-            ("my rock", "my-rock"),
-            ("../up", "-up"),
-            ("..", "recipe"),
-            ("a/b", "a-b"),
+    fn maps_go_by_their_names_in_any_case() {
+        let names = |text: &str| -> Result<Vec<_>, String> {
+            let maps: Maps = text.parse()?;
+            Ok(maps.0.iter().map(|kind| kind.name()).collect())
+        };
+        assert_eq!(names("AO, BaseColor"), Ok(vec!["ao", "albedo"]));
+        assert_eq!(names("base-color"), names("albedo"));
+        assert_eq!(names("All").map(|maps| maps.len()), Ok(8));
+        for (wrong, part) in [
+            ("bumps", "roughness"),
+            ("heigth", "height?"),
+            ("ao,ao", "twice"),
         ] {
-            assert_eq!(file_name(name), expected, "{name}");
+            let error = names(wrong).unwrap_err();
+            assert!(error.contains(part), "{wrong}: {error}");
         }
-    }
-
-    #[test]
-    fn maps_go_by_their_names() {
-        assert_eq!(map_kind("ao").map(|kind| kind.name()), Ok("ao"));
-        assert!(
-            map_kind("bumps").is_err_and(|error| error.contains("normal")),
-            "the names are told"
-        );
     }
 }

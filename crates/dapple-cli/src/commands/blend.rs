@@ -8,7 +8,7 @@ use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind};
 use crate::job::{Context, Job};
-use crate::output::{OutputIdx, Target};
+use crate::output::OutputIdx;
 use crate::progress::Progress;
 use anyhow::{Context as _, Error, Result};
 use dapple::raster::Raster;
@@ -83,7 +83,6 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend", &args.image.files);
     let outputs = claim(args, &mut job)?;
-    job.claim_sidecar()?;
     let mut reader = Reader::new(args.size);
     let read = args.layers.iter().map(|layer| layer.read(&mut reader));
     let mut materials = read.collect::<Result<Vec<_>>>()?;
@@ -116,7 +115,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Claims an output for the first map, or for each of them in a folder.
+/// Claims an output for each map.
 fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
     let names = args.layers[0].map_names();
     for layer in &args.layers[1..] {
@@ -131,19 +130,14 @@ fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
             return Err(usage(message).hint("give all layers the same maps"));
         }
     }
-    let Some(folder) = args.image.files.folder() else {
-        let target = args.image.files.target()?;
-        if names.len() > 1 {
-            return Err(usage("several maps need a folder")
-                .hint("let -o end with a slash, as in -o material/"));
-        }
-        Format::choose(args.image.format, &target, Format::Png16)?;
-        return Ok(vec![job.claim(&target)?]);
-    };
-    job.make_folder(folder)?;
-    let ending = args.image.format.map_or("png", Format::ending);
-    let target = |name: &&str| Target::Path(folder.join(format!("{name}.{ending}")));
-    names.iter().map(|name| job.claim(&target(name))).collect()
+    let targets = (args.image.files).targets("blend", &names, args.image.ending())?;
+    let mut outputs = Vec::new();
+    for target in &targets.files {
+        Format::choose(args.image.format, target, Format::Png16)?;
+        outputs.push(job.claim(target)?);
+    }
+    job.claim_sidecar(&targets.main)?;
+    Ok(outputs)
 }
 
 /// The blend tile, in the size of the blend.
@@ -166,7 +160,11 @@ fn advise(error: TileError) -> Error {
         TileErrorKind::KindMismatch { .. } => {
             "give gray images for a map in all layers, or in none"
         }
-        TileErrorKind::Wavelet(_) => "take fewer --levels, or --borders mirror",
+        TileErrorKind::Range { .. } => return Error::new(error).wrong_value(),
+        TileErrorKind::Wavelet(_) => {
+            let hint = "take fewer --levels, or --wrap none";
+            return Error::new(error).hint(hint).wrong_value();
+        }
         TileErrorKind::Count {
             what: "heights", ..
         } => "give every layer height=FILE, or a --tile",

@@ -38,6 +38,7 @@ pub(crate) struct Args {
     /// How high a band is beside the one before.
     #[arg(
         long,
+        alias = "persistence",
         value_name = "PART",
         default_value_t = 0.5,
         help_heading = "Texture"

@@ -12,3 +12,4 @@ mod interrupt;
 mod refusals;
 mod results;
 mod support;
+mod words;

@@ -33,6 +33,8 @@ enum Product {
 /// The outputs that were claimed.
 struct Claimed {
     product: Product,
+    /// The name of the output without its ending.
+    stem: String,
     main: OutputIdx,
     /// The other files of an OBJ: material and textures, with their names.
     beside: Vec<(String, OutputIdx)>,
@@ -44,8 +46,7 @@ struct Claimed {
 /// Covers the mesh.
 pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
-    let claimed = claim(args, &mut job)?;
-    job.claim_sidecar()?;
+    let claimed = claim(args, mesh, &mut job)?;
     let input = args.read()?;
     let model = input::model(mesh)?;
     let (repaired, repair) = model.mesh.repair();
@@ -129,8 +130,8 @@ impl Covered {
 }
 
 /// Claims the output, what belongs to it, and the maps.
-fn claim(args: &Args, job: &mut Job<'_>) -> Result<Claimed> {
-    let target = args.image.files.target()?;
+fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
+    let target = args.target(mesh, args.image.format.map_or("glb", Format::ending))?;
     let product = match target.ending().as_str() {
         "glb" => Product::Glb,
         "obj" => Product::Obj,
@@ -165,8 +166,10 @@ fn claim(args: &Args, job: &mut Job<'_>) -> Result<Claimed> {
     }
     // Those that go into the model are files of their own as well, for other programs.
     let maps = args.claim_maps(&target, format.ending(), job)?;
+    job.claim_sidecar(&target)?;
     Ok(Claimed {
         product,
+        stem: target.path().map(stem).unwrap_or_default(),
         main,
         beside,
         maps,
@@ -215,7 +218,7 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
                 model.material.normal = Some(EncodedImage::new(encode(&normals, claimed.format)?)?);
             }
         }
-        write_model(claimed, &model, args, job)?;
+        write_model(claimed, &model, job)?;
     }
     for (output, (_, loaded)) in claimed.maps.iter().zip(&covered.input.maps) {
         job.write_image(
@@ -246,13 +249,11 @@ fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
     )?)
 }
 
-fn write_model(claimed: &Claimed, model: &Model, args: &Args, job: &Job<'_>) -> Result<()> {
+fn write_model(claimed: &Claimed, model: &Model, job: &Job<'_>) -> Result<()> {
     if claimed.product == Product::Glb {
         return job.write(claimed.main, &gltf::write(model)?);
     }
-    let target = args.image.files.target()?;
-    let stem = target.path().map(stem).unwrap_or_default();
-    for file in obj::write_files(model, &stem)? {
+    for file in obj::write_files(model, &claimed.stem)? {
         let beside = claimed.beside.iter().find(|(name, _)| *name == file.name);
         let output = beside.map_or(claimed.main, |(_, output)| *output);
         job.write(output, &file.bytes)?;
