@@ -217,7 +217,7 @@ mod tests {
     fn words_of_other_programs_are_read() {
         let text = |gain: &str, albedo: &str| {
             let nodes = format!(
-                "frequency = 8\noctaves = {{ count = 2, {gain} = 0.7 }}\n[nodes.n.fractal]\n{gain} = 0.7\n[nodes.o.pups.octaves]\n{gain} = 0.7\n[nodes.c.pups.cellular_noise]\n{gain} = 0.7\n"
+                "frequency = 8\noctaves = {{ count = 2, {gain} = 0.7 }}\n[nodes.n.noise]\n{gain} = 0.7\n[nodes.o.pups.octaves]\n{gain} = 0.7\n[nodes.c.pups.cellular_noise]\n{gain} = 0.7\n"
             );
             STONES.replace("frequency = 8", &nodes) + &format!("{albedo} = \"cells\"\n")
         };
