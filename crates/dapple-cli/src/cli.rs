@@ -79,7 +79,8 @@ mod tests {
                     };
                     let words = ["dapple", subcommand.get_name(), &typed];
                     let refused = command().try_get_matches_from(words).err();
-                    let is_valid = refused.is_none_or(|error| error.kind() != ErrorKind::InvalidValue);
+                    let is_valid =
+                        refused.is_none_or(|error| error.kind() != ErrorKind::InvalidValue);
                     assert!(is_valid, "{words:?}");
                     n_values += 1;
                 }

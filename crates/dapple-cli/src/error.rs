@@ -141,6 +141,9 @@ pub(crate) fn report(error: &Error, arguments: &[String]) -> Exit {
 fn refused_number(error: &Error) -> Option<f64> {
     use PointsErrorKind::{NotDescending, NotPositive, OutOfRange, PeriodTooShort, Radius};
     error.chain().find_map(|cause| {
+        if let Some(Refusal { error, .. }) = cause.downcast_ref() {
+            return refused_number(error);
+        }
         if let Some(error) = cause.downcast_ref::<PointsError>() {
             return match error.kind() {
                 NotPositive { value, .. } | OutOfRange { value, .. } => Some(*value),
@@ -214,8 +217,8 @@ fn text(error: &Error, option: Option<&str>) -> String {
     let mut text = format!("error: {option}{said}\n");
     for cause in error.chain().skip(1) {
         let cause = cause.to_string();
-        // Many errors repeat their cause in their own message.
-        if !said.contains(&cause) {
+        // Many errors repeat their cause in their own message, or are repeated by it.
+        if !said.contains(&cause) && !cause.ends_with(&said) {
             text += &format!("  because: {cause}\n");
             said = cause;
         }
