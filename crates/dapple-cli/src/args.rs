@@ -15,7 +15,9 @@ pub(crate) use size::{Extent, Size};
 use crate::encode::Format;
 use crate::error::{Hint, usage};
 use crate::output::Target;
+use crate::progress::Style;
 use anyhow::Result;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 
@@ -27,18 +29,28 @@ pub(crate) struct Common {
     #[arg(long, global = true, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub(crate) threads: u16,
 
+    /// How progress is shown on standard error: as a bar on a terminal and as lines elsewhere, or always as lines, or as lines
+    /// of JSON.
+    #[arg(long, global = true, value_enum, value_name = "STYLE", default_value_t = Style::Auto)]
+    pub(crate) progress: Style,
+
     /// Print nothing but errors and what was asked for.
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
 }
 
 /// Where files go, whatever they hold.
-#[derive(Args, Clone, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
-    /// Where to write; `-` is standard output. Where several files are written, a folder.
-    #[arg(short, long, value_name = "FILE")]
+    /// Where to write: a file, a folder, or `-` for standard output. What is there as a folder or ends with a slash is a folder;
+    /// of several files, a name without an ending is one, too. Missing folders are made.
+    #[arg(short, long, value_name = "FILE|DIR/")]
     pub(crate) output: Option<PathBuf>,
+
+    /// What the files in a folder are called: `NAME.EXT`, or `NAME_MAP.EXT`. By default after what is drawn.
+    #[arg(long, value_name = "NAME", value_parser = plain_name)]
+    pub(crate) name: Option<String>,
 
     /// Replace files that are there. Without it nothing is overwritten.
     #[arg(long)]
@@ -47,6 +59,15 @@ pub(crate) struct OutputArgs {
     /// Write a JSON file beside the output: the options, the version, and size, range and SHA-256 of each file.
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     pub(crate) json: Option<Option<PathBuf>>,
+}
+
+/// The files of a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Targets {
+    /// `NAME.ENDING`, whether it is written or not: the JSON file lies beside it.
+    pub(crate) main: Target,
+    /// The file of each part.
+    pub(crate) files: Vec<Target>,
 }
 
 /// How images are written.
@@ -82,6 +103,12 @@ pub(crate) enum Axes {
 }
 
 impl Axes {
+    /// Reads the axes of what does nothing along none.
+    pub(crate) fn some() -> impl TypedValueParser<Value = Self> {
+        let names = PossibleValuesParser::new(["x", "y", "both"]);
+        names.try_map(|name| Self::from_str(&name, true))
+    }
+
     /// Whether x and y repeat.
     pub(crate) fn flags(self) -> [bool; 2] {
         [
@@ -91,23 +118,178 @@ impl Axes {
     }
 }
 
+impl ImageArgs {
+    /// The ending of images whose names the command makes.
+    pub(crate) fn ending(&self) -> &'static str {
+        self.format.map_or("png", Format::ending)
+    }
+}
+
 impl OutputArgs {
-    /// The target, which must be given.
-    pub(crate) fn target(&self) -> Result<Target> {
-        let target = self.output.as_deref().map(Target::from);
-        target.ok_or_else(|| {
-            usage("it is not said where to write").hint("add -o FILE, or -o - for standard output")
-        })
+    /// The file of a run that writes one.
+    ///
+    /// # Errors
+    ///
+    /// As [`targets`](Self::targets).
+    pub(crate) fn target(&self, name: &str, ending: &str) -> Result<Target> {
+        Ok(self.targets(name, &[""], ending)?.main)
     }
 
-    /// The folder, if the output is one: it is there, or its name ends with a slash.
-    pub(crate) fn folder(&self) -> Option<&Path> {
+    /// The files of a run that writes a file for each part: `NAME_PART.ENDING`, and `NAME.ENDING` for a part without a name.
+    ///
+    /// A single part is the output itself, unless that is a folder. In folders the name is that of `--name`, or else `name`.
+    ///
+    /// # Errors
+    ///
+    /// If there is no output, or it cannot hold them.
+    pub(crate) fn targets<S: AsRef<str>>(
+        &self,
+        name: &str,
+        parts: &[S],
+        ending: &str,
+    ) -> Result<Targets> {
+        let Some(output) = self.output.as_deref() else {
+            return Err(usage("missing output")
+                .hint("add -o FILE, -o DIR/ for a folder, or -o - for standard output"));
+        };
+        let folder = self.folder(parts.len());
+        if let (None, Some(name)) = (folder, &self.name) {
+            let message = format!(
+                "--name {name} is for folders, and {} is a file",
+                output.display()
+            );
+            return Err(usage(message).hint("let -o end with a slash"));
+        }
+        let main = match folder {
+            Some(folder) => {
+                let name = self.name.clone().unwrap_or_else(|| file_name(name));
+                Target::Path(folder.join(format!("{name}.{ending}")))
+            }
+            None => Target::from(output),
+        };
+        let files = match parts {
+            [_] if folder.is_none() => vec![main.clone()],
+            _ => {
+                let files = parts.iter().map(|part| main.part(part.as_ref()));
+                files.collect::<Result<_>>()?
+            }
+        };
+        Ok(Targets { main, files })
+    }
+
+    /// The folder, if the output is one for so many files.
+    pub(crate) fn folder(&self, n_files: usize) -> Option<&Path> {
         let output = self.output.as_deref()?;
         let ends_with_slash = output
             .as_os_str()
             .as_encoded_bytes()
             .last()
             .is_some_and(|&last| std::path::is_separator(char::from(last)));
-        (ends_with_slash || output.is_dir()).then_some(output)
+        let has_ending = output.extension().is_some() || output == Path::new("-");
+        (ends_with_slash || output.is_dir() || (n_files > 1 && !has_ending)).then_some(output)
+    }
+}
+
+/// A seed as it is typed.
+///
+/// # Errors
+///
+/// If it is none, with what seeds are.
+pub(crate) fn seed(text: &str) -> Result<u64, String> {
+    let range = format!("a seed is a whole number from 0 to {}", u64::MAX);
+    text.trim()
+        .parse()
+        .map_err(|_| match text.trim().starts_with('-') {
+            true => format!("{range}, and not negative"),
+            false => range,
+        })
+}
+
+/// A name of files that leads to no other folder.
+fn plain_name(text: &str) -> Result<String, String> {
+    if text.is_empty() || text.starts_with('.') || text.contains(['/', '\\']) {
+        return Err(
+            "it is a part of the names of files, without a slash or a leading dot".to_owned(),
+        );
+    }
+    Ok(text.to_owned())
+}
+
+/// A name as a part of the names of files: what is no letter, digit, `.` or `_` becomes `-`.
+fn file_name(name: &str) -> String {
+    let plain = |c: char| {
+        if c.is_alphanumeric() || c == '.' || c == '_' {
+            c
+        } else {
+            '-'
+        }
+    };
+    let name: String = name.chars().map(plain).collect();
+    let name = name.trim_start_matches('.');
+    if name.is_empty() {
+        "recipe".to_owned()
+    } else {
+        name.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{OutputArgs, Target, file_name};
+    use std::path::PathBuf;
+
+    fn files(output: &str, name: Option<&str>, parts: &[&str]) -> Vec<String> {
+        let args = OutputArgs {
+            output: Some(PathBuf::from(output)),
+            name: name.map(str::to_owned),
+            ..OutputArgs::default()
+        };
+        let targets = args
+            .targets("my rock", parts, "png")
+            .map(|targets| targets.files);
+        let targets = targets.unwrap_or_default();
+        targets.iter().map(Target::to_string).collect()
+    }
+
+    #[test]
+    fn an_output_is_a_file_or_a_folder_by_one_rule() {
+        let maps = ["height", "ao"];
+        for (output, name, parts, expected) in [
+            ("a.png", None, &[""][..], &["a.png"][..]),
+            ("a.png", None, &maps[..1], &["a.png"]),
+            ("a.png", None, &maps, &["a_height.png", "a_ao.png"]),
+            ("b/", None, &[""], &["b/my-rock.png"]),
+            ("b/", None, &maps[..1], &["b/my-rock_height.png"]),
+            (
+                "b",
+                None,
+                &maps,
+                &["b/my-rock_height.png", "b/my-rock_ao.png"],
+            ),
+            ("b", Some("x"), &["", "2x2"], &["b/x.png", "b/x_2x2.png"]),
+            ("/", None, &[""], &["/my-rock.png"]),
+            ("-", None, &[""], &["standard output"]),
+            ("-", None, &maps, &[]),
+            ("a.png", Some("x"), &maps, &[]),
+        ] {
+            assert_eq!(
+                files(output, name, parts),
+                expected,
+                "{output} {name:?} {parts:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn names_of_recipes_are_safe_in_file_names() {
+        for (name, expected) in [
+            ("giraffe", "giraffe"),
+            ("my rock", "my-rock"),
+            ("../up", "-up"),
+            ("..", "recipe"),
+            ("a/b", "a-b"),
+        ] {
+            assert_eq!(file_name(name), expected, "{name}");
+        }
     }
 }

@@ -2,18 +2,17 @@
 
 use crate::encode::Format;
 use crate::error::Hint;
-use crate::foresight::foresee;
 use crate::input;
-use crate::job::{Job, eprintln_if_possible};
+use crate::job::Job;
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
+use crate::words::with_dashes;
 use anyhow::{Context as _, Error, Result};
 use dapple::image::{Content, RowWriter};
 use dapple::recipe::{
-    Bake, BakeOptions, Images, MapKind, MapRows, Picture, Plan, Recipe, RecipeError,
-    RecipeErrorKind,
+    Bake, Images, MapKind, MapRows, Picture, Recipe, RecipeError, RecipeErrorKind,
 };
-use dapple::tile::Map;
+use dapple::tile::{Map, repeat};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -25,6 +24,8 @@ use std::sync::Arc;
 pub(crate) struct MapFile {
     pub(crate) kind: MapKind,
     pub(crate) output: OutputIdx,
+    /// Where 2 x 2 copies go, if there are to be any.
+    pub(crate) sheet: Option<OutputIdx>,
     pub(crate) format: Format,
 }
 
@@ -35,14 +36,15 @@ pub(crate) struct MapFile {
 /// If there is none, or it cannot be read, with what was perhaps meant.
 pub(crate) fn read_recipe(name: &str) -> Result<(Recipe, &Path)> {
     let path = Path::new(name);
-    let is_builtin = Recipe::builtin_names().any(|builtin| builtin == name);
+    let builtin = with_dashes(name);
+    let is_builtin = Recipe::builtin_names().any(|known| known == builtin);
     let looks_like_a_path =
         path.extension().is_some() || path.components().count() > 1 || name == "-";
     if is_builtin && !path.is_file() {
-        return Ok((Recipe::builtin(name).map_err(advise)?, Path::new("")));
+        return Ok((Recipe::builtin(&builtin).map_err(advise)?, Path::new("")));
     }
     if !looks_like_a_path && !path.exists() {
-        let error = Recipe::builtin(name).map(drop).map_err(advise);
+        let error = Recipe::builtin(&builtin).map(drop).map_err(advise);
         error.hint("`dapple recipe --list` names the built-in recipes; a recipe of your own ends in .toml or .json")?;
     }
     let text = input::text(path)?;
@@ -94,48 +96,53 @@ pub(crate) fn read_picture(path: &Path) -> Result<Picture> {
     })
 }
 
-/// Draws the maps of a plan into files that were claimed.
+/// Draws the maps of a bake into files that were claimed, and says of each row that it is done.
 ///
 /// # Errors
 ///
 /// What the recipe or the operating system refuses.
-pub(crate) fn bake(
+pub(crate) fn write(
     job: &mut Job<'_>,
-    plan: &Plan,
-    options: &BakeOptions,
+    bake: Bake<'_>,
     files: &[MapFile],
+    progress: &Progress,
 ) -> Result<()> {
-    if let Some(work) = foresee(plan, options, files)?
-        && !job.is_quiet()
-    {
-        eprintln_if_possible(&work);
-    }
-    let mut bake = Bake::new(plan, options).map_err(advise)?;
     let size = bake.size();
     let mut rows = Vec::new();
     for file in files {
-        let (content, encoding) = (content(file.kind), file.format.encoding());
-        let target = job.target(file.output).clone();
-        let writer = RowWriter::new(job.writer(file.output)?, size, content, encoding);
-        rows.push(Rows {
-            writer: writer.with_context(|| cannot_be_written(&target))?,
-            target,
-            range: [f32::INFINITY, f32::NEG_INFINITY],
-        });
+        rows.push(Rows::new(job, file, size)?);
     }
-    let progress = Progress::bar("baking", size[1].into(), job.is_quiet());
-    for band in &mut bake {
-        let band = band.map_err(advise)?;
-        let height = band.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
-        let work = rows.par_iter_mut().zip(&band.maps);
-        work.try_for_each(|(rows, (_, map))| rows.write(map))?;
-        progress.set(u64::from(band.first_row) + u64::from(height));
+    // The lower half of a sheet is baked a second time, and so takes no memory.
+    let has_sheets = files.iter().any(|file| file.sheet.is_some());
+    let again = has_sheets.then(|| bake.clone());
+    draw(bake, &mut rows, progress, Rows::write)?;
+    if let Some(again) = again {
+        draw(again, &mut rows, progress, Rows::write_sheet)?;
     }
     for (rows, file) in rows.into_iter().zip(files) {
-        let ended = rows.writer.finish().map_err(Error::from);
-        let flushed = ended.and_then(|mut file| Ok(file.flush()?));
-        flushed.with_context(|| cannot_be_written(&rows.target))?;
+        rows.map.finish()?;
         job.note(file.output, file.format, size, rows.range);
+        if let (Some(writer), Some(sheet)) = (rows.sheet, file.sheet) {
+            writer.finish()?;
+            job.note(sheet, file.format, size.map(|side| 2 * side), rows.range);
+        }
+    }
+    Ok(())
+}
+
+/// Gives the bands of a bake to all maps.
+fn draw(
+    bake: Bake<'_>,
+    rows: &mut [Rows],
+    progress: &Progress,
+    write: fn(&mut Rows, &MapRows) -> Result<()>,
+) -> Result<()> {
+    for band in bake {
+        let band = band.map_err(advise)?;
+        let n_rows = band.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
+        let work = rows.par_iter_mut().zip(&band.maps);
+        work.try_for_each(|(rows, (_, map))| write(rows, map))?;
+        progress.add(n_rows.into());
     }
     Ok(())
 }
@@ -152,7 +159,12 @@ pub(crate) fn format(asked: Option<Format>, target: &Target) -> Result<Format> {
 /// Adds what can be done about an error of a recipe.
 pub(crate) fn advise(error: RecipeError) -> Error {
     let hint = match error.kind() {
-        RecipeErrorKind::Global { .. } => "bake it without --banded",
+        RecipeErrorKind::Global { .. } => {
+            return Error::new(error)
+                .hint("bake it without --banded")
+                .wrong_value();
+        }
+        RecipeErrorKind::UnknownRecipe { .. } => return Error::new(error).wrong_value(),
         RecipeErrorKind::NoImage { .. } => "images lie in the folder of the recipe",
         RecipeErrorKind::Schema { .. } => "see the changelog for what has changed in recipes",
         _ => return error.into(),
@@ -160,26 +172,81 @@ pub(crate) fn advise(error: RecipeError) -> Error {
     Error::new(error).hint(hint)
 }
 
-/// A map on its way into a file.
-struct Rows {
+/// A file that gets an image row by row, and its name for errors.
+struct Writer {
     target: Target,
-    writer: RowWriter<BufWriter<File>>,
+    rows: RowWriter<BufWriter<File>>,
+}
+
+/// A map on its way into a file, and into 2 x 2 copies of it.
+struct Rows {
+    map: Writer,
+    sheet: Option<Writer>,
     /// The smallest and the largest number so far.
     range: [f32; 2],
 }
 
 impl Rows {
+    fn new(job: &Job<'_>, file: &MapFile, size: [u32; 2]) -> Result<Self> {
+        let twice = size.map(|side| side.saturating_mul(2));
+        let sheet = file.sheet.map(|sheet| Writer::new(job, file, sheet, twice));
+        Ok(Self {
+            map: Writer::new(job, file, file.output, size)?,
+            sheet: sheet.transpose()?,
+            range: [f32::INFINITY, f32::NEG_INFINITY],
+        })
+    }
+
+    fn write(&mut self, map: &MapRows) -> Result<()> {
+        self.map.write(map)?;
+        self.range = map.range(self.range);
+        self.write_sheet(map)
+    }
+
+    fn write_sheet(&mut self, map: &MapRows) -> Result<()> {
+        match &mut self.sheet {
+            Some(sheet) => sheet.write(&beside_itself(map)?),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Writer {
+    fn new(job: &Job<'_>, file: &MapFile, output: OutputIdx, size: [u32; 2]) -> Result<Self> {
+        let (content, encoding) = (content(file.kind), file.format.encoding());
+        let target = job.target(output).clone();
+        let rows = RowWriter::new(job.writer(output)?, size, content, encoding);
+        let rows = rows.with_context(|| cannot_be_written(&target))?;
+        Ok(Self { target, rows })
+    }
+
     fn write(&mut self, map: &MapRows) -> Result<()> {
         let written = match map {
-            MapRows::Gray(raster) => self.writer.write_gray(raster.view()),
-            MapRows::Color(raster) => self.writer.write_color(raster.view()),
-            MapRows::Normal(raster) => self.writer.write_normals(raster.view()),
-            MapRows::Packed(raster) => self.writer.write_packed(raster.view()),
+            MapRows::Gray(raster) => self.rows.write_gray(raster.view()),
+            MapRows::Color(raster) => self.rows.write_color(raster.view()),
+            MapRows::Normal(raster) => self.rows.write_normals(raster.view()),
+            MapRows::Packed(raster) => self.rows.write_packed(raster.view()),
         };
-        written.with_context(|| cannot_be_written(&self.target))?;
-        self.range = map.range(self.range);
-        Ok(())
+        written.with_context(|| cannot_be_written(&self.target))
     }
+
+    fn finish(self) -> Result<()> {
+        let ended = self.rows.finish().map_err(Error::from);
+        let flushed = ended.and_then(|mut file| Ok(file.flush()?));
+        flushed.with_context(|| cannot_be_written(&self.target))
+    }
+}
+
+/// Rows with a copy of them to their right.
+fn beside_itself(map: &MapRows) -> Result<MapRows> {
+    let [width, height] = map.size();
+    let size = [width.saturating_mul(2), height];
+    Ok(match map {
+        MapRows::Gray(raster) => MapRows::Gray(repeat(raster, size)?),
+        MapRows::Color(raster) => MapRows::Color(repeat(raster, size)?),
+        MapRows::Normal(raster) => MapRows::Normal(repeat(raster, size)?),
+        MapRows::Packed(raster) => MapRows::Packed(repeat(raster, size)?),
+    })
 }
 
 fn cannot_be_written(target: &Target) -> String {

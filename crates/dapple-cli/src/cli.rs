@@ -3,7 +3,7 @@
 use crate::args::Common;
 use crate::commands::Command;
 use crate::error::EXIT_CODES;
-use clap::Parser;
+use clap::{Arg, Command as ClapCommand, CommandFactory, Parser};
 
 /// What `dapple --help` says before the subcommands.
 const ABOUT: &str = "\
@@ -46,13 +46,46 @@ pub(crate) struct Cli {
     pub(crate) command: Command,
 }
 
+/// The command line, which reads its words without regard to case.
+pub(crate) fn command() -> ClapCommand {
+    let any_case = |arg: Arg| {
+        let takes_values = arg.get_action().takes_values();
+        arg.ignore_case(takes_values)
+    };
+    let command = Cli::command();
+    command.mut_subcommands(|subcommand| subcommand.mut_args(any_case))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Cli;
-    use clap::CommandFactory;
+    use super::command;
+    use clap::error::ErrorKind;
 
     #[test]
     fn the_command_line_is_consistent() {
-        Cli::command().debug_assert();
+        command().debug_assert();
+    }
+
+    #[test]
+    fn words_are_read_with_underscores_too() {
+        let mut n_values = 0;
+        for subcommand in command().get_subcommands() {
+            for arg in subcommand.get_arguments() {
+                for value in arg.get_possible_values() {
+                    let value = value.get_name().replace('-', "_").to_uppercase();
+                    let typed = match arg.get_long() {
+                        Some(option) => format!("--{option}={value}"),
+                        None => value,
+                    };
+                    let words = ["dapple", subcommand.get_name(), &typed];
+                    let refused = command().try_get_matches_from(words).err();
+                    let is_valid =
+                        refused.is_none_or(|error| error.kind() != ErrorKind::InvalidValue);
+                    assert!(is_valid, "{words:?}");
+                    n_values += 1;
+                }
+            }
+        }
+        assert!(n_values > 50, "they were seen: {n_values}");
     }
 }

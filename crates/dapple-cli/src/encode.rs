@@ -19,7 +19,8 @@ use std::io::Cursor;
 pub(crate) enum Format {
     /// PNG with 8 bits per channel.
     Png8,
-    /// PNG with 16 bits per channel.
+    /// PNG with 16 bits per channel; also png.
+    #[value(alias = "png")]
     Png16,
     /// OpenEXR with 32-bit floating point.
     Exr,

@@ -1,6 +1,12 @@
 //! What went wrong, for people: a message, its causes, a hint what to do about it, and the exit code.
 
 use anyhow::Error;
+use dapple::points::{PointsError, PointsErrorKind};
+use dapple::pups::{PupsError, PupsErrorKind};
+use dapple::recipe::{RecipeError, RecipeErrorKind};
+use dapple::synth::{SynthError, SynthErrorKind};
+use dapple::tile::{TileError, TileErrorKind};
+use dapple::worley::{WorleyError, WorleyErrorKind};
 use std::fmt;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -25,7 +31,7 @@ pub(crate) const EXIT_CODES: &str = "\
 Exit codes:
   0    done
   1    refused or failed: nothing was written
-  2    wrong usage
+  2    wrong usage, or a value out of its range
   3    done, but a quality that --check asks for is not there
   130  interrupted: nothing was written";
 
@@ -71,6 +77,9 @@ pub(crate) trait Hint {
 
     /// The same with a hint: an imperative sentence without a full stop.
     fn hint(self, hint: impl Into<String>) -> Self::Hinted;
+
+    /// The same as an error of the command line: a library found the value wrong that was typed.
+    fn wrong_value(self) -> Self::Hinted;
 }
 
 impl Hint for Error {
@@ -87,6 +96,18 @@ impl Hint for Error {
             }),
         }
     }
+
+    fn wrong_value(self) -> Self {
+        let exit = Exit::Usage;
+        match self.downcast::<Refusal>() {
+            Ok(refusal) => Self::new(Refusal { exit, ..refusal }),
+            Err(error) => Self::new(Refusal {
+                error,
+                hint: None,
+                exit,
+            }),
+        }
+    }
 }
 
 impl<T, E: Into<Error>> Hint for Result<T, E> {
@@ -95,16 +116,85 @@ impl<T, E: Into<Error>> Hint for Result<T, E> {
     fn hint(self, hint: impl Into<String>) -> Result<T, Error> {
         self.map_err(|error| error.into().hint(hint))
     }
+
+    fn wrong_value(self) -> Result<T, Error> {
+        self.map_err(|error| error.into().wrong_value())
+    }
 }
 
-/// Tells the user of an error and says how to exit.
-pub(crate) fn report(error: &Error) -> Exit {
+/// Tells the user of an error, beginning with the option that it is about, and says how to exit.
+pub(crate) fn report(error: &Error, arguments: &[String]) -> Exit {
     let exit = exit(error);
     if exit != Exit::Done {
+        let option = match exit {
+            Exit::Usage => refused_number(error).and_then(|number| option_with(number, arguments)),
+            _ => None,
+        };
+        let text = text(error, option.as_deref());
         // Where even this cannot be written, the exit code has to do.
-        let _ = io::stderr().lock().write_all(text(error).as_bytes());
+        let _ = io::stderr().lock().write_all(text.as_bytes());
     }
     exit
+}
+
+/// The number that a library finds out of its range.
+fn refused_number(error: &Error) -> Option<f64> {
+    use PointsErrorKind::{NotDescending, NotPositive, OutOfRange, PeriodTooShort, Radius};
+    error.chain().find_map(|cause| {
+        if let Some(Refusal { error, .. }) = cause.downcast_ref() {
+            return refused_number(error);
+        }
+        if let Some(error) = cause.downcast_ref::<PointsError>() {
+            return match error.kind() {
+                NotPositive { value, .. } | OutOfRange { value, .. } => Some(*value),
+                Radius { radius, .. }
+                | PeriodTooShort { radius, .. }
+                | NotDescending { radius, .. } => Some(*radius),
+                _ => None,
+            };
+        }
+        let recipe = cause.downcast_ref().map(RecipeError::kind);
+        let pups = cause.downcast_ref().map(PupsError::kind);
+        let worley = cause.downcast_ref().map(WorleyError::kind);
+        let tile = cause.downcast_ref().map(TileError::kind);
+        let synth = cause.downcast_ref().map(SynthError::kind);
+        match (recipe, pups, worley, tile, synth) {
+            (Some(RecipeErrorKind::Range { value, .. }), ..)
+            | (_, Some(PupsErrorKind::Range { value, .. }), ..)
+            | (_, _, Some(WorleyErrorKind::Range { value, .. }), ..)
+            | (_, _, _, Some(TileErrorKind::Range { value, .. }), _)
+            | (.., Some(SynthErrorKind::Range { value, .. })) => Some(*value),
+            _ => None,
+        }
+    })
+}
+
+/// The only option that was typed with a number, as it was typed.
+fn option_with(number: f64, arguments: &[String]) -> Option<String> {
+    let holds = |value: &str| {
+        let mut parts = value.split([',', 'x']).map(str::parse);
+        // Some numbers are kept with fewer digits.
+        parts.any(|part| {
+            part.is_ok_and(|part: f64| part == number || f64::from(part as f32) == number)
+        })
+    };
+    let mut found = Vec::new();
+    for (index, word) in arguments
+        .iter()
+        .enumerate()
+        .filter(|(_, word)| word.starts_with("--"))
+    {
+        let (option, value) = match (word.split_once('='), arguments.get(index + 1)) {
+            (Some((option, value)), _) => (option, value),
+            (None, Some(value)) => (word.as_str(), value.as_str()),
+            (None, None) => continue,
+        };
+        if holds(value) {
+            found.push(format!("{option} {value}"));
+        }
+    }
+    let only = found.pop()?;
+    found.is_empty().then_some(only)
 }
 
 /// How to exit after an error.
@@ -120,14 +210,15 @@ fn exit(error: &Error) -> Exit {
         .unwrap_or(Exit::Failed)
 }
 
-/// The message, the causes that say more, and the hint.
-fn text(error: &Error) -> String {
+/// The option that it is about, the message, the causes that say more, and the hint.
+fn text(error: &Error, option: Option<&str>) -> String {
     let mut said = error.to_string();
-    let mut text = format!("error: {said}\n");
+    let option = option.map_or(String::new(), |option| format!("{option}: "));
+    let mut text = format!("error: {option}{said}\n");
     for cause in error.chain().skip(1) {
         let cause = cause.to_string();
-        // Many errors repeat their cause in their own message.
-        if !said.contains(&cause) {
+        // Many errors repeat their cause in their own message, or are repeated by it.
+        if !said.contains(&cause) && !cause.ends_with(&said) {
             text += &format!("  because: {cause}\n");
             said = cause;
         }
@@ -153,7 +244,7 @@ fn is_broken_pipe(error: &Error) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Exit, Hint, exit, text, usage};
+    use super::{Exit, Hint, exit, option_with, text, usage};
     use anyhow::{Context, anyhow};
     use std::io;
 
@@ -164,7 +255,7 @@ mod tests {
             .context("cannot cook")
             .hint("buy plates");
         assert_eq!(
-            text(&error),
+            text(&error, None),
             "error: cannot cook\n  because: the plate: no room\nhint: buy plates\n"
         );
     }
@@ -173,9 +264,21 @@ mod tests {
     fn hints_and_exit_codes_survive_what_is_put_around_them() {
         let error = usage("no such thing").hint("try another");
         let error = Err::<(), _>(error).context("reading").unwrap_err();
-        assert!(text(&error).ends_with("hint: try another\n"), "{error:?}");
+        assert!(
+            text(&error, None).ends_with("hint: try another\n"),
+            "{error:?}"
+        );
         assert_eq!(exit(&error), Exit::Usage);
         assert_eq!(exit(&anyhow!("else")), Exit::Failed);
+    }
+
+    #[test]
+    fn the_option_of_a_number_is_found_if_it_is_the_only_one() {
+        let typed = "pups --size 0x8 --spacing 0 --gain=0.5 -o out.png".split(' ');
+        let typed: Vec<_> = typed.map(str::to_owned).collect();
+        assert_eq!(option_with(0.5, &typed).as_deref(), Some("--gain 0.5"));
+        assert_eq!(option_with(0.0, &typed), None, "there are two");
+        assert_eq!(option_with(3.0, &typed), None, "there is none");
     }
 
     #[test]

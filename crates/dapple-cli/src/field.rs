@@ -1,25 +1,27 @@
 //! A single field drawn: what `worley`, `pups` and `wavelet` share. Each makes a recipe of one node and bakes it.
 
-use crate::args::{Axes, ImageArgs, Region, Size};
+use crate::args::{Axes, ImageArgs, Region, Size, Targets, seed};
 use crate::baking::{self, MapFile, advise};
 use crate::encode::{Format, ramped_recipe};
 use crate::error::{Exit, Hint, usage};
+use crate::foresight::foresee;
 use crate::job::{Context, Job, put_text};
 use crate::output::Target;
-use anyhow::Result;
+use crate::progress::Progress;
+use anyhow::{Error, Result};
 use dapple::hash::Seed;
 use dapple::recipe::{
-    BakeMemory, BakeOptions, Images, Input, Levels, LevelsCurve, MapKind, Node, Plan, Recipe,
+    Bake, BakeMemory, BakeOptions, Images, Input, Levels, LevelsCurve, MapKind, Node, Plan, Recipe,
+    RecipeError,
 };
 use serde::Serialize;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
 
 /// What commands that draw a field take.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 pub(crate) struct FieldArgs {
     /// What all chance comes from.
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     pub(crate) seed: u64,
 
     /// Columns and rows, in pixels.
@@ -28,7 +30,7 @@ pub(crate) struct FieldArgs {
 
     /// Along which axes the picture repeats.
     #[arg(long, value_enum, default_value_t = Axes::Both)]
-    pub(crate) axes: Axes,
+    pub(crate) wrap: Axes,
 
     /// Make only this part of the picture, in pixels: bit for bit the crop of the whole.
     #[arg(long, value_name = "X,Y,W,H")]
@@ -58,7 +60,7 @@ impl std::str::FromStr for RangeArg {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if text == "raw" {
+        if text.eq_ignore_ascii_case("raw") {
             return Ok(Self::Raw);
         }
         let ends: Result<Vec<f32>, _> = text.split(',').map(|end| end.trim().parse()).collect();
@@ -104,15 +106,17 @@ pub(crate) fn draw(
     options: &impl Serialize,
     context: &Context,
 ) -> Result<Exit> {
+    let mut job = Job::new(context, field.command, &image.files);
     if args.recipe {
         let format = image.format.unwrap_or(Format::Png16);
-        let text = recipe(field, args, image, format)?
-            .to_toml()
-            .map_err(advise)?;
-        return put_text(context, field.command, &image.files, &text, options);
+        let text = recipe(field, args, image, format)?.to_toml();
+        let text = text.map_err(advise)?;
+        return put_text(job, field.command, "toml", &text, options);
     }
-    let mut job = Job::new(context, field.command, &image.files);
-    let target = image.files.target()?;
+    let Targets { main, files } =
+        image
+            .files
+            .targets(field.command, &frames(field.frames), image.ending())?;
     let is_ramped = image.ramp.is_some();
     let is_color = field.is_color || is_ramped;
     let default = if is_ramped {
@@ -120,39 +124,55 @@ pub(crate) fn draw(
     } else {
         Format::Png16
     };
-    let format = Format::choose(image.format, &target, default)?;
+    let format = Format::choose(image.format, &main, default)?;
     let recipe = recipe(field, args, image, format)?;
     let kind = if is_color {
         MapKind::Albedo
     } else {
         MapKind::Height
     };
-    let mut files = Vec::new();
-    for target in targets(&target, field.frames)? {
-        files.push(MapFile {
+    let claim = |target: &Target| {
+        let output = job.claim(target)?;
+        Ok(MapFile {
             kind,
-            output: job.claim(&target)?,
+            output,
+            sheet: None,
             format,
-        });
-    }
-    job.claim_sidecar()?;
+        })
+    };
+    let files = files.iter().map(claim).collect::<Result<Vec<_>>>()?;
+    job.claim_sidecar(&main)?;
     let bake = BakeOptions {
         size: args.size.0,
         region: args.region.map(Region::of_recipe),
         maps: vec![kind],
         memory: BakeMemory::Banded,
     };
+    let n_rows = args.region.map_or(args.size.0[1], |region| region.size[1]);
+    let n_rows = u64::from(n_rows) * files.len() as u64;
+    let progress = Progress::bar("drawing", n_rows, context);
     for (index, file) in (0_u32..).zip(&files) {
         let time = f64::from(index) / files.len() as f64;
-        let plan = Plan::new(&recipe, &field.images, time).map_err(advise)?;
-        baking::bake(&mut job, &plan, &bake, std::slice::from_ref(file))?;
+        let plan = Plan::new(&recipe, &field.images, time).map_err(refused)?;
+        if index == 0 {
+            foresee(&plan, &bake, &files, &job)?;
+        }
+        let bake = Bake::new(&plan, &bake).map_err(refused)?;
+        baking::write(&mut job, bake, std::slice::from_ref(file), &progress)?;
     }
+    drop(progress);
     let told = Told {
         options,
         recipe: &recipe,
     };
     job.finish(&told, Value::Null)?;
     Ok(Exit::Done)
+}
+
+/// A refusal of the recipe, which is about what was typed. Of nodes, which the user knows nothing of, nothing is said.
+fn refused(error: RecipeError) -> Error {
+    let message = error.kind().to_string();
+    Error::new(error).context(message).wrong_value()
 }
 
 /// The options and the recipe, for the JSON file.
@@ -168,7 +188,7 @@ struct Told<'a, T> {
 fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) -> Result<Recipe> {
     let mut recipe = Recipe::of_node(field.command, field.node.clone(), Seed(args.seed));
     recipe.extent = field.extent;
-    recipe.wrap = args.axes.flags();
+    recipe.wrap = args.wrap.flags();
     let range = match args.range {
         Some(RangeArg::Raw) => None,
         Some(RangeArg::Ends(ends)) => Some(ends),
@@ -206,30 +226,15 @@ fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) ->
     Ok(recipe)
 }
 
-/// The file of each picture: `NAME-001.png` and so on for a loop.
-fn targets(target: &Target, frames: Option<u32>) -> Result<Vec<Target>> {
-    let Some(frames) = frames else {
-        return Ok(vec![target.clone()]);
+/// The numbers of the pictures of a loop, `001` and so on, as parts of their names; no number for a single picture.
+fn frames(count: Option<u32>) -> Vec<String> {
+    let Some(count) = count else {
+        return vec![String::new()];
     };
-    let Target::Path(path) = target else {
-        return Err(
-            usage("a loop has many pictures, and standard output takes one")
-                .hint("give a file with -o"),
-        );
-    };
-    let digits = frames.to_string().len().max(3);
-    let name = |frame: u32| Target::Path(numbered(path, frame, digits));
-    Ok((1..=frames).map(name).collect())
-}
-
-fn numbered(path: &Path, frame: u32, digits: usize) -> PathBuf {
-    let mut name = path.file_stem().unwrap_or_default().to_owned();
-    name.push(format!("-{frame:0digits$}"));
-    if let Some(ending) = path.extension() {
-        name.push(".");
-        name.push(ending);
-    }
-    path.with_file_name(name)
+    let digits = count.to_string().len().max(3);
+    (1..=count)
+        .map(|frame| format!("{frame:0digits$}"))
+        .collect()
 }
 
 /// The width and height of a picture that is `shorter` units along its shorter side and has square pixels.
@@ -242,9 +247,8 @@ pub(crate) fn extent_of(size: Size, shorter: f64) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::{RangeArg, extent_of, numbered};
+    use super::{RangeArg, extent_of, frames};
     use crate::args::Size;
-    use std::path::Path;
 
     #[test]
     fn whole_numbers_of_units_come_out_whole_for_any_size() {
@@ -265,11 +269,9 @@ mod tests {
     }
 
     #[test]
-    fn pictures_of_a_loop_are_numbered_before_the_ending() {
-        assert_eq!(
-            numbered(Path::new("a/sea.png"), 7, 3),
-            Path::new("a/sea-007.png")
-        );
-        assert_eq!(numbered(Path::new("sea"), 12, 4), Path::new("sea-0012"));
+    fn pictures_of_a_loop_are_numbered_with_as_many_digits() {
+        assert_eq!(frames(None), [""]);
+        assert_eq!(frames(Some(2)), ["001", "002"]);
+        assert_eq!(frames(Some(1000)).first().map(String::as_str), Some("0001"));
     }
 }

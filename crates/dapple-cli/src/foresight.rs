@@ -3,6 +3,7 @@
 use crate::baking::{MapFile, advise};
 use crate::encode::Format;
 use crate::error::Hint;
+use crate::job::Job;
 use anyhow::{Result, anyhow};
 use dapple::recipe::{Bake, BakeMemory, BakeOptions, MapKind, Plan};
 use indicatif::{DecimalBytes, HumanDuration};
@@ -15,7 +16,7 @@ const TOLD_PIXELS: u64 = 1 << 26;
 /// Columns and rows of the small bake whose pace is measured.
 const PROBE: [u32; 2] = [256; 2];
 
-/// What a bake will take, if that is worth a word.
+/// Says what a bake will take, if that is worth a word.
 ///
 /// # Errors
 ///
@@ -24,20 +25,23 @@ pub(crate) fn foresee(
     plan: &Plan,
     options: &BakeOptions,
     files: &[MapFile],
-) -> Result<Option<String>> {
+    job: &Job<'_>,
+) -> Result<()> {
     let size = options.region.map_or(options.size, |region| region.size);
     let pixels = n_pixels(size);
     if pixels < TOLD_PIXELS {
-        return Ok(None);
+        return Ok(());
     }
     let pace = probe(plan, options)?;
     let work = work(size, files, pace);
     if pixels > MOST_PIXELS && options.memory == BakeMemory::Whole {
         let error =
             anyhow!("without --banded at most 32768 × 32768 pixels are baked, and this is {work}");
-        return Err(error.hint("add --banded if you mean it, or make a part with --region"));
+        let hint = "add --banded if you mean it, or make a part with --region";
+        return Err(error.hint(hint).wrong_value());
     }
-    Ok(Some(format!("baking {work}")))
+    job.note_work(&format!("baking {work}"));
+    Ok(())
 }
 
 /// Seconds for each pixel, measured on a small picture of the same tile.

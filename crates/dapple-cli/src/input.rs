@@ -47,7 +47,7 @@ pub(crate) struct Loaded {
     /// Whether the file has more than 8 bits per channel.
     pub(crate) is_deep: bool,
     /// Whether its numbers are linear light, as in OpenEXR; in a photograph of another format they are sRGB codes.
-    is_linear: bool,
+    pub(crate) is_linear: bool,
 }
 
 impl Loaded {
@@ -171,7 +171,9 @@ fn part(
     };
     let cropped = alpha.map(|alpha| alpha.crop(region.first, region.size));
     Ok(Loaded {
-        map: crop(&map, region).with_context(|| name(path))?,
+        map: crop(&map, region)
+            .wrong_value()
+            .with_context(|| name(path))?,
         alpha: cropped.transpose().with_context(|| name(path))?,
         is_deep,
         is_linear,

@@ -5,19 +5,22 @@ use crate::encode::{Format, default_format, encode, encode_with_alpha, ramped, r
 use crate::error::{Exit, Hint, usage};
 use crate::input::Loaded;
 use crate::output::{OutputIdx, Outputs, Target};
+use crate::progress::Style;
 use anyhow::{Context as _, Result};
 use dapple::tile::Map;
 use serde::Serialize;
 use serde_json::Value;
 use std::fs::File;
 use std::io::{self, BufWriter, IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::Path;
 
 /// What holds for the whole process.
 #[derive(Clone, Debug)]
 pub(crate) struct Context {
     /// Whether nothing is said that was not asked for.
     pub(crate) quiet: bool,
+    /// How progress is shown.
+    pub(crate) progress: Style,
     /// The command line, as it was given.
     pub(crate) arguments: Vec<String>,
 }
@@ -74,11 +77,6 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Whether nothing is said that was not asked for.
-    pub(crate) fn is_quiet(&self) -> bool {
-        self.context.quiet
-    }
-
     /// Claims a file that is no text.
     ///
     /// # Errors
@@ -98,7 +96,7 @@ impl<'a> Job<'a> {
     ///
     /// As [`Outputs::claim`].
     pub(crate) fn claim_text(&mut self, target: &Target) -> Result<OutputIdx> {
-        let output = self.outputs.claim(target)?;
+        let output = self.claim_in_folder(target)?;
         let record = FileRecord {
             file: target.to_string(),
             ..FileRecord::default()
@@ -107,38 +105,19 @@ impl<'a> Job<'a> {
         Ok(output)
     }
 
-    /// Makes a folder for outputs, if it is not there.
-    ///
-    /// # Errors
-    ///
-    /// As [`Outputs::make_folder`].
-    pub(crate) fn make_folder(&mut self, folder: &std::path::Path) -> Result<()> {
-        self.outputs.make_folder(folder)
-    }
-
-    /// Claims the JSON file, if one was asked for. The outputs have to be claimed before.
+    /// Claims the JSON file, if one was asked for: beside the output, unless the command line names it. The outputs have to
+    /// be claimed before.
     ///
     /// # Errors
     ///
     /// As [`Outputs::claim`], and if there is no name for it.
-    pub(crate) fn claim_sidecar(&mut self) -> Result<()> {
-        self.claim_sidecar_or(None)
-    }
-
-    /// The same with a name of its own where the command line gives none.
-    ///
-    /// # Errors
-    ///
-    /// As [`claim_sidecar`](Self::claim_sidecar).
-    pub(crate) fn claim_sidecar_or(&mut self, name: Option<PathBuf>) -> Result<()> {
-        let path = match (&self.args.json, name) {
-            (None, _) => return Ok(()),
-            (Some(Some(path)), _) => path.clone(),
-            (Some(None), Some(name)) => name,
-            (Some(None), None) => self.sidecar_path()?,
+    pub(crate) fn claim_sidecar(&mut self, main: &Target) -> Result<()> {
+        let target = match &self.args.json {
+            None => return Ok(()),
+            Some(Some(path)) => Target::from(path.as_path()),
+            Some(None) => self.beside(main)?,
         };
-        let target = Target::from(path.as_path());
-        self.sidecar = Some(self.outputs.claim(&target)?);
+        self.sidecar = Some(self.claim_in_folder(&target)?);
         Ok(())
     }
 
@@ -160,6 +139,13 @@ impl<'a> Job<'a> {
         self.write(output, &encode(map, format)?)?;
         self.note(output, format, map.size(), range(map));
         Ok(())
+    }
+
+    /// Says on standard error what is going to be done, unless that is to be quiet.
+    pub(crate) fn note_work(&self, text: &str) {
+        if !self.context.quiet {
+            eprintln_if_possible(text);
+        }
     }
 
     /// The target of a file that was claimed.
@@ -224,6 +210,7 @@ impl<'a> Job<'a> {
             map,
             alpha,
             is_deep,
+            ..
         } = loaded;
         let (Map::Color(colors), Some(alpha)) = (&map, &alpha) else {
             return self.write_image(output, map, is_deep, args);
@@ -276,6 +263,10 @@ impl<'a> Job<'a> {
         }
         let is_file = |output| self.outputs.target(output) != &Target::Stdout;
         let files = self.files.iter().filter(|(output, _)| is_file(*output));
+        let told = match self.context.progress {
+            Style::Json => told_as_json,
+            Style::Auto | Style::Lines => told,
+        };
         let written: Vec<_> = files.map(|(_, record)| told(record)).collect();
         self.outputs.commit()?;
         for line in written.iter().filter(|_| !self.context.quiet) {
@@ -284,21 +275,30 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// The name of the JSON file where none was given: that of the first output, with the ending `.json`.
-    fn sidecar_path(&self) -> Result<PathBuf> {
-        let first = self.files.first();
-        let path = first.and_then(|(output, _)| self.outputs.target(*output).path());
-        let Some(path) = path else {
+    /// Claims a file, and makes its folder if that is missing.
+    fn claim_in_folder(&mut self, target: &Target) -> Result<OutputIdx> {
+        let folder = target.path().and_then(Path::parent);
+        if let Some(folder) = folder.filter(|folder| !folder.as_os_str().is_empty()) {
+            self.outputs.make_folder(folder)?;
+        }
+        self.outputs.claim(target)
+    }
+
+    /// The JSON file where none was named: the output's name with the ending `.json`.
+    fn beside(&self, main: &Target) -> Result<Target> {
+        let Some(path) = main.path() else {
             return Err(usage("there is no output for the JSON file to lie beside")
                 .hint("name it: --json=FILE"));
         };
-        let path = path.with_extension("json");
-        if first.is_some_and(|(_, record)| path.as_os_str() == record.file.as_str()) {
+        let target = Target::Path(path.with_extension("json"));
+        let is_target =
+            |(output, _): &(OutputIdx, FileRecord)| *self.outputs.target(*output) == target;
+        if self.files.iter().any(is_target) {
             return Err(
                 usage("the output is a JSON file itself").hint("name the other: --json=FILE")
             );
         }
-        Ok(path)
+        Ok(target)
     }
 }
 
@@ -314,30 +314,24 @@ pub(crate) fn say(text: &str) -> Result<()> {
     Ok(stdout.flush()?)
 }
 
-/// Writes a text to the output, or prints it where there is none.
+/// Writes a text to the output, or prints it where there is none. In a folder the file has a name of its own: `NAME.ENDING`.
 ///
 /// # Errors
 ///
 /// What goes wrong with the output, or if nobody listens.
 pub(crate) fn put_text(
-    context: &Context,
-    command: &'static str,
-    files: &OutputArgs,
+    mut job: Job<'_>,
+    name: &str,
+    ending: &str,
     text: &str,
     options: &impl Serialize,
 ) -> Result<Exit> {
-    if files.output.is_none() {
-        if files.json.is_some() {
-            return Err(
-                usage("there is no output for the JSON file to lie beside").hint("add -o FILE")
-            );
-        }
-        say(text.trim_end())?;
-        return Ok(Exit::Done);
-    }
-    let mut job = Job::new(context, command, files);
-    let output = job.claim_text(&files.target()?)?;
-    job.claim_sidecar()?;
+    let target = match job.args.output {
+        Some(_) => job.args.target(name, ending)?,
+        None => Target::Stdout,
+    };
+    let output = job.claim_text(&target)?;
+    job.claim_sidecar(&target)?;
     job.write(output, text.as_bytes())?;
     job.finish(options, Value::Null)?;
     Ok(Exit::Done)
@@ -346,6 +340,12 @@ pub(crate) fn put_text(
 /// Prints to standard error. If nobody listens there, nobody is missed.
 pub(crate) fn eprintln_if_possible(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// What is said of a file to a program.
+fn told_as_json(record: &FileRecord) -> String {
+    serde_json::json!({ "wrote": record.file, "size": record.size, "format": record.format })
+        .to_string()
 }
 
 /// What is said of a file.

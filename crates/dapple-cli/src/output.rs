@@ -18,7 +18,7 @@ mod temporary;
 pub(crate) use registry::exit_without_rubbish;
 use temporary::Temporary;
 
-use crate::error::Hint;
+use crate::error::{Hint, usage};
 use anyhow::{Context, Error, Result, anyhow, bail};
 use sha2::{Digest, Sha256};
 use std::fmt;
@@ -90,6 +90,38 @@ impl Target {
             .unwrap_or_default()
             .to_string_lossy()
             .to_ascii_lowercase()
+    }
+
+    /// The same file with another ending.
+    pub(crate) fn with_ending(self, ending: &str) -> Self {
+        match self {
+            Self::Stdout => Self::Stdout,
+            Self::Path(path) => Self::Path(path.with_extension(ending)),
+        }
+    }
+
+    /// The file beside it for a part of what is written: `NAME_PART.ENDING`; itself for a part without a name.
+    ///
+    /// # Errors
+    ///
+    /// If it is standard output, which has nothing beside it.
+    pub(crate) fn part(&self, part: &str) -> Result<Self> {
+        match self {
+            _ if part.is_empty() => Ok(self.clone()),
+            Self::Stdout => Err(
+                usage("there are several files, and standard output takes one")
+                    .hint("give a file or a folder with -o"),
+            ),
+            Self::Path(path) => {
+                let mut name = path.file_stem().unwrap_or_default().to_owned();
+                name.push(format!("_{part}"));
+                if let Some(ending) = path.extension() {
+                    name.push(".");
+                    name.push(ending);
+                }
+                Ok(Self::Path(path.with_file_name(name)))
+            }
+        }
     }
 }
 

@@ -284,7 +284,19 @@ impl fmt::Display for RecipeErrorKind {
     }
 }
 
-impl core::error::Error for RecipeError {}
+impl core::error::Error for RecipeError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self.kind() {
+            RecipeErrorKind::Worley(error) => Some(error),
+            RecipeErrorKind::Pups(error) => Some(error),
+            RecipeErrorKind::Wavelet(error) => Some(error),
+            RecipeErrorKind::Tile(error) => Some(error),
+            RecipeErrorKind::Color(error) => Some(error),
+            RecipeErrorKind::Raster(error) => Some(error),
+            _ => None,
+        }
+    }
+}
 
 /// Makes the errors of other crates into recipe errors.
 macro_rules! from {

@@ -84,6 +84,7 @@ pub struct Material {
     /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6; 0.1 by default.
     pub relief: f64,
     /// The color; the height as a gray by default.
+    #[serde(alias = "basecolor", alias = "base_color")]
     pub albedo: Option<Input>,
     /// From 0, a mirror, to 1, chalk; 0.8 by default.
     pub roughness: Input,

@@ -107,7 +107,7 @@ fn parse_json<T: DeserializeOwned>(text: &str) -> Result<T, RecipeError> {
 
 /// The error of a reader, with the nearest of the words that it says it expected.
 fn text_error(message: &str) -> RecipeError {
-    let message = message.lines().collect::<Vec<_>>().join(" ");
+    let message = plain(&message.lines().collect::<Vec<_>>().join(" "));
     let error = RecipeError::new(RecipeErrorKind::Text {
         message: message.clone(),
     });
@@ -117,6 +117,23 @@ fn text_error(message: &str) -> RecipeError {
         Some(written) if message.starts_with("unknown ") => error.meant(written, words),
         _ => error,
     }
+}
+
+/// The message with the names of Rust types, if it ends in one, as what is to be written.
+fn plain(message: &str) -> String {
+    let Some((found, expected)) = message.rsplit_once(", expected ") else {
+        return message.to_owned();
+    };
+    let expected = match expected.split(' ').next() {
+        Some("struct" | "map") => "a table",
+        Some("enum" | "internally" | "adjacently") => "a word or a table",
+        Some("tuple") => "a list",
+        Some("f32" | "f64") => "a number",
+        Some("u8" | "u16" | "u32" | "u64" | "usize") => "a whole number that is not negative",
+        Some("i8" | "i16" | "i32" | "i64" | "isize") => "a whole number",
+        _ => expected,
+    };
+    format!("{found}, expected {expected}")
 }
 
 /// The line and the column of a byte.
@@ -181,6 +198,41 @@ mod tests {
             );
             assert_eq!(error.nearest(), Some(nearest), "{wrong}: {error}");
         }
+    }
+
+    #[test]
+    fn a_wrong_value_is_told_without_names_of_types() {
+        for (wrong, expected) in [
+            ("octaves = 3", "a table"),
+            ("metric = 3", "a word or a table"),
+            ("frequency = \"high\"", "a number"),
+            ("octaves.count = -1", "a whole number that is not negative"),
+            ("octaves.count = []", "a whole number that is not negative"),
+        ] {
+            let text = STONES.replace("frequency = 8", wrong);
+            let error = Recipe::from_toml(&text).unwrap_err().to_string();
+            assert!(
+                error.ends_with(&format!("expected {expected}")),
+                "{wrong}: {error}"
+            );
+        }
+    }
+
+    #[test]
+    fn words_of_other_programs_are_read() {
+        let text = |gain: &str, albedo: &str| {
+            let nodes = format!(
+                "frequency = 8\noctaves = {{ count = 2, {gain} = 0.7 }}\n[nodes.n.noise]\n{gain} = 0.7\n[nodes.o.pups.octaves]\n{gain} = 0.7\n[nodes.c.pups.cellular_noise]\n{gain} = 0.7\n"
+            );
+            STONES.replace("frequency = 8", &nodes) + &format!("{albedo} = \"cells\"\n")
+        };
+        let json = |gain, albedo| {
+            Recipe::from_toml(&text(gain, albedo))
+                .unwrap()
+                .to_json()
+                .unwrap()
+        };
+        assert_eq!(json("gain", "albedo"), json("persistence", "basecolor"));
     }
 
     #[test]

@@ -35,6 +35,7 @@ pub struct Octaves {
     /// How much lower each is than the one before: from -1 to 1; ½ by default.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-gain.md"))]
+    #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
     pub gain: f64,
     /// Whether the octaves are one field.
     ///

@@ -9,7 +9,7 @@ use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
-use crate::output::{OutputIdx, Target};
+use crate::output::OutputIdx;
 use crate::progress::Progress;
 use anyhow::{Context as _, Error, Result};
 use dapple::raster::Raster;
@@ -89,7 +89,6 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend", &args.image.files);
     let outputs = claim(args, &mut job)?;
-    job.claim_sidecar()?;
     let mut reader = Reader::new(args.size, args.alpha.alpha);
     let read = args.layers.iter().map(|layer| layer.read(&mut reader));
     let mut materials = read.collect::<Result<Vec<_>>>()?;
@@ -115,7 +114,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     }
     let has_heights = materials.iter().any(|material| material.height.is_some());
     let how = args.mixing.blend(tile.is_some(), has_heights)?;
-    let progress = Progress::spinner("blending", context.quiet);
+    let progress = Progress::spinner("blending", context);
     let maps = match &tile {
         Some(tile) => blend_by_tile(&layers, tile, &how),
         None => blend(&layers, &how),
@@ -134,6 +133,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             // That of the first map.
             alpha: alpha.take(),
             is_deep,
+            // Of no meaning for what is written.
+            is_linear: false,
         };
         job.write_loaded(output, blended, &args.image)?;
     }
@@ -141,7 +142,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Claims an output for the first map, or for each of them in a folder, and there for the heights, if all layers have one.
+/// Claims an output for each map, and in a folder for the heights, too, if all layers have one.
 fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
     let names = args.layers[0].map_names();
     for layer in &args.layers[1..] {
@@ -156,23 +157,20 @@ fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
             return Err(usage(message).hint("give all layers the same maps"));
         }
     }
-    let Some(folder) = args.image.files.folder() else {
-        let target = args.image.files.target()?;
-        if names.len() > 1 {
-            return Err(usage("several maps need a folder")
-                .hint("let -o end with a slash, as in -o material/"));
-        }
-        Format::choose(args.image.format, &target, Format::Png16)?;
-        return Ok(vec![job.claim(&target)?]);
-    };
-    job.make_folder(folder)?;
-    let ending = args.image.format.map_or("png", Format::ending);
     let mut names = names;
-    if args.layers.iter().all(LayerArg::has_height) {
+    let files = &args.image.files;
+    let is_one_file = names.len() == 1 && files.folder(1).is_none();
+    if !is_one_file && args.layers.iter().all(LayerArg::has_height) {
         names.push(layer::HEIGHT);
     }
-    let target = |name: &&str| Target::Path(folder.join(format!("{name}.{ending}")));
-    names.iter().map(|name| job.claim(&target(name))).collect()
+    let targets = files.targets("blend", &names, args.image.ending())?;
+    let mut outputs = Vec::new();
+    for target in &targets.files {
+        Format::choose(args.image.format, target, Format::Png16)?;
+        outputs.push(job.claim(target)?);
+    }
+    job.claim_sidecar(&targets.main)?;
+    Ok(outputs)
 }
 
 /// The blend tile, in the size of the blend.
@@ -195,7 +193,11 @@ fn advise(error: TileError) -> Error {
         TileErrorKind::KindMismatch { .. } => {
             "give gray images for a map in all layers, or in none"
         }
-        TileErrorKind::Wavelet(_) => "take fewer --levels, or --borders mirror",
+        TileErrorKind::Range { .. } => return Error::new(error).wrong_value(),
+        TileErrorKind::Wavelet(_) => {
+            let hint = "take fewer --levels, or --wrap none";
+            return Error::new(error).hint(hint).wrong_value();
+        }
         TileErrorKind::Count {
             what: "heights", ..
         } => "give every layer height=FILE, or a --tile",

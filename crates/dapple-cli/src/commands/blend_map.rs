@@ -2,7 +2,7 @@
 
 use crate::args::{Axes, ImageArgs, Region};
 use crate::encode::Format;
-use crate::error::Exit;
+use crate::error::{Exit, Hint};
 use crate::input::{self, Kind};
 use crate::job::{Context, Job};
 use crate::progress::Progress;
@@ -63,10 +63,13 @@ pub(crate) struct Args {
 /// Whatever went wrong.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend-map", &args.output.files);
-    let target = args.output.files.target()?;
+    let target = args
+        .output
+        .files
+        .target("blend-map", args.output.ending())?;
     Format::choose(args.output.format, &target, Format::Png16)?;
     let output = job.claim(&target)?;
-    job.claim_sidecar()?;
+    job.claim_sidecar(&target)?;
     let loaded = input::map(&args.image, Kind::ByChannels, args.region)?;
     let wrap = |repeats| if repeats { Wrap::Repeat } else { Wrap::Mirror };
     let options = BlendMap {
@@ -74,10 +77,10 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         contrast: args.contrast,
         wrap: args.wrap.flags().map(wrap),
     };
-    let progress = Progress::spinner("looking for features", context.quiet);
+    let progress = Progress::spinner("looking for features", context);
     let map = match &loaded.map {
-        Map::Value(values) => options.apply(values)?,
-        Map::Color(colors) => options.apply_color(colors)?,
+        Map::Value(values) => options.apply(values).wrong_value()?,
+        Map::Color(colors) => options.apply_color(colors).wrong_value()?,
         Map::Normal(_) => return Err(anyhow!("normals have no features of their own")),
     };
     let map = if args.plain {

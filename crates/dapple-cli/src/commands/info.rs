@@ -4,22 +4,24 @@ mod channels;
 mod mesh;
 
 use crate::args::{Axes, OutputArgs, Region, Size};
-use crate::error::Exit;
+use crate::error::{Exit, Hint};
 use crate::input;
-use crate::job::{Context, Job, say};
+use crate::job::{Context, Job};
 use crate::output::Target;
 use anyhow::{Context as _, Result};
 use channels::{Channel, channels, format};
+use clap::ValueEnum;
 use dapple::raster::Raster;
 use dapple::tile::{Map, SeamOptions, SeamReport};
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
   dapple info photo.png
-  dapple info height.png albedo.png --json
-  dapple info grain.png --check --axes x
+  dapple info height.png albedo.png --format json
+  dapple info grain.png --check --wrap x
   dapple info model.obj
 
 Numbers are those of the file: code / max in PNG, from 0 to 1, and as they are in EXR.
@@ -27,7 +29,7 @@ A seam ratio near 1 says that the step across the wrap is like the steps inside:
 that of the luminance, at steps between means of 1, 2, 4 and 8 pixels.";
 
 /// Tell what is in images and meshes: size, range, histogram, how well they repeat, what is wrong.
-#[derive(clap::Args, Debug)]
+#[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
     /// Images, or meshes (.obj, .ply, .glb, .gltf, .off). `-` is an image from standard input.
@@ -39,8 +41,8 @@ pub(crate) struct Args {
     region: Option<Region>,
 
     /// Along which axes images are to repeat; `none` leaves out the seam report.
-    #[arg(long, value_enum, default_value_t = Axes::Both)]
-    axes: Axes,
+    #[arg(long, value_enum, value_name = "AXES", default_value_t = Axes::Both)]
+    wrap: Axes,
 
     /// Compare the seam only with every n-th boundary of pixels.
     #[arg(long, value_name = "N[xN]", default_value_t = Size([1, 1]))]
@@ -50,13 +52,23 @@ pub(crate) struct Args {
     #[arg(long)]
     check: bool,
 
-    /// Print JSON, or write it to a file.
-    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
-    json: Option<Option<PathBuf>>,
+    /// What is printed or written: text for people, or JSON for programs; by default by the ending of the output.
+    #[arg(long, value_enum, value_name = "FORMAT", help_heading = "Output")]
+    format: Option<Format>,
 
-    /// Replace a JSON file that is there.
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    #[serde(skip)]
+    output: OutputArgs,
+}
+
+/// How findings are told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Format {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
 }
 
 /// What is found in a file.
@@ -75,17 +87,15 @@ pub(super) struct Findings {
 ///
 /// If a file cannot be read, or is neither an image nor a mesh.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
-    let output = OutputArgs {
-        output: args.json.clone().flatten(),
-        force: args.force,
-        json: None,
+    let target = args.target()?;
+    let is_json = match args.format {
+        Some(format) => format == Format::Json,
+        None => target.ending() == "json",
     };
-    let mut job = Job::new(context, "info", &output);
-    let file = match &output.output {
-        Some(path) => Some(job.claim_text(&Target::from(path.as_path()))?),
-        None => None,
-    };
-    let (mut reports, mut is_good) = (Vec::new(), true);
+    let mut job = Job::new(context, "info", &args.output);
+    let output = job.claim_text(&target)?;
+    job.claim_sidecar(&target)?;
+    let (mut texts, mut reports, mut is_good) = (Vec::new(), Vec::new(), true);
     for path in &args.files {
         let findings = if mesh::is_mesh(path) {
             mesh::findings(path)?
@@ -93,23 +103,35 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             image_findings(path, args)?
         };
         is_good &= findings.is_good;
-        if args.json.is_none() {
-            say(&findings.text)?;
-        }
+        texts.push(findings.text);
         reports.push(findings.json);
     }
-    let text = serde_json::to_string_pretty(&reports)?;
-    match file {
-        Some(file) => job.write(file, format!("{text}\n").as_bytes())?,
-        None if args.json.is_some() => say(&text)?,
-        None => {}
-    }
-    job.finish(&Value::Null, Value::Null)?;
+    let text = if is_json {
+        serde_json::to_string_pretty(&reports)?
+    } else {
+        texts.join("\n")
+    };
+    job.write(output, format!("{text}\n").as_bytes())?;
+    job.finish(args, Value::Null)?;
     Ok(if args.check && !is_good {
         Exit::Check
     } else {
         Exit::Done
     })
+}
+
+impl Args {
+    /// Where the findings go: standard output, unless something else is said.
+    fn target(&self) -> Result<Target> {
+        let ending = match self.format {
+            Some(Format::Text) => "txt",
+            Some(Format::Json) | None => "json",
+        };
+        match self.output.output {
+            Some(_) => self.output.target("info", ending),
+            None => Ok(Target::Stdout),
+        }
+    }
 }
 
 /// The rasters of a map on which seams are measured, with what to add to its name.
@@ -130,11 +152,11 @@ fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
     if let Some(Region { first, size }) = args.region {
         for channel in &mut channels {
             let part = channel.values.crop(first, size);
-            channel.values = part.with_context(|| input::name(path))?;
+            channel.values = part.wrong_value().with_context(|| input::name(path))?;
         }
     }
     let n_not_finite: usize = channels.iter().map(Channel::n_not_finite).sum();
-    let seams = match args.axes {
+    let seams = match args.wrap {
         Axes::None => None,
         _ if n_not_finite > 0 => None,
         axes => {

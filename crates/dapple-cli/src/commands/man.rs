@@ -42,12 +42,10 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         return Ok(Exit::Done);
     };
     let output = OutputArgs {
-        output: None,
         force: args.force,
-        json: None,
+        ..OutputArgs::default()
     };
     let mut job = Job::new(context, "man", &output);
-    job.make_folder(folder)?;
     let subcommands = command
         .get_subcommands()
         .filter(|sub| sub.get_name() != "help");

@@ -85,6 +85,17 @@ enum Format {
     Png,
 }
 
+impl Format {
+    /// The ending of such files.
+    fn ending(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Json => "json",
+            Self::Png => "png",
+        }
+    }
+}
+
 /// Runs it.
 ///
 /// # Errors
@@ -92,7 +103,7 @@ enum Format {
 /// Whatever went wrong.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let target = match &args.output.output {
-        Some(path) => Target::from(path.as_path()),
+        Some(_) => (args.output).target("points", args.format.map_or("csv", Format::ending))?,
         None => Target::Stdout,
     };
     let format = format(args, &target)?;
@@ -101,8 +112,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         Format::Png => job.claim(&target)?,
         Format::Csv | Format::Json => job.claim_text(&target)?,
     };
-    job.claim_sidecar()?;
-    let progress = Progress::spinner("scattering", context.quiet);
+    job.claim_sidecar(&target)?;
+    let progress = Progress::spinner("scattering", context);
     let scattered = args.scatter.scatter()?;
     let report = if args.report || args.output.json.is_some() {
         Some(report::Report::of(&scattered)?)

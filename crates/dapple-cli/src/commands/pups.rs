@@ -7,6 +7,7 @@ use crate::baking::read_picture;
 use crate::error::{Exit, Hint, usage};
 use crate::field::{Field, FieldArgs, draw, extent_of};
 use crate::job::Context;
+use crate::words::Word;
 use anyhow::Result;
 use clap::ValueEnum;
 use dapple::pups::{
@@ -27,7 +28,7 @@ Examples:
   dapple pups giraffe --ramp '#7a4a1e,#f2e3c0' -o giraffe.png
   dapple pups cells --points-per-cell 3,4 --ramp lagoon -o cells.png
   dapple pups noise --orientations random --strength 0.8 -o twisted.png
-  dapple pups ramp --axes y -o ramp.png
+  dapple pups ramp --wrap y -o ramp.png
   dapple pups reference --reference photo.png --spacing 0.03 -o cells.png
   dapple pups control --points control.csv --size 256 -o own.png
 
@@ -60,7 +61,12 @@ pub(crate) struct Args {
     octaves: Option<u32>,
 
     /// How high an octave is beside the one before.
-    #[arg(long, value_name = "PART", help_heading = "Texture")]
+    #[arg(
+        long,
+        alias = "persistence",
+        value_name = "PART",
+        help_heading = "Texture"
+    )]
     gain: Option<f64>,
 
     /// How many control points a cell has, from the least to the most, for cells and cellular-noise.
@@ -91,13 +97,13 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", help_heading = "Weights")]
     axis_scale: Option<f64>,
 
-    /// How weights fall off along an axis.
-    #[arg(long, value_enum, help_heading = "Weights")]
-    weight: Option<WeightArg>,
+    /// How weights fall off along an axis: by the cubic of the paper, or by a quintic with a continuous second derivative.
+    #[arg(long, value_name = "CURVE", value_parser = Word::<AxialWeight>::of(&["cubic", "quintic"]), help_heading = "Weights")]
+    weight: Option<AxialWeight>,
 
     /// Whether control points have orientations; by default as the texture has it.
-    #[arg(long, value_enum, help_heading = "Weights")]
-    orientations: Option<OrientationsArg>,
+    #[arg(long, value_name = "WHICH", value_parser = Word::<Orientations>::of(&["none", "random"]), help_heading = "Weights")]
+    orientations: Option<Orientations>,
 
     /// How strongly orientations shift weights, from 0 to below 1.
     #[arg(long, value_name = "PART", help_heading = "Weights")]
@@ -124,16 +130,20 @@ enum Kind {
     /// Cells with a random value each.
     Cells,
     /// Layers of cells.
+    #[value(alias = "cellular_noise")]
     CellularNoise,
     /// Random colors, interpolated.
+    #[value(alias = "color_noise")]
     ColorNoise,
     /// The patches of a cow.
     Cow,
     /// The spots of a giraffe.
     Giraffe,
     /// A cow whose patches get smaller to the right.
+    #[value(alias = "cow_progression")]
     CowProgression,
     /// A giraffe whose spots get smaller to the right.
+    #[value(alias = "giraffe_progression")]
     GiraffeProgression,
     /// Black cells on the left, white ones on the right.
     Ramp,
@@ -141,26 +151,6 @@ enum Kind {
     Control,
     /// Black and white cells after an image: --reference.
     Reference,
-}
-
-/// How weights fall off along an axis.
-#[derive(Clone, Copy, Debug, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum WeightArg {
-    /// The cubic of the paper.
-    Cubic,
-    /// A quintic, with a continuous second derivative.
-    Quintic,
-}
-
-/// Whether control points have orientations.
-#[derive(Clone, Copy, Debug, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum OrientationsArg {
-    /// None.
-    None,
-    /// Random ones.
-    Random,
 }
 
 /// Runs it.
@@ -369,15 +359,9 @@ impl Args {
     fn set_net(&self, net: &mut NetOptions) {
         net.axis_scale = self.axis_scale.unwrap_or(net.axis_scale);
         net.strength = self.strength.unwrap_or(net.strength);
-        match self.weight {
-            Some(WeightArg::Cubic) => net.weight = AxialWeight::Cubic,
-            Some(WeightArg::Quintic) => net.weight = AxialWeight::Quintic,
-            None => {}
-        }
-        match self.orientations {
-            Some(OrientationsArg::None) => net.orientations = Orientations::None,
-            Some(OrientationsArg::Random) => net.orientations = Orientations::Random,
-            None => {}
+        net.weight = self.weight.unwrap_or(net.weight);
+        if let Some(orientations) = &self.orientations {
+            net.orientations = orientations.clone();
         }
     }
 }

@@ -1,9 +1,9 @@
 //! `dapple recipe`: recipes listed, checked and printed.
 
-use crate::args::OutputArgs;
+use crate::args::{OutputArgs, seed};
 use crate::baking::{advise, is_json, read_images, read_recipe};
 use crate::error::Exit;
-use crate::job::{Context, put_text, say};
+use crate::job::{Context, Job, put_text, say};
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::recipe::{Plan, Recipe};
@@ -42,7 +42,7 @@ pub(crate) struct Args {
     to: Option<Text>,
 
     /// Another seed than that of the recipe.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = seed)]
     seed: Option<u64>,
 
     /// Only say whether the recipe can be baked.
@@ -93,7 +93,13 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         (_, Some(Text::Json)) => recipe.to_json().map_err(advise)? + "\n",
         _ => recipe.to_toml().map_err(advise)?,
     };
-    put_text(context, "recipe", &args.files, &text, args)
+    let ending = match args.format() {
+        _ if args.rust => "rs",
+        Some(Text::Json) => "json",
+        _ => "toml",
+    };
+    let job = Job::new(context, "recipe", &args.files);
+    put_text(job, &recipe.name, ending, &text, args)
 }
 
 impl Args {

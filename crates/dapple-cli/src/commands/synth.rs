@@ -54,7 +54,7 @@ pub(crate) struct Args {
     exemplar: PathBuf,
 
     /// Another map of the example that follows it, such as normal=FILE or roughness=FILE; may be given several times. It is
-    /// written beside the output as `STEM-NAME`; in GLB and OBJ, normal goes into the material.
+    /// written beside the output as `NAME_MAP`; in GLB and OBJ, normal goes into the material.
     #[arg(long, value_name = "NAME=IMAGE")]
     map: Vec<MapArg>,
 
@@ -179,7 +179,15 @@ impl Args {
         Ok(loaded)
     }
 
-    /// Claims a file beside the output for each map: `STEM-NAME.ENDING`.
+    /// The output. In a folder its name is that of a file that goes in.
+    fn target(&self, input: &Path, ending: &str) -> Result<Target> {
+        let names = self.map.iter().map(|map| map.name.as_str());
+        let parts: Vec<_> = [""].into_iter().chain(names).collect();
+        let stem = input.file_stem().unwrap_or_default().to_string_lossy();
+        Ok(self.image.files.targets(&stem, &parts, ending)?.main)
+    }
+
+    /// Claims a file beside the output for each map: `NAME_MAP.ENDING`.
     fn claim_maps(
         &self,
         target: &Target,
@@ -188,15 +196,7 @@ impl Args {
     ) -> Result<Vec<OutputIdx>> {
         let mut outputs = Vec::new();
         for map in &self.map {
-            let Some(path) = target.path() else {
-                return Err(
-                    usage("maps lie beside the output, and standard output has no place")
-                        .hint("give a file with -o"),
-                );
-            };
-            let mut name = path.file_stem().unwrap_or_default().to_owned();
-            name.push(format!("-{}.{ending}", map.name));
-            outputs.push(job.claim(&Target::Path(path.with_file_name(name)))?);
+            outputs.push(job.claim(&target.part(&map.name)?.with_ending(ending))?);
         }
         Ok(outputs)
     }
@@ -226,7 +226,10 @@ fn advise(error: SynthError) -> Error {
             "take a larger --texture-size, a smaller --padding, or a mesh with fewer faces"
         }
         SynthErrorKind::Direction { .. } => "let directions lie along the surface",
+        SynthErrorKind::Range { .. } | SynthErrorKind::Count { .. } => {
+            return Error::new(error).wrong_value();
+        }
         _ => return error.into(),
     };
-    Error::new(error).hint(hint)
+    Error::new(error).hint(hint).wrong_value()
 }

@@ -24,7 +24,7 @@ Examples:
   dapple tile photo.png --method soft-cut --margin 24 --sheet -o cut.png
   dapple tile albedo.png height.png --normal normal.png \\
     --method soft-cut -o tiles/
-  dapple tile photo.png --axes x -o wall.exr
+  dapple tile photo.png --wrap x -o wall.exr
   dapple tile photo.png --report
 
 Which method:
@@ -64,8 +64,8 @@ pub(crate) struct Args {
     method: MethodArgs,
 
     /// Which sides fit together.
-    #[arg(long, value_enum, default_value_t = Axes::Both)]
-    axes: Axes,
+    #[arg(long, value_name = "AXES", default_value = "both", value_parser = Axes::some())]
+    wrap: Axes,
 
     /// Print how well source and tile repeat, and what of the source was kept.
     #[arg(long, help_heading = "Quality")]
@@ -79,7 +79,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N[xN]", help_heading = "Quality")]
     lattice: Option<Size>,
 
-    /// Write 2 x 2 copies of each tile, too, as `NAME-2x2`.
+    /// Write 2 x 2 copies of each tile, too, as `NAME_2x2`.
     #[arg(long, help_heading = "Output")]
     sheet: bool,
 
@@ -103,22 +103,18 @@ struct Source {
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let seamless = Seamless {
         method: args.method.method()?,
-        axes: args.axes.flags(),
+        axes: args.wrap.flags(),
     };
-    if seamless.axes == [false; 2] {
-        return Err(usage("along no axis there is nothing to do").hint("take --axes x, y or both"));
-    }
     let mut job = Job::new(context, "tile", &args.image.files);
     let sources = sources(args, &mut job)?;
-    job.claim_sidecar()?;
-    let progress = Progress::spinner("making it repeat", context.quiet);
+    let progress = Progress::spinner("making it repeat", context);
     let maps = sources.iter().map(|source| source.loaded.map.clone());
     // Alpha is one more map of the same cut.
     let alphas = sources
         .iter()
         .filter_map(|source| source.loaded.alpha.clone());
     let maps: Vec<Map> = maps.chain(alphas.map(Map::Value)).collect();
-    let mut tiles = seamless.apply_maps(&maps).map_err(hint_at_size)?;
+    let mut tiles = seamless.apply_maps(&maps).map_err(advise)?;
     let mut alphas = tiles.split_off(sources.len()).into_iter();
     drop(progress);
 
@@ -132,12 +128,15 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         let Some([output, sheet]) = source.outputs else {
             continue;
         };
-        let is_deep = source.loaded.is_deep;
+        let Loaded {
+            is_deep, is_linear, ..
+        } = source.loaded;
         if let Some(sheet) = sheet {
             let twice = Loaded {
                 map: doubled(&map)?,
                 alpha: alpha.as_ref().map(twice).transpose()?,
                 is_deep,
+                is_linear,
             };
             job.write_loaded(sheet, twice, &args.image)?;
         }
@@ -146,6 +145,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
                 map,
                 alpha,
                 is_deep,
+                is_linear,
             };
             job.write_loaded(output, tile, &args.image)?;
         }
@@ -166,17 +166,11 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     if inputs.is_empty() {
         return Err(usage("there is no image").hint("name one, or several that belong together"));
     }
-    let folder = args.image.files.folder();
-    if inputs.len() > 1 && folder.is_none() && args.image.files.output.is_some() {
-        return Err(usage("several maps need a folder for their tiles")
-            .hint("let -o end with a slash, as in -o tiles/"));
-    }
-    if let Some(folder) = folder {
-        job.make_folder(folder)?;
-    }
+    let paths: Vec<&Path> = inputs.iter().map(|(path, _)| path.as_path()).collect();
+    let mut outputs = claim(&paths, args, job)?.into_iter();
     let mut sources: Vec<Source> = Vec::new();
     for (path, kind) in inputs {
-        let outputs = claim(path, folder, args, job)?;
+        let outputs = outputs.next();
         let loaded = input::map_with_alpha(path, kind, args.region, args.alpha.alpha)?;
         let first = sources.first().map(|source| &source.loaded.map);
         let first = first.map_or(loaded.map.size(), Map::size);
@@ -191,45 +185,53 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     Ok(sources)
 }
 
-/// Claims the tile of an image, and its sheet.
-fn claim(
-    path: &Path,
-    folder: Option<&Path>,
-    args: &Args,
-    job: &mut Job<'_>,
-) -> Result<Option<[Option<OutputIdx>; 2]>> {
-    let target = match folder {
-        Some(folder) => {
-            let ending = args.image.format.map_or("png", |format| format.ending());
-            let mut name = path.file_stem().unwrap_or_default().to_owned();
-            name.push(".");
-            name.push(ending);
-            Target::Path(folder.join(name))
-        }
-        None if args.image.files.output.is_none() && (args.report || args.check) => {
-            return Ok(None);
-        }
-        None => args.image.files.target()?,
+/// Claims the tiles of images, and their sheets; none where only a report is wanted.
+fn claim(paths: &[&Path], args: &Args, job: &mut Job<'_>) -> Result<Vec<[Option<OutputIdx>; 2]>> {
+    let files = &args.image.files;
+    if files.output.is_none() && (args.report || args.check) {
+        job.claim_sidecar(&Target::Stdout)?;
+        return Ok(Vec::new());
+    }
+    let stems: Vec<_> = paths.iter().map(|path| stem(path)).collect();
+    let parts: Vec<_> = stems.iter().map(|stem| map_of(stem)).collect();
+    let first = stems.first().map_or("", String::as_str);
+    let targets = match &parts[..] {
+        [_] => files.targets(first, &[""], args.image.ending())?,
+        parts => files.targets(first, parts, args.image.ending())?,
     };
-    // A name that no format has is refused before the work, whatever the map will be.
-    Format::choose(args.image.format, &target, Format::Png16)?;
-    let output = job.claim(&target)?;
-    let sheet = match (&target, args.sheet) {
-        (_, false) => None,
-        (Target::Stdout, true) => {
-            return Err(
-                usage("a sheet lies beside its tile, and standard output has no place")
-                    .hint("give a file with -o"),
-            );
-        }
-        (Target::Path(tile), true) => {
-            let mut name = tile.file_stem().unwrap_or_default().to_owned();
-            name.push("-2x2.");
-            name.push(target.ending());
-            Some(job.claim(&Target::Path(tile.with_file_name(name)))?)
-        }
-    };
-    Ok(Some([Some(output), sheet]))
+    let mut outputs = Vec::new();
+    for (stem, target) in stems.iter().zip(targets.files) {
+        // In a folder, tiles keep the names of their images unless another was given.
+        let target = match files.folder(paths.len()) {
+            Some(folder) if files.name.is_none() => {
+                Target::Path(folder.join(format!("{stem}.{}", args.image.ending())))
+            }
+            _ => target,
+        };
+        // A name that no format has is refused before the work, whatever the map will be.
+        Format::choose(args.image.format, &target, Format::Png16)?;
+        let output = job.claim(&target)?;
+        let sheet = match args.sheet {
+            true => Some(job.claim(&target.part("2x2")?)?),
+            false => None,
+        };
+        outputs.push([Some(output), sheet]);
+    }
+    job.claim_sidecar(&targets.main)?;
+    Ok(outputs)
+}
+
+/// The name of a file without its ending.
+fn stem(path: &Path) -> String {
+    match path.file_stem() {
+        Some(stem) if path != Path::new("-") => stem.to_string_lossy().into_owned(),
+        _ => "tile".to_owned(),
+    }
+}
+
+/// The map that an image is of, by its name: `normal` for `rock_normal`.
+fn map_of(stem: &str) -> &str {
+    stem.rsplit_once('_').map_or(stem, |(_, map)| map)
 }
 
 /// Prints the reports that were asked for; gives them as JSON, and whether all tiles pass.
@@ -242,7 +244,7 @@ fn reports(args: &Args, sources: &[Source], tiles: &[Map], job: &Job<'_>) -> Res
         .lattice
         .map_or(args.method.lattice(), |lattice| lattice.0);
     let options = SeamOptions {
-        axes: args.axes.flags(),
+        axes: args.wrap.flags(),
         lattice,
     };
     let plain = SeamOptions {
@@ -287,13 +289,14 @@ fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
 }
 
 /// Adds what to do about sizes that a method does not take.
-fn hint_at_size(error: TileError) -> Error {
+fn advise(error: TileError) -> Error {
     let hint = match error.kind() {
         TileErrorKind::Margin { .. } => "take a smaller --margin",
         TileErrorKind::Wavelet(_) => {
             "cut it to a multiple of 2^levels with --region, or take fewer --levels"
         }
-        _ => return error.into(),
+        TileErrorKind::NotFinite { .. } => return error.into(),
+        _ => return Error::new(error).wrong_value(),
     };
-    Error::new(error).hint(hint)
+    Error::new(error).hint(hint).wrong_value()
 }

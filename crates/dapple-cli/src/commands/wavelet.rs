@@ -40,6 +40,7 @@ pub(crate) struct Args {
     /// How high a band is beside the one before.
     #[arg(
         long,
+        alias = "persistence",
         value_name = "PART",
         default_value_t = 0.5,
         help_heading = "Texture"
@@ -74,7 +75,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             .hint("give at least one that is not 0"));
     }
     let extent = extent_of(args.field.size, args.cells);
-    check_cells(extent, args.field.axes.flags(), args.field.size)?;
+    check_cells(extent, args.field.wrap.flags(), args.field.size)?;
     let reach = (3.0 * variance.sqrt()) as f32;
     let node = WaveletNode {
         frequency: 1.0,

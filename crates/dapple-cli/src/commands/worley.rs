@@ -4,8 +4,8 @@ use crate::args::{Extent, ImageArgs, Numbers};
 use crate::error::{Exit, Hint, usage};
 use crate::field::{Field, FieldArgs, draw, extent_of};
 use crate::job::Context;
+use crate::words::{Word, nearest, with_underscores};
 use anyhow::Result;
-use clap::ValueEnum;
 use dapple::hash::Seed;
 use dapple::recipe::{Images, Motion, Node, WorleyNode, WorleyValue};
 use dapple::worley::{Combination, Metric, OctaveSeeds, Octaves, Scatter, Worley2};
@@ -62,9 +62,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N[xM]", help_heading = "Texture")]
     period: Option<Extent>,
 
-    /// How distances are measured.
-    #[arg(long, value_enum, default_value_t = MetricArg::Euclidean, help_heading = "Texture")]
-    metric: MetricArg,
+    /// How distances are measured: by the straight line, along the axes, or by the longer of the two.
+    #[arg(long, value_name = "METRIC", default_value = "euclidean", value_parser = Word::<Metric>::of(&METRICS), help_heading = "Texture")]
+    metric: Metric,
 
     /// The exponent of the Minkowski metric, from 1 to 10; takes the place of --metric.
     #[arg(
@@ -95,6 +95,7 @@ pub(crate) struct Args {
     /// How high an octave is beside the one before.
     #[arg(
         long,
+        alias = "persistence",
         value_name = "PART",
         default_value_t = 0.5,
         requires = "octaves",
@@ -118,17 +119,8 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// How distances are measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum MetricArg {
-    /// The straight line.
-    Euclidean,
-    /// Along the axes.
-    Manhattan,
-    /// The longer of the two.
-    Chebyshev,
-}
+/// The metrics without an exponent: the straight line, along the axes, and the longer of the two.
+const METRICS: [&str; 3] = ["euclidean", "manhattan", "chebyshev"];
 
 /// Runs it.
 ///
@@ -141,17 +133,17 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         Some(period) => period.0,
         None => extent_of(args.field.size, args.cells),
     };
-    let cells = extent.iter().zip(args.field.axes.flags());
+    let cells = extent.iter().zip(args.field.wrap.flags());
     if let Some((cells, _)) = cells
         .clone()
         .find(|(cells, repeats)| *repeats && cells.fract() != 0.0)
     {
         return Err(usage(format!("{cells} cells along a side cannot repeat"))
-            .hint("take a whole number of cells along each side with --period, or --axes none"));
+            .hint("take a whole number of cells along each side with --period, or --wrap none"));
     }
     let field = Field {
         command: "worley",
-        range: args.range(&node)?,
+        range: args.range(&node).wrong_value()?,
         node: Node::Worley(node),
         is_color: false,
         extent,
@@ -163,12 +155,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 
 impl Args {
     fn node(&self) -> Result<WorleyNode> {
-        let metric = match (self.minkowski, self.metric) {
-            (Some(exponent), _) => Metric::Minkowski(exponent),
-            (None, MetricArg::Euclidean) => Metric::Euclidean,
-            (None, MetricArg::Manhattan) => Metric::Manhattan,
-            (None, MetricArg::Chebyshev) => Metric::Chebyshev,
-        };
+        let metric = self.minkowski.map_or(self.metric, Metric::Minkowski);
         let scatter = match self.jitter {
             Some(jitter) => Scatter::Jittered { jitter },
             None => Scatter::Poisson {
@@ -224,10 +211,12 @@ impl Args {
 }
 
 fn value(text: &str) -> Result<WorleyValue, String> {
-    WorleyValue::from_name(text).ok_or_else(|| {
-        format!(
-            "{text:?} is no value; there are {}",
-            WorleyValue::names().join(", ")
-        )
+    let word = with_underscores(text);
+    WorleyValue::from_name(&word).ok_or_else(|| {
+        let names = WorleyValue::names();
+        match nearest(&word, names.iter().copied()) {
+            Some(near) => format!("{text:?} is no value; did you mean {near}?"),
+            None => format!("{text:?} is no value; there are {}", names.join(", ")),
+        }
     })
 }

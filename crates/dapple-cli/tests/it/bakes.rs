@@ -189,10 +189,10 @@ fn the_pictures_of_a_loop_differ_and_are_numbered() {
     assert_done(&folder.run(&run), "a loop");
     assert_eq!(
         folder.names(),
-        ["sea-001.png", "sea-002.png", "sea-003.png"]
+        ["sea_001.png", "sea_002.png", "sea_003.png"]
     );
     let bytes = |name: &str| fs::read(folder.path(name)).unwrap();
-    assert_ne!(bytes("sea-001.png"), bytes("sea-002.png"));
+    assert_ne!(bytes("sea_001.png"), bytes("sea_002.png"));
 }
 
 #[cfg(unix)]

@@ -18,7 +18,7 @@ const WRITERS: [(&str, &[&str]); 6] = [
         &["synth", "checker.png", "--size", "16", "-o", "out.png"],
     ),
     ("out.csv", &["points", "--count", "20", "-o", "out.csv"]),
-    ("out.json", &["info", "photo.png", "--json=out.json"]),
+    ("out.json", &["info", "photo.png", "-o", "out.json"]),
 ];
 
 #[test]
@@ -93,7 +93,7 @@ fn reports_do_not_mix_with_an_image_on_standard_output() {
 #[test]
 fn an_image_comes_from_standard_input() {
     let folder = Folder::with_inputs("stdin");
-    let mut command = folder.command(&["info", "-", "--json"]);
+    let mut command = folder.command(&["info", "-", "--format", "json"]);
     command.stdin(Stdio::from(
         fs::File::open(folder.path("photo.png")).unwrap(),
     ));

@@ -7,6 +7,7 @@
 
 mod alpha;
 mod bakes;
+mod batch;
 mod examples;
 mod files;
 mod interrupt;
@@ -14,3 +15,4 @@ mod meshes;
 mod refusals;
 mod results;
 mod support;
+mod words;

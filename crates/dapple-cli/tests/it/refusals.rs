@@ -26,7 +26,7 @@ const READERS: [&str; 17] = [
 
 /// Command lines that clap cannot tell to be wrong.
 const WRONG: [&str; 26] = [
-    "bake flagstone -o out.png",
+    "bake flagstone -o out.png --name rock",
     "bake flagstone",
     "bake flagstone --maps height,height -o out/",
     "worley --size 100x64 -o out.png",
@@ -40,8 +40,8 @@ const WRONG: [&str; 26] = [
     "tile photo.png -o out.jpg",
     "tile photo.png -o out.png --format exr",
     "tile photo.png -o out.png --levels 2",
-    "tile photo.png -o out.png --axes none",
-    "tile photo.png height.png -o out.png",
+    "tile photo.png -o out.png --wrap none",
+    "tile photo.png height.png -o -",
     "tile photo.png --sheet -o -",
     "tile photo.png --json -o -",
     "blend rock.png grass.png,normal=normal.png -o out/",
@@ -54,7 +54,7 @@ const WRONG: [&str; 26] = [
     "points --count 5 -o out.svg",
 ];
 
-/// Command lines that a library refuses, and what the answer holds.
+/// Command lines with a value that a library refuses, and what the answer holds.
 const LIMITS: [(&str, &str); 18] = [
     ("bake flagston -o out/", "flagstone"),
     (
@@ -67,9 +67,10 @@ const LIMITS: [(&str, &str); 18] = [
         "2 maps of 1000000 × 1000000 pixels: 8.00 TB before compression, about ",
     ),
     ("bake stone-and-grass --banded --size 64 -o out/", "whole"),
-    ("worley --density 1000 -o out.png", "density"),
-    ("pups noise --spacing 0 -o out.png", "radius"),
     ("bake flagstone --relief 1e300 -o out/", "from -1e6 to 1e6"),
+    ("worley --density 1000 -o out.png", "--density 1000: "),
+    ("pups cow --spacing 0 -o out.png", "--spacing 0: "),
+    ("worley --octaves 2 --gain -3 -o out.png", "--gain -3: "),
     (
         "tile photo.png --method soft-cut --margin 40 -o out.png",
         "margin",
@@ -79,16 +80,47 @@ const LIMITS: [(&str, &str); 18] = [
         "tile photo.png --method spline --levels 9 -o out.png",
         "--levels",
     ),
-    ("tile photo.png checker.png -o out/", "size"),
-    ("blend photo.png checker.png -o out.png", "--size"),
     (
         "blend photo.png grass.png --mixing pyramid --levels 20 -o out.png",
         "--levels",
     ),
-    ("blend-map photo.png --feature-size 0 -o out.png", "feature"),
+    (
+        "blend-map photo.png --feature-size 0 -o out.png",
+        "--feature-size 0: ",
+    ),
     ("synth checker.png --levels 6 -o out.png", "--levels"),
-    ("points --radius 3", "--wrap none"),
+    ("points --radius 3", "--radius 3: "),
+    ("points --radius 0", "--radius 0: "),
     ("points nested --radii 0.1,0.2", "radius"),
+];
+
+/// Command lines whose files do not go together, and what the answer holds.
+const UNLIKE: [(&str, &str); 2] = [
+    ("tile photo.png checker.png -o out/", "size"),
+    ("blend photo.png checker.png -o out.png", "--size"),
+];
+
+/// Command lines that clap refuses, and what the answer holds.
+const SLIPS: [(&str, &str); 10] = [
+    ("worley --frequency 8 -o out.png", "--cells"),
+    ("worley --scale=8 -o out.png", "--cells"),
+    ("wavelet --Frequency 8 -o out.png", "--cells"),
+    ("pups cow --scale 3 -o out.png", "--spacing"),
+    ("tile photo.png --axes x -o out.png", "--wrap"),
+    (
+        "bake flagstone --maps heigth -o out/",
+        "did you mean height",
+    ),
+    (
+        "worley --value f2-minus-f -o out.png",
+        "did you mean f2_minus_f1",
+    ),
+    ("worley --seed -1 -o out.png", "not negative"),
+    ("points --seed -1", "not negative"),
+    (
+        "blend rock.png grass.png,weigth=0.3 -o out.png",
+        "did you mean weight=",
+    ),
 ];
 
 /// The words of a line.
@@ -182,9 +214,18 @@ fn wrong_usage_exits_with_2() {
 }
 
 #[test]
-fn limits_of_the_library_are_told_with_exit_code_1() {
+fn values_that_a_library_refuses_are_wrong_usage_and_named_as_typed() {
     let folder = Folder::with_inputs("limits");
     for (line, part) in LIMITS {
+        let output = folder.run(&words(line));
+        assert_refused(&output, 2, part, line);
+        assert!(
+            !stderr(&output).contains("in the node"),
+            "{line}: {}",
+            stderr(&output)
+        );
+    }
+    for (line, part) in UNLIKE {
         assert_refused(&folder.run(&words(line)), 1, part, line);
     }
 }
@@ -220,4 +261,13 @@ fn info_says_what_was_left_out_of_a_mesh() {
     .unwrap();
     let text = stdout(&folder.run(&["info", "a.obj"]));
     assert!(text.contains("without normals that faces name"), "{text}");
+}
+
+#[test]
+fn slips_are_answered_with_what_to_type() {
+    let folder = Folder::with_inputs("slips");
+    for (line, part) in SLIPS {
+        assert_refused(&folder.run(&words(line)), 2, part, line);
+    }
+    assert!(!folder.path("out.png").exists(), "nothing is written");
 }

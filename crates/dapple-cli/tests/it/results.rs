@@ -134,7 +134,7 @@ fn maps_are_cut_together_into_a_folder_that_is_made() {
     for name in ["albedo", "height", "normal"] {
         assert_eq!(read(&format!("new/tiles/{name}.png")), [56, 56], "{name}");
         assert_eq!(
-            read(&format!("new/tiles/{name}-2x2.png")),
+            read(&format!("new/tiles/{name}_2x2.png")),
             [112, 112],
             "{name}"
         );
@@ -312,7 +312,7 @@ fn a_covered_mesh_reads_back_with_its_texture() {
             "{name} has normals"
         );
     }
-    let info = stdout(&folder.run(&["info", "out.glb", "--json"]));
+    let info = stdout(&folder.run(&["info", "out.glb", "--format", "json"]));
     assert!(info.contains("a texture of normals"), "{info}");
 }
 
@@ -350,7 +350,14 @@ fn a_gray_photograph_keeps_its_codes_on_a_mesh() {
 #[test]
 fn infos_of_many_files_are_one_json() {
     let folder = Folder::with_inputs("infos");
-    let output = folder.run(&["info", "photo.png", "height.exr", "model.obj", "--json"]);
+    let output = folder.run(&[
+        "info",
+        "photo.png",
+        "height.exr",
+        "model.obj",
+        "--format",
+        "json",
+    ]);
     assert_done(&output, "info");
     let infos: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
     let kinds: Vec<_> = infos

@@ -39,10 +39,7 @@ pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshError> {
         "gltf" | "glb" => super::gltf::read_with(&read(path)?, beside),
         #[cfg(feature = "off")]
         "off" => super::off::read(&read(path)?),
-        _ => Err(unknown(
-            extension,
-            "obj, ply, gltf, glb and off, each behind its feature",
-        )),
+        _ => Err(unknown(extension, "obj, ply, gltf, glb and off")),
     }
 }
 
@@ -74,10 +71,7 @@ pub fn write_model(path: impl AsRef<Path>, model: &Model) -> Result<(), MeshErro
         "ply" => replace(path, &super::ply::write(model)?),
         #[cfg(feature = "gltf")]
         "glb" => replace(path, &super::gltf::write(model)?),
-        _ => Err(unknown(
-            extension,
-            "obj, ply and glb to write, each behind its feature",
-        )),
+        _ => Err(unknown(extension, "obj, ply and glb to write")),
     }
 }
 

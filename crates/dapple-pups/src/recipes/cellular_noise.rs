@@ -25,6 +25,7 @@ pub struct CellularNoiseOptions {
     /// By how much the spacing is divided from layer to layer, above 1 and at most 16; 2 by default.
     pub lacunarity: f64,
     /// The amplitude of a layer as a multiple of the one before, above 0 and at most 1; ½ by default.
+    #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
     pub gain: f64,
     /// How many control points a cell has, from the least to the most, 1 to 16; `[1, 1]` by default.
     pub points_per_cell: [u32; 2],

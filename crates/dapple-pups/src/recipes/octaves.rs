@@ -32,6 +32,7 @@ pub struct OctavesOptions {
     /// octaves are rescaled.
     pub lacunarity: f64,
     /// The amplitude of an octave as a multiple of the one before, above 0 and at most 1; ½ by default.
+    #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
     pub gain: f64,
     /// Where the octaves come from; separate points by default, as in the paper.
     pub source: OctaveSource,

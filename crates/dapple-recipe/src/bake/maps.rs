@@ -56,9 +56,12 @@ impl MapKind {
         Self::Orm,
     ];
 
-    /// The map of this name.
+    /// The map of this name; `basecolor` and `base_color` are the albedo.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
+        if let "basecolor" | "base_color" = name {
+            return Some(Self::Albedo);
+        }
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 

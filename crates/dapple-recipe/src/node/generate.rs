@@ -219,6 +219,7 @@ pub struct Fractal {
     /// How many octaves, 1 to 16, each twice as fine as the one before; 4 by default.
     pub octaves: u32,
     /// The amplitude of an octave as a multiple of the one before, above 0 and at most 1; ½ by default.
+    #[serde(alias = "persistence")]
     pub gain: f64,
     /// The name by which it draws, instead of its own, or a seed.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -3,8 +3,10 @@
 use crate::args::{Alpha, Size};
 use crate::error::{Hint, usage};
 use crate::input::{self, Kind, Loaded};
+use crate::words::{nearest, with_underscores};
 use anyhow::{Context as _, Result};
 use dapple::raster::Raster;
+use dapple::recipe::MapKind;
 use dapple::tile::{Map, TileError, repeat};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -67,6 +69,7 @@ impl FromStr for LayerArg {
             maps: Vec::new(),
         };
         for (key, value) in pairs {
+            check_key(&key)?;
             if value.is_empty() {
                 return Err(format!("nothing follows {key}= in {text:?}"));
             }
@@ -274,7 +277,9 @@ fn split(text: &str) -> (String, Vec<(String, String)>) {
     let mut pairs: Vec<(String, String)> = Vec::new();
     for part in parts {
         match part.split_once('=') {
-            Some((key, value)) if is_key(key) => pairs.push((key.to_owned(), value.to_owned())),
+            Some((key, value)) if is_key(key) => {
+                pairs.push((with_underscores(key), value.to_owned()))
+            }
             _ => {
                 let before = pairs.last_mut().map_or(&mut path, |(_, value)| value);
                 before.push(',');
@@ -289,7 +294,17 @@ fn is_key(key: &str) -> bool {
     !key.is_empty()
         && key
             .bytes()
-            .all(|byte| byte.is_ascii_lowercase() || byte == b'_')
+            .all(|byte| byte.is_ascii_alphabetic() || b"_-".contains(&byte))
+}
+
+/// Refuses a key that is a slip of one that means something; others are names of maps.
+fn check_key(key: &str) -> Result<(), String> {
+    let maps = MapKind::ALL.into_iter().map(MapKind::name);
+    let known: Vec<_> = ["weight"].into_iter().chain(maps).collect();
+    match nearest(key, known.iter().copied()) {
+        Some(near) if near != key => Err(format!("there is no key {key}=; did you mean {near}=?")),
+        _ => Ok(()),
+    }
 }
 
 /// A number, or the name of a mask.
@@ -325,6 +340,10 @@ mod tests {
             .unwrap();
         assert_eq!(layer.weight, Some(Weight::Number(0.5)));
         assert_eq!(layer.map_names(), ["base", "roughness"]);
+        let shouted: LayerArg = "a.png,Weight=0.5,HEIGHT=h.png,roughness=r.png"
+            .parse()
+            .unwrap();
+        assert_eq!(shouted, layer, "keys are read in any case");
         let odd: LayerArg = "a,b.png,weight=c,d.png".parse().unwrap();
         assert_eq!(odd.path, PathBuf::from("a,b.png"), "commas of the name");
         assert_eq!(odd.weight, Some(Weight::Mask(PathBuf::from("c,d.png"))));
@@ -339,6 +358,8 @@ mod tests {
             "a,weight=-1",
             "a,weight=1,weight=2",
             "a,base=b",
+            "a,weigth=1",
+            "a,Normals=b",
         ] {
             assert!(text.parse::<LayerArg>().is_err(), "{text:?} is no layer");
         }

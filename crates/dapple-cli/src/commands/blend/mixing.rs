@@ -1,5 +1,6 @@
 //! How `dapple blend` uses weights, and how it mixes.
 
+use crate::args::Axes;
 use crate::error::{Hint, usage};
 use anyhow::Result;
 use clap::ValueEnum;
@@ -24,18 +25,10 @@ enum MixingName {
     /// The weighted mean.
     Linear,
     /// The contrast is kept; values may leave their range.
+    #[value(alias = "keep_variance")]
     KeepVariance,
     /// In bands, with sharper transitions where details are finer.
     Pyramid,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum BorderName {
-    /// Mirrored.
-    Mirror,
-    /// The images are tiles.
-    Repeat,
 }
 
 /// The options of weighting and mixing.
@@ -67,9 +60,9 @@ pub(super) struct MixingArgs {
     #[arg(long, value_name = "N")]
     sharpness: Option<f64>,
 
-    /// pyramid: what lies past the edges; by default the mirror image.
-    #[arg(long, value_enum, value_name = "WHAT")]
-    borders: Option<BorderName>,
+    /// pyramid: along which axes the images and their blend repeat; by default none, and past the edges lies the mirror image.
+    #[arg(long, value_enum, value_name = "AXES")]
+    wrap: Option<Axes>,
 }
 
 impl MixingArgs {
@@ -114,12 +107,7 @@ impl MixingArgs {
                 is_pyramid,
                 "--mixing pyramid",
             ),
-            (
-                "borders",
-                self.borders.is_some(),
-                is_pyramid,
-                "--mixing pyramid",
-            ),
+            ("wrap", self.wrap.is_some(), is_pyramid, "--mixing pyramid"),
         ] {
             if is_given && !is_used {
                 let message = format!("--{option} means nothing to this blend");
@@ -149,10 +137,14 @@ impl MixingArgs {
             MixingName::Pyramid => Mixing::Pyramid(Pyramid {
                 levels: self.levels.unwrap_or(default.levels),
                 sharpness: self.sharpness.unwrap_or(default.sharpness),
-                borders: match self.borders {
-                    Some(BorderName::Repeat) => [Border::Periodic; 2],
-                    Some(BorderName::Mirror) | None => [Border::Mirror; 2],
-                },
+                borders: self
+                    .wrap
+                    .unwrap_or(Axes::None)
+                    .flags()
+                    .map(|repeats| match repeats {
+                        true => Border::Periodic,
+                        false => Border::Mirror,
+                    }),
             }),
         }
     }

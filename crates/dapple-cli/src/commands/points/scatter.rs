@@ -1,8 +1,9 @@
 //! The kinds of point sets, and the options that each of them takes.
 
-use crate::args::{Axes, Extent, Size};
+use crate::args::{Axes, Extent, Size, seed};
 use crate::error::{Hint, usage};
 use crate::input::{self, Kind as ImageKind};
+use crate::words::Word;
 use anyhow::{Context as _, Error, Result};
 use clap::ValueEnum;
 use dapple::hash::Seed;
@@ -34,17 +35,6 @@ enum Kind {
     White,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum Rule {
-    /// The mean of the two radii.
-    Average,
-    /// The larger one.
-    Larger,
-    /// The smaller one.
-    Smaller,
-}
-
 /// What points there are to be.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Points")]
@@ -54,7 +44,7 @@ pub(super) struct ScatterArgs {
     kind: Kind,
 
     /// Where the randomness comes from: any whole number from 0 to 2^64 - 1.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     pub(super) seed: u64,
 
     /// About how many points, at least 1; 1000 if nothing else says it.
@@ -88,8 +78,8 @@ pub(super) struct ScatterArgs {
     invert: bool,
 
     /// variable: how far apart points of different radius are; by default the mean of their radii.
-    #[arg(long, value_enum)]
-    rule: Option<Rule>,
+    #[arg(long, value_name = "RULE", value_parser = Word::<DiskRule>::of(&["average", "larger", "smaller"]))]
+    rule: Option<DiskRule>,
 
     /// jittered: columns and rows of the grid; by default square cells for the count.
     #[arg(long, value_name = "NxM", conflicts_with = "count")]
@@ -154,7 +144,7 @@ impl ScatterArgs {
             Kind::Poisson => {
                 let radius = match self.radius {
                     Some(radius) => radius,
-                    None => poisson_disk_radius(domain, count)?,
+                    None => poisson_disk_radius(domain, count).map_err(advise)?,
                 };
                 let points = poisson_disk(domain, radius, seed).map_err(advise)?;
                 Ok(flat(points, Some(radius)))
@@ -163,11 +153,7 @@ impl ScatterArgs {
             Kind::Variable => {
                 let radius = self.variable_radius(domain, count)?;
                 let options = VariablePoissonOptions {
-                    rule: match self.rule {
-                        Some(Rule::Larger) => DiskRule::Larger,
-                        Some(Rule::Smaller) => DiskRule::Smaller,
-                        Some(Rule::Average) | None => DiskRule::Average,
-                    },
+                    rule: self.rule.unwrap_or_default(),
                     ..VariablePoissonOptions::default()
                 };
                 let points = variable_poisson_disk(domain, &radius, &options, seed);
@@ -177,16 +163,20 @@ impl ScatterArgs {
                 let cells = self
                     .cells
                     .map_or_else(|| square_cells(domain, count), |cells| cells.0);
-                let points = jittered_grid(domain, cells, self.jitter.unwrap_or(1.0), seed)?;
+                let points = jittered_grid(domain, cells, self.jitter.unwrap_or(1.0), seed)
+                    .map_err(advise)?;
                 Ok(flat(points, None))
             }
-            Kind::White => Ok(flat(white_noise(domain, count, seed)?, None)),
+            Kind::White => Ok(flat(
+                white_noise(domain, count, seed).map_err(advise)?,
+                None,
+            )),
         }
     }
 
     fn nested(&self, domain: Domain, count: u32, seed: Seed) -> Result<Scattered> {
         let radii = if self.radii.is_empty() {
-            let finest = poisson_disk_radius(domain, count)?;
+            let finest = poisson_disk_radius(domain, count).map_err(advise)?;
             let n_levels = self.levels.unwrap_or(3);
             // Twice the radius for a quarter of the points.
             let radius = |level| finest * f64::from(1_u32 << (n_levels - 1 - level));
@@ -337,7 +327,7 @@ fn advise(error: PointsError) -> Error {
         }
         PointsErrorKind::TooMany { .. } => "take a larger radius or a smaller domain",
         PointsErrorKind::NotDescending { .. } => "name the largest radius first",
-        _ => return error.into(),
+        _ => return Error::new(error).wrong_value(),
     };
-    Error::new(error).hint(hint)
+    Error::new(error).hint(hint).wrong_value()
 }

@@ -1,6 +1,6 @@
 //! The options of `dapple synth`.
 
-use crate::args::{Axes, Size};
+use crate::args::{Axes, Size, seed};
 use clap::ValueEnum;
 use dapple::hash::Seed;
 use dapple::mesh::HierarchyOptions;
@@ -97,7 +97,7 @@ pub(super) struct SurfaceArgs {
 #[command(next_help_heading = "Matching")]
 pub(super) struct MatchArgs {
     /// Where the randomness comes from: any whole number from 0 to 2^64 - 1.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     seed: u64,
 
     /// What lies past the edges of the example.

@@ -17,17 +17,17 @@ const SIZE: [u32; 2] = [512; 2];
 /// Makes the image, and the maps that follow it.
 pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
-    let target = args.image.files.target()?;
+    let target = args.target(&args.exemplar, args.image.ending())?;
     let format = Format::choose(args.image.format, &target, Format::Png16)?;
     let output = job.claim(&target)?;
     let map_outputs = args.claim_maps(&target, format.ending(), &mut job)?;
-    job.claim_sidecar()?;
+    job.claim_sidecar(&target)?;
     let Input {
         base,
         maps,
         exemplar,
     } = args.read()?;
-    let progress = Progress::bar("synthesizing", STEPS.into(), context.quiet);
+    let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let texture = synthesize_plane_with(
         &exemplar,
         args.plane.size.map_or(SIZE, |size| size.0),
@@ -57,5 +57,6 @@ fn follow(texture: &PlaneTexture, example: &Loaded) -> Result<Loaded> {
         map,
         alpha: alpha.transpose()?,
         is_deep: example.is_deep,
+        is_linear: example.is_linear,
     })
 }

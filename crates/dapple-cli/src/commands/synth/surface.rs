@@ -34,6 +34,8 @@ enum Product {
 /// The outputs that were claimed.
 struct Claimed {
     product: Product,
+    /// The name of the output without its ending.
+    stem: String,
     main: OutputIdx,
     /// The other files of an OBJ: material and textures, with their names.
     beside: Vec<(String, OutputIdx)>,
@@ -45,8 +47,7 @@ struct Claimed {
 /// Covers the mesh.
 pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "synth", &args.image.files);
-    let claimed = claim(args, &mut job)?;
-    job.claim_sidecar()?;
+    let claimed = claim(args, mesh, &mut job)?;
     let input = args.read()?;
     let model = input::model(mesh)?;
     let (repaired, repair) = model.mesh.repair();
@@ -60,16 +61,16 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     };
     let shading = shading(args.surface.crease(), &surface, &model, &repair);
     let double_sided = model.material.double_sided || repair.before.back_to_back_faces > 0;
-    let spinner = Progress::spinner("scattering sites", context.quiet);
+    let spinner = Progress::spinner("scattering sites", context);
     let sites = args.surface.sites(&args.matching);
     let synthesizer = Synthesizer::new(surface, &directions(args)?, &sites).map_err(advise)?;
     drop(spinner);
-    let progress = Progress::bar("synthesizing", STEPS.into(), context.quiet);
+    let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
     let texture = synthesizer.synthesize_with(&input.exemplar, &options, shown(&progress));
     let texture = texture.map_err(advise)?;
     drop(progress);
-    let spinner = Progress::spinner("baking", context.quiet);
+    let spinner = Progress::spinner("baking", context);
     write(
         args,
         &claimed,
@@ -149,8 +150,8 @@ impl Covered {
 }
 
 /// Claims the output, what belongs to it, and the maps.
-fn claim(args: &Args, job: &mut Job<'_>) -> Result<Claimed> {
-    let target = args.image.files.target()?;
+fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
+    let target = args.target(mesh, args.image.format.map_or("glb", Format::ending))?;
     let product = match target.ending().as_str() {
         "glb" => Product::Glb,
         "obj" => Product::Obj,
@@ -185,8 +186,10 @@ fn claim(args: &Args, job: &mut Job<'_>) -> Result<Claimed> {
     }
     // Those that go into the model are files of their own as well, for other programs.
     let maps = args.claim_maps(&target, format.ending(), job)?;
+    job.claim_sidecar(&target)?;
     Ok(Claimed {
         product,
+        stem: target.path().map(stem).unwrap_or_default(),
         main,
         beside,
         maps,
@@ -235,7 +238,7 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
                 model.material.normal = Some(EncodedImage::new(encode(&normals, claimed.format)?)?);
             }
         }
-        write_model(claimed, &model, args, job)?;
+        write_model(claimed, &model, job)?;
     }
     for (output, (_, loaded)) in claimed.maps.iter().zip(&covered.input.maps) {
         job.write_image(
@@ -269,13 +272,11 @@ fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
     Ok(model)
 }
 
-fn write_model(claimed: &Claimed, model: &Model, args: &Args, job: &Job<'_>) -> Result<()> {
+fn write_model(claimed: &Claimed, model: &Model, job: &Job<'_>) -> Result<()> {
     if claimed.product == Product::Glb {
         return job.write(claimed.main, &gltf::write(model)?);
     }
-    let target = args.image.files.target()?;
-    let stem = target.path().map(stem).unwrap_or_default();
-    for file in obj::write_files(model, &stem)? {
+    for file in obj::write_files(model, &claimed.stem)? {
         let beside = claimed.beside.iter().find(|(name, _)| *name == file.name);
         let output = beside.map_or(claimed.main, |(_, output)| *output);
         job.write(output, &file.bytes)?;

@@ -1,6 +1,7 @@
 //! The methods of `dapple tile`, and the options that each of them takes.
 
 use crate::error::{Hint, usage};
+use crate::words::Word;
 use anyhow::Result;
 use clap::ValueEnum;
 use dapple::tile::{
@@ -15,25 +16,13 @@ use serde::Serialize;
 enum Name {
     Periodic,
     Poisson,
+    #[value(alias = "soft_cut")]
     SoftCut,
     Spline,
+    #[value(alias = "periodic_spline")]
     PeriodicSpline,
     Feather,
     Mirror,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum CrossfadeName {
-    KeepVariance,
-    Linear,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum GradientName {
-    Zero,
-    Extrapolate,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
@@ -44,20 +33,6 @@ enum BasisName {
     Quadratic,
     Cubic,
     Sines,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum PhaseName {
-    Centered,
-    CookDerose,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum PixelsName {
-    Coefficients,
-    Samples,
 }
 
 /// The method and its options.
@@ -79,12 +54,12 @@ pub(super) struct MethodArgs {
     half_width: Option<f32>,
 
     /// soft-cut, feather with a margin: how the sides are mixed; by default the variance is kept.
-    #[arg(long, value_enum, value_name = "HOW")]
-    crossfade: Option<CrossfadeName>,
+    #[arg(long, value_name = "HOW", value_parser = Word::<Crossfade>::of(&["keep-variance", "linear"]))]
+    crossfade: Option<Crossfade>,
 
     /// poisson: the gradient across the wrap; by default zero.
-    #[arg(long, value_enum, value_name = "WHICH")]
-    wrap_gradient: Option<GradientName>,
+    #[arg(long, value_name = "WHICH", value_parser = Word::<WrapGradient>::of(&["zero", "extrapolate"]))]
+    wrap_gradient: Option<WrapGradient>,
 
     /// spline, periodic-spline: how often the image is halved and doubled, from 0 to 32; by default 1.
     #[arg(long, value_name = "N")]
@@ -95,12 +70,12 @@ pub(super) struct MethodArgs {
     basis: Option<BasisName>,
 
     /// spline, periodic-spline: where coarse coefficients lie; by default centered.
-    #[arg(long, value_enum, value_name = "WHERE")]
-    phase: Option<PhaseName>,
+    #[arg(long, value_name = "WHERE", value_parser = Word::<Phase>::of(&["centered", "cook-de-rose"]))]
+    phase: Option<Phase>,
 
     /// spline, periodic-spline: what pixels are to the spline; by default its coefficients, as in the paper.
-    #[arg(long, value_enum, value_name = "WHAT")]
-    pixels: Option<PixelsName>,
+    #[arg(long, value_name = "WHAT", value_parser = Word::<Pixels>::of(&["coefficients", "samples"]))]
+    pixels: Option<Pixels>,
 }
 
 impl MethodArgs {
@@ -113,10 +88,7 @@ impl MethodArgs {
         self.check_used()?;
         Ok(match self.method {
             Name::Periodic => Method::Periodic,
-            Name::Poisson => Method::Poisson(match self.wrap_gradient {
-                Some(GradientName::Extrapolate) => WrapGradient::Extrapolate,
-                Some(GradientName::Zero) | None => WrapGradient::Zero,
-            }),
+            Name::Poisson => Method::Poisson(self.wrap_gradient.unwrap_or_default()),
             Name::SoftCut => Method::SoftCut(self.soft_cut()),
             Name::Spline => Method::SplineProject(self.project()),
             Name::PeriodicSpline => Method::PeriodicThenProject(self.project()),
@@ -153,20 +125,14 @@ impl MethodArgs {
     }
 
     fn crossfade(&self) -> Crossfade {
-        match self.crossfade {
-            Some(CrossfadeName::Linear) => Crossfade::Linear,
-            Some(CrossfadeName::KeepVariance) | None => Crossfade::KeepVariance,
-        }
+        self.crossfade.unwrap_or_default()
     }
 
     fn project(&self) -> SplineProject {
         let default = SplineProject::default();
         SplineProject {
             levels: self.levels.unwrap_or(default.levels),
-            phase: match self.phase {
-                Some(PhaseName::CookDerose) => Phase::CookDeRose,
-                Some(PhaseName::Centered) | None => Phase::Centered,
-            },
+            phase: self.phase.unwrap_or_default(),
             basis: match self.basis {
                 Some(BasisName::Constant) => Basis::Spline(Degree::Constant),
                 Some(BasisName::Linear) => Basis::Spline(Degree::Linear),
@@ -174,10 +140,7 @@ impl MethodArgs {
                 Some(BasisName::Cubic) => Basis::Spline(Degree::Cubic),
                 Some(BasisName::Sines) => Basis::Sines,
             },
-            pixels: match self.pixels {
-                Some(PixelsName::Samples) => Pixels::Samples,
-                Some(PixelsName::Coefficients) | None => Pixels::Coefficients,
-            },
+            pixels: self.pixels.unwrap_or_default(),
         }
     }
 

@@ -1,0 +1,146 @@
+//! The command line as people type it.
+//!
+//! Options are read in any case and with `_` for `-`, and a negative number after an option is its value. What another program
+//! calls an option is answered with what it is called here.
+
+use crate::cli::{Cli, command};
+use crate::words::with_dashes;
+use clap::FromArgMatches;
+use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use std::ffi::OsString;
+
+/// What options that there are not are called here: the subcommands, the option, and what to type.
+const ELSEWHERE: [(&[&str], &str, &str); 9] = [
+    (
+        &["worley", "wavelet"],
+        "--frequency",
+        "--cells N, the number of cells across the picture",
+    ),
+    (
+        &["worley", "wavelet"],
+        "--scale",
+        "--cells N, the number of cells across the picture",
+    ),
+    (
+        &["pups"],
+        "--frequency",
+        "--spacing UNITS, the distance of control points",
+    ),
+    (
+        &["pups"],
+        "--scale",
+        "--spacing UNITS, the distance of control points, or --extent WxH",
+    ),
+    (
+        &["bake"],
+        "--frequency",
+        "`frequency` of a node in the recipe: `dapple recipe NAME -o my.toml`",
+    ),
+    (
+        &["bake"],
+        "--scale",
+        "`extent` in the recipe: `dapple recipe NAME -o my.toml`",
+    ),
+    (
+        &["synth"],
+        "--scale",
+        "--size WxH for images, and --sites N on a mesh",
+    ),
+    (&["bake"], "--normal", "--normal-y opengl or directx"),
+    (
+        &["worley", "pups", "wavelet", "tile", "info"],
+        "--axes",
+        "--wrap",
+    ),
+];
+
+/// The command line of this process. Where it is wrong, the process ends.
+pub(crate) fn parse() -> Cli {
+    let words = normalized(std::env::args_os());
+    let mut command = command();
+    let parsed = command
+        .try_get_matches_from_mut(&words)
+        .and_then(|matches| Cli::from_arg_matches(&matches));
+    parsed.unwrap_or_else(|error| advised(error.format(&mut command), &words).exit())
+}
+
+/// The words with the names of options as they are defined, and negative numbers joined with their options.
+fn normalized(typed: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut words: Vec<OsString> = Vec::new();
+    let mut are_options = true;
+    for word in typed {
+        are_options &= word != "--";
+        let text = word.to_str().filter(|_| are_options).unwrap_or_default();
+        match words.last_mut() {
+            Some(option) if is_negative(text) && takes_more(option) => {
+                option.push("=");
+                option.push(text);
+            }
+            _ if text.len() > 2 && text.starts_with("--") => words.push(option(text).into()),
+            _ => words.push(word),
+        }
+    }
+    words
+}
+
+/// An option with its name in small letters and dashes.
+fn option(text: &str) -> String {
+    match text.split_once('=') {
+        Some((name, value)) => format!("{}={value}", with_dashes(name)),
+        None => with_dashes(text),
+    }
+}
+
+fn is_negative(text: &str) -> bool {
+    let digits = text.strip_prefix('-').unwrap_or_default();
+    let digits = digits.strip_prefix('.').unwrap_or(digits);
+    digits.starts_with(|digit: char| digit.is_ascii_digit())
+}
+
+/// Whether it is a long option without its value.
+fn takes_more(word: &OsString) -> bool {
+    let word = word.to_string_lossy();
+    word.starts_with("--") && word.len() > 2 && !word.contains('=')
+}
+
+/// The error with what to type instead of an option that is called otherwise here.
+fn advised(mut error: clap::Error, words: &[OsString]) -> clap::Error {
+    let unknown = match error.get(ContextKind::InvalidArg) {
+        Some(ContextValue::String(option)) if error.kind() == ErrorKind::UnknownArgument => option,
+        _ => return error,
+    };
+    let is_named = |subcommand: &&str| words.iter().skip(1).any(|word| word == *subcommand);
+    let advice = ELSEWHERE.iter().find(|(subcommands, option, _)| {
+        option == unknown && subcommands.iter().any(|name| is_named(&name))
+    });
+    if let Some((_, _, advice)) = advice {
+        let advice = vec![StyledStr::from(format!("take {advice}"))];
+        error.remove(ContextKind::SuggestedArg);
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(advice));
+    }
+    error
+}
+
+#[cfg(test)]
+mod tests {
+    use super::normalized;
+
+    #[test]
+    fn options_are_read_in_any_case_and_take_negative_numbers() {
+        for (typed, expected) in [
+            ("worley --Octave_Seeds own", "worley --octave-seeds own"),
+            ("tile a_B.png -o C_D.png", "tile a_B.png -o C_D.png"),
+            ("points --origin -1,2", "points --origin=-1,2"),
+            (
+                "worley --range -.5,1 --seed -1",
+                "worley --range=-.5,1 --seed=-1",
+            ),
+            ("x --A_b=C_D -- --E_f -1", "x --a-b=C_D -- --E_f -1"),
+            ("info - -o -", "info - -o -"),
+        ] {
+            let words = normalized(typed.split(' ').map(Into::into));
+            assert_eq!(words.join(" ".as_ref()), expected, "{typed}");
+        }
+    }
+}
