@@ -3,7 +3,7 @@
 mod method;
 
 use crate::args::{Axes, ImageArgs, Region, Size};
-use crate::commands::info::measured;
+use crate::commands::info::seams_json;
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind, Loaded};
@@ -11,9 +11,13 @@ use crate::job::{Context, Job};
 use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
 use anyhow::{Context as _, Error, Result};
+use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use dapple::raster::Raster;
-use dapple::tile::{Map, SeamOptions, SeamReport, Seamless, TileError, TileErrorKind, repeat};
-use method::MethodArgs;
+use dapple::tile::{
+    Map, SeamOptions, SeamReport, SeamReports, Seamless, TileError, TileErrorKind, repeat,
+};
+use method::{Candidate, MethodArgs};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -21,17 +25,19 @@ use std::path::{Path, PathBuf};
 const EXAMPLES: &str = "\
 Examples:
   dapple tile photo.png -o tile.png
-  dapple tile photo.png --method soft-cut --margin 24 --sheet -o cut.png
-  dapple tile albedo.png height.png --normal normal.png \\
-    --method soft-cut -o tiles/
+  dapple tile photo.png --margin 24 --sheet -o cut.png
+  dapple tile photo.png --method auto --report -o best.png
+  dapple tile albedo.png height.png --normal normal.png -o tiles/
   dapple tile photo.png --axes x -o wall.exr
   dapple tile photo.png --report
 
 Which method:
-  periodic         keeps all detail and the size; the default
-  poisson          the same with another gradient across the wrap
   soft-cut         cuts along the line of least difference; smaller by the margin;
-                   for grains, leaves and stones
+                   for photographs; the default
+  auto             tries all of these and keeps the best by the report
+  periodic         keeps all detail and the size; spreads the step across the wrap over
+                   the image, which shows as a stain where it is large
+  poisson          the same with another gradient across the wrap
   spline           the blend tile of Du, Wang and Meng; smooths, and hides a seam only
                    in part
   periodic-spline  periodic first, then spline
@@ -60,14 +66,15 @@ pub(crate) struct Args {
     method: MethodArgs,
 
     /// Which sides fit together.
-    #[arg(long, value_enum, default_value_t = Axes::Both)]
+    #[arg(long, value_parser = repeating(), default_value = "both")]
     axes: Axes,
 
     /// Print how well source and tile repeat, and what of the source was kept.
     #[arg(long, help_heading = "Quality")]
     report: bool,
 
-    /// Exit with 3 if a tile does not pass: if its seam ratio is not from 0.8 to 1.25, at 1 and at 4 pixels.
+    /// Exit with 3 if a tile does not pass, in any of its channels: if the seam shows, a band has gone soft, contrast was lost,
+    /// the seam is unlike anything in the source, copies mirror each other, or samples are clipped.
     #[arg(long, help_heading = "Quality")]
     check: bool,
 
@@ -97,13 +104,7 @@ struct Source {
 ///
 /// Whatever went wrong.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
-    let seamless = Seamless {
-        method: args.method.method()?,
-        axes: args.axes.flags(),
-    };
-    if seamless.axes == [false; 2] {
-        return Err(usage("along no axis there is nothing to do").hint("take --axes x, y or both"));
-    }
+    args.method.check_used()?;
     let mut job = Job::new(context, "tile", &args.image.files);
     let sources = sources(args, &mut job)?;
     job.claim_sidecar()?;
@@ -112,10 +113,15 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         .iter()
         .map(|source| source.loaded.map.clone())
         .collect();
-    let tiles = seamless.apply_maps(&maps).map_err(hint_at_size)?;
+    let candidates = args.method.candidates(maps[0].size());
+    let made = best(args, &maps, candidates)?;
     drop(progress);
+    if args.method.is_auto() && !context.quiet {
+        job.say(&format!("auto takes {}", made.candidate.name))?;
+    }
 
-    let (report, passes) = reports(args, &sources, &tiles, &job)?;
+    let (report, passes) = reports(args, &sources, &made, &job)?;
+    let tiles = made.tiles;
     for (source, tile) in sources.iter().zip(tiles) {
         let Some([output, sheet]) = source.outputs else {
             continue;
@@ -210,43 +216,109 @@ fn claim(
     Ok(Some([Some(output), sheet]))
 }
 
+/// The tiles of all maps by a method.
+struct Made {
+    candidate: Candidate,
+    tiles: Vec<Map>,
+}
+
+/// The tiles by the only method, or by the one whose reports are the best of those that can be used.
+fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Made> {
+    let make = |candidate: Candidate| -> Result<Made, TileError> {
+        let seamless = Seamless {
+            method: candidate.method,
+            axes: args.axes.flags(),
+        };
+        let tiles = seamless.apply_maps(maps)?;
+        Ok(Made { candidate, tiles })
+    };
+    if let [_] = candidates.as_slice() {
+        return make(candidates.remove(0)).map_err(hint_at_size);
+    }
+    let (mut best, mut refused) = (None, None);
+    for candidate in candidates {
+        let made = match make(candidate) {
+            Ok(made) => made,
+            Err(error) => {
+                refused.get_or_insert(error);
+                continue;
+            }
+        };
+        let cost = cost(args, maps, &made)?;
+        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+            best = Some((cost, made));
+        }
+    }
+    match (best, refused) {
+        (Some((_, made)), _) => Ok(made),
+        (None, Some(error)) => Err(hint_at_size(error)),
+        (None, None) => Err(usage("there is no method")),
+    }
+}
+
+/// How bad the tiles are: the badness of the worst channel, and the part of the finest octave that it has lost.
+fn cost(args: &Args, maps: &[Map], made: &Made) -> Result<f64> {
+    let mut worst: f64 = 0.0;
+    for (map, tile) in maps.iter().zip(&made.tiles) {
+        let reports = SeamReports::beside(map, tile, &options(args, &made.candidate))?;
+        for of in reports.channels() {
+            let finest = of
+                .report
+                .kept
+                .as_ref()
+                .and_then(|kept| kept.octaves.first());
+            let lost = finest.map_or(0.0, |kept| (1.0 - kept).max(0.0));
+            worst = worst.max(of.report.badness() + lost);
+        }
+    }
+    Ok(worst.min(SeamReport::MOST))
+}
+
+fn options(args: &Args, candidate: &Candidate) -> SeamOptions {
+    SeamOptions {
+        axes: args.axes.flags(),
+        lattice: args.lattice.map_or(candidate.lattice, |lattice| lattice.0),
+    }
+}
+
 /// Prints the reports that were asked for; gives them as JSON, and whether all tiles pass.
-fn reports(args: &Args, sources: &[Source], tiles: &[Map], job: &Job<'_>) -> Result<(Value, bool)> {
+fn reports(args: &Args, sources: &[Source], made: &Made, job: &Job<'_>) -> Result<(Value, bool)> {
     let is_wanted = args.report || args.check || args.image.files.json.is_some();
     if !is_wanted {
         return Ok((Value::Null, true));
     }
-    let lattice = args
-        .lattice
-        .map_or(args.method.lattice(), |lattice| lattice.0);
-    let options = SeamOptions {
-        axes: args.axes.flags(),
-        lattice,
-    };
+    let options = options(args, &made.candidate);
     let plain = SeamOptions {
         lattice: [1; 2],
         ..options
     };
     let (mut all, mut passes) = (Vec::new(), true);
-    for (source, tile) in sources.iter().zip(tiles) {
-        let befores = measured(&source.loaded.map);
-        let afters = measured(tile);
-        for ((part, before), (_, after)) in befores.iter().zip(&afters) {
-            let name = format!("{}{part}", source.name);
-            let before_report = SeamReport::of(before, &plain).with_context(|| name.clone())?;
-            let report = SeamReport::beside(before, after, &options);
-            let report = report.with_context(|| name.clone())?;
-            passes &= report.passes();
-            if args.report {
-                job.say(&format!("{name}, as it was:\n{before_report}\n"))?;
-                job.say(&format!("{name}, made to repeat:\n{report}\n"))?;
-            } else if args.check && !report.passes() {
-                job.say(&format!("{name} does not pass:\n{report}"))?;
-            }
-            all.push(json!({ "map": name, "source": before_report, "tile": report }));
+    for (source, tile) in sources.iter().zip(&made.tiles) {
+        let name = &source.name;
+        let before =
+            SeamReports::of_map(&source.loaded.map, &plain).with_context(|| name.clone())?;
+        let after = SeamReports::beside(&source.loaded.map, tile, &options);
+        let after = after.with_context(|| name.clone())?;
+        passes &= after.passes();
+        if args.report {
+            job.say(&format!("{name}, as it was:\n{before}\n"))?;
+            job.say(&format!("{name}, made to repeat:\n{after}\n"))?;
+        } else if args.check && !after.passes() {
+            job.say(&format!("{name} does not pass:\n{after}"))?;
         }
+        all.push(json!({
+            "map": name, "method": made.candidate.name, "source": seams_json(&before), "tile": seams_json(&after),
+        }));
     }
     Ok((Value::Array(all), passes))
+}
+
+/// The axes of which at least one repeats.
+fn repeating() -> impl TypedValueParser<Value = Axes> {
+    let variants = Axes::value_variants().iter();
+    let repeating = variants.filter(|axes| axes.flags() != [false; 2]);
+    PossibleValuesParser::new(repeating.filter_map(ValueEnum::to_possible_value))
+        .try_map(|name| Axes::from_str(&name, false))
 }
 
 /// Two copies beside and below each other.

@@ -36,6 +36,43 @@ fn tile_is_what_the_library_makes() {
 }
 
 #[test]
+fn tile_cuts_by_default_with_a_margin_that_fits() {
+    let folder = Folder::with_inputs("tile-default");
+    assert_done(
+        &folder.run(&["tile", "height.exr", "-o", "out.exr"]),
+        "tile",
+    );
+    let source = gray(&folder, "height.exr");
+    let side = source.width().min(source.height());
+    let cut = SoftCut {
+        margin: 32.min(side / 4),
+        ..SoftCut::default()
+    };
+    let expected = Seamless::new(Method::SoftCut(cut)).apply(&source).unwrap();
+    assert_eq!(gray(&folder, "out.exr"), expected);
+}
+
+#[test]
+fn auto_names_its_method_and_is_never_worse_than_others() {
+    let folder = Folder::with_inputs("tile-auto");
+    let output = folder.run(&["tile", "height.exr", "--method", "auto", "-o", "out.exr"]);
+    assert_done(&output, "tile");
+    let said = stdout(&output);
+    let name = said
+        .lines()
+        .find_map(|line| line.strip_prefix("auto takes "));
+    let name = name.expect("the method is named");
+    let mut again = vec!["tile", "height.exr", "-o", "again.exr", "--method"];
+    again.extend(name.split(' '));
+    assert_done(&folder.run(&again), name);
+    assert_eq!(
+        gray(&folder, "again.exr"),
+        gray(&folder, "out.exr"),
+        "{name}"
+    );
+}
+
+#[test]
 fn threads_do_not_change_a_bit() {
     let folder = Folder::with_inputs("threads");
     let runs: [&[&str]; 4] = [
@@ -111,6 +148,8 @@ fn a_region_is_what_is_tiled() {
         "photo.png",
         "--region",
         "8,16,32,24",
+        "--method",
+        "periodic",
         "-o",
         "out.png",
     ];
