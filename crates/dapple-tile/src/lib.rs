@@ -9,8 +9,8 @@
 //!   [`SoftCut`] suits grains and costs a margin; [`SplineProject`] is the paper's, which smooths, and hides a seam only
 //!   where the image was made periodic before ([`PeriodicThenProject`](Method::PeriodicThenProject)). [`Feather`] and
 //!   [`Mirror`](Method::Mirror) are the usual baselines.
-//! * **What it cost**: [`SeamReport`] compares the steps across the wrap with those inside, at four scales, and counts the
-//!   detail that was kept.
+//! * **What it cost**: [`SeamReport`] compares the steps across the wrap with those inside, at four scales, counts the
+//!   detail that was kept and says what is wrong; [`SeamReports`] does so for all channels of a picture.
 //! * **A map of a tile**: [`repeat`] and [`repeat_into`] fill any size; [`Disturbance`] varies the copies inside and keeps
 //!   their borders; [`CornerTiles`] are sets that fit in any order; [`MatchBorders`] makes unlike tiles fit.
 //! * **Blending**: [`BlendMap`] finds where a texture has its cracks, [`rank_equalize`] makes any raster a mask that covers
@@ -90,7 +90,9 @@ pub use poisson::WrapGradient;
 pub use pyramid::Pyramid;
 pub use rank::rank_equalize;
 pub use repeat::{repeat, repeat_into};
-pub use report::{DetailKept, Seam, SeamOptions, SeamRatio, SeamReport};
+pub use report::{
+    ChannelReport, DetailKept, Fault, Seam, SeamOptions, SeamRatio, SeamReport, SeamReports,
+};
 pub use seamless::{Method, Seamless};
 pub use soft_cut::SoftCut;
 pub use spline_project::{Basis, Pixels, SplineProject};

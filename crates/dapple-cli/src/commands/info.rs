@@ -11,8 +11,7 @@ use crate::output::Target;
 use anyhow::{Context as _, Result};
 use channels::{Channel, channels, format};
 use clap::ValueEnum;
-use dapple::raster::Raster;
-use dapple::tile::{Map, SeamOptions, SeamReport};
+use dapple::tile::{ChannelReport, SeamOptions, SeamReports};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -25,8 +24,9 @@ Examples:
   dapple info model.obj
 
 Numbers are those of the file: code / max in PNG, from 0 to 1, and as they are in EXR.
-A seam ratio near 1 says that the step across the wrap is like the steps inside: it is
-that of the luminance, at steps between means of 1, 2, 4 and 8 pixels.";
+A seam ratio near 1 says that the step across the wrap is like the steps inside, between
+means of 1, 2, 4 and 8 pixels. An image does not pass if, in any of its channels, the seam
+stands out by 2.5 standard deviations or more among the boundaries inside.";
 
 /// Tell what is in images and meshes: size, range, histogram, how well they repeat, what is wrong.
 #[derive(clap::Args, Debug, Serialize)]
@@ -134,16 +134,16 @@ impl Args {
     }
 }
 
-/// The rasters of a map on which seams are measured, with what to add to its name.
-pub(super) fn measured(map: &Map) -> Vec<(&'static str, Raster<f32>)> {
-    match map {
-        Map::Value(values) => vec![("", values.clone())],
-        Map::Color(colors) => vec![(", luminance", colors.map(|color| color.luminance()))],
-        Map::Normal(normals) => vec![
-            (", x", normals.map(|normal| normal.x)),
-            (", y", normals.map(|normal| normal.y)),
-        ],
-    }
+/// Seam reports for programs, with their verdict.
+pub(super) fn seams_json(reports: &SeamReports) -> Value {
+    let of_channel = |of: &ChannelReport| {
+        let faults = of.report.faults().into_iter();
+        let faults =
+            faults.map(|fault| json!({ "channel": of.channel, "fault": fault.to_string() }));
+        faults.collect::<Vec<_>>()
+    };
+    let faults: Vec<_> = reports.channels().iter().flat_map(of_channel).collect();
+    json!({ "passes": reports.passes(), "faults": faults, "channels": reports.channels() })
 }
 
 fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
@@ -164,9 +164,9 @@ fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
                 axes: axes.flags(),
                 lattice: args.lattice.0,
             };
-            let luminance = channels::luminance(&channels);
-            let report = luminance.map(|values| SeamReport::of(&values, &options));
-            report.transpose().with_context(|| input::name(path))?
+            let named = channels.iter().map(|of| (of.name.as_str(), &of.values));
+            let reports = SeamReports::of(named, &options);
+            Some(reports.with_context(|| input::name(path))?)
         }
     };
     let size = channels
@@ -192,7 +192,8 @@ fn image_findings(path: &Path, args: &Args) -> Result<Findings> {
     let channels: Vec<_> = channels.iter().map(Channel::to_json).collect();
     let json = json!({
         "file": input::name(path), "kind": "image", "format": format, "size": size,
-        "channels": channels, "transparency": transparency, "seams": seams,
+        "channels": channels, "transparency": transparency,
+        "seams": seams.as_ref().map(seams_json),
     });
     Ok(Findings {
         text: text + "\n",

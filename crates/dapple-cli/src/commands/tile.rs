@@ -3,7 +3,7 @@
 mod method;
 
 use crate::args::{AlphaArgs, Axes, ImageArgs, Region, Size};
-use crate::commands::info::measured;
+use crate::commands::info::seams_json;
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind, Loaded};
@@ -12,8 +12,10 @@ use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
 use anyhow::{Context as _, Error, Result};
 use dapple::raster::Raster;
-use dapple::tile::{Map, SeamOptions, SeamReport, Seamless, TileError, TileErrorKind, repeat};
-use method::MethodArgs;
+use dapple::tile::{
+    Map, SeamOptions, SeamReport, SeamReports, Seamless, TileError, TileErrorKind, repeat,
+};
+use method::{Candidate, MethodArgs};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -21,17 +23,19 @@ use std::path::{Path, PathBuf};
 const EXAMPLES: &str = "\
 Examples:
   dapple tile photo.png -o tile.png
-  dapple tile photo.png --method soft-cut --margin 24 --sheet -o cut.png
-  dapple tile albedo.png height.png --normal normal.png \\
-    --method soft-cut -o tiles/
+  dapple tile photo.png --margin 24 --sheet -o cut.png
+  dapple tile photo.png --method auto --report -o best.png
+  dapple tile albedo.png height.png --normal normal.png -o tiles/
   dapple tile photo.png --wrap x -o wall.exr
   dapple tile photo.png --report
 
 Which method:
-  periodic         keeps all detail and the size; the default
-  poisson          the same with another gradient across the wrap
   soft-cut         cuts along the line of least difference; smaller by the margin;
-                   for grains, leaves and stones
+                   for photographs; the default
+  auto             tries all of these and keeps the best by the report
+  periodic         keeps all detail and the size; spreads the step across the wrap over
+                   the image, which shows as a stain where it is large
+  poisson          the same with another gradient across the wrap
   spline           the blend tile of Du, Wang and Meng; smooths, and hides a seam only
                    in part
   periodic-spline  periodic first, then spline
@@ -71,7 +75,8 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Quality")]
     report: bool,
 
-    /// Exit with 3 if a tile does not pass: if its seam ratio is not from 0.8 to 1.25, at 1 and at 4 pixels.
+    /// Exit with 3 if a tile does not pass, in any of its channels: if the seam shows, a band has gone soft, contrast was lost,
+    /// the seam is unlike anything in the source, copies mirror each other, or samples are clipped.
     #[arg(long, help_heading = "Quality")]
     check: bool,
 
@@ -101,10 +106,7 @@ struct Source {
 ///
 /// Whatever went wrong.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
-    let seamless = Seamless {
-        method: args.method.method()?,
-        axes: args.wrap.flags(),
-    };
+    args.method.check_used()?;
     let mut job = Job::new(context, "tile", &args.image.files);
     let sources = sources(args, &mut job)?;
     let progress = Progress::spinner("making it repeat", context);
@@ -114,12 +116,16 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         .iter()
         .filter_map(|source| source.loaded.alpha.clone());
     let maps: Vec<Map> = maps.chain(alphas.map(Map::Value)).collect();
-    let mut tiles = seamless.apply_maps(&maps).map_err(advise)?;
-    let mut alphas = tiles.split_off(sources.len()).into_iter();
+    let candidates = args.method.candidates(maps[0].size());
+    let mut made = best(args, &maps, candidates)?;
+    let mut alphas = made.tiles.split_off(sources.len()).into_iter();
     drop(progress);
+    if args.method.is_auto() && !context.quiet {
+        job.say(&format!("auto takes {}", made.candidate.name))?;
+    }
 
-    let (report, passes) = reports(args, &sources, &tiles, &job)?;
-    for (source, map) in sources.iter().zip(tiles) {
+    let (report, passes) = reports(args, &sources, &made, &job)?;
+    for (source, map) in sources.iter().zip(made.tiles) {
         let has_alpha = source.loaded.alpha.is_some();
         let alpha = match has_alpha.then(|| alphas.next()).flatten() {
             Some(Map::Value(alpha)) => Some(alpha),
@@ -234,41 +240,99 @@ fn map_of(stem: &str) -> &str {
     stem.rsplit_once('_').map_or(stem, |(_, map)| map)
 }
 
+/// The tiles of all maps by a method.
+struct Made {
+    candidate: Candidate,
+    tiles: Vec<Map>,
+}
+
+/// The tiles by the only method, or by the one whose reports are the best of those that can be used.
+fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Made> {
+    let make = |candidate: Candidate| -> Result<Made, TileError> {
+        let seamless = Seamless {
+            method: candidate.method,
+            axes: args.wrap.flags(),
+        };
+        let tiles = seamless.apply_maps(maps)?;
+        Ok(Made { candidate, tiles })
+    };
+    if let [_] = candidates.as_slice() {
+        return make(candidates.remove(0)).map_err(advise);
+    }
+    let (mut best, mut refused) = (None, None);
+    for candidate in candidates {
+        let made = match make(candidate) {
+            Ok(made) => made,
+            Err(error) => {
+                refused.get_or_insert(error);
+                continue;
+            }
+        };
+        let cost = cost(args, maps, &made)?;
+        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+            best = Some((cost, made));
+        }
+    }
+    match (best, refused) {
+        (Some((_, made)), _) => Ok(made),
+        (None, Some(error)) => Err(advise(error)),
+        (None, None) => Err(usage("there is no method")),
+    }
+}
+
+/// How bad the tiles are: the badness of the worst channel, and the part of the finest octave that it has lost.
+fn cost(args: &Args, maps: &[Map], made: &Made) -> Result<f64> {
+    let mut worst: f64 = 0.0;
+    for (map, tile) in maps.iter().zip(&made.tiles) {
+        let reports = SeamReports::beside(map, tile, &options(args, &made.candidate))?;
+        for of in reports.channels() {
+            let finest = of
+                .report
+                .kept
+                .as_ref()
+                .and_then(|kept| kept.octaves.first());
+            let lost = finest.map_or(0.0, |kept| (1.0 - kept).max(0.0));
+            worst = worst.max(of.report.badness() + lost);
+        }
+    }
+    Ok(worst.min(SeamReport::MOST))
+}
+
+fn options(args: &Args, candidate: &Candidate) -> SeamOptions {
+    SeamOptions {
+        axes: args.wrap.flags(),
+        lattice: args.lattice.map_or(candidate.lattice, |lattice| lattice.0),
+    }
+}
+
 /// Prints the reports that were asked for; gives them as JSON, and whether all tiles pass.
-fn reports(args: &Args, sources: &[Source], tiles: &[Map], job: &Job<'_>) -> Result<(Value, bool)> {
+fn reports(args: &Args, sources: &[Source], made: &Made, job: &Job<'_>) -> Result<(Value, bool)> {
     let is_wanted = args.report || args.check || args.image.files.json.is_some();
     if !is_wanted {
         return Ok((Value::Null, true));
     }
-    let lattice = args
-        .lattice
-        .map_or(args.method.lattice(), |lattice| lattice.0);
-    let options = SeamOptions {
-        axes: args.wrap.flags(),
-        lattice,
-    };
+    let options = options(args, &made.candidate);
     let plain = SeamOptions {
         lattice: [1; 2],
         ..options
     };
     let (mut all, mut passes) = (Vec::new(), true);
-    for (source, tile) in sources.iter().zip(tiles) {
-        let befores = measured(&source.loaded.map);
-        let afters = measured(tile);
-        for ((part, before), (_, after)) in befores.iter().zip(&afters) {
-            let name = format!("{}{part}", source.name);
-            let before_report = SeamReport::of(before, &plain).with_context(|| name.clone())?;
-            let report = SeamReport::beside(before, after, &options);
-            let report = report.with_context(|| name.clone())?;
-            passes &= report.passes();
-            if args.report {
-                job.say(&format!("{name}, as it was:\n{before_report}\n"))?;
-                job.say(&format!("{name}, made to repeat:\n{report}\n"))?;
-            } else if args.check && !report.passes() {
-                job.say(&format!("{name} does not pass:\n{report}"))?;
-            }
-            all.push(json!({ "map": name, "source": before_report, "tile": report }));
+    for (source, tile) in sources.iter().zip(&made.tiles) {
+        let name = &source.name;
+        let before =
+            SeamReports::of_map(&source.loaded.map, &plain).with_context(|| name.clone())?;
+        let after = SeamReports::beside(&source.loaded.map, tile, &options);
+        let after = after.with_context(|| name.clone())?;
+        passes &= after.passes();
+        if args.report {
+            job.say(&format!("{name}, as it was:\n{before}\n"))?;
+            job.say(&format!("{name}, made to repeat:\n{after}\n"))?;
+        } else if args.check && !after.passes() {
+            job.say(&format!("{name} does not pass:\n{after}"))?;
         }
+        all.push(json!({
+            "map": name, "method": made.candidate.name, "source": seams_json(&before), "tile": seams_json(&after),
+        }));
     }
     Ok((Value::Array(all), passes))
 }

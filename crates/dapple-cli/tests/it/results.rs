@@ -47,13 +47,13 @@ fn blend_writes_the_blended_height_beside_the_other_maps() {
         folder.run(&[&["blend"], &layers[..], &options].concat())
     };
     assert_done(&run("given", "out/"), "blend");
-    assert!(folder.path("out/base.png").is_file(), "the first map");
+    assert!(folder.path("out/blend_base.png").is_file(), "the first map");
     let expected = gray(&folder, "rock_height.png")
         .zip_map(&gray(&folder, "mask.png"), |rock, grass| {
             0.75 * rock + 0.25 * grass
         })
         .unwrap();
-    let blended = gray(&folder, "out/height.png");
+    let blended = gray(&folder, "out/blend_height.png");
     for (value, expected) in blended.pixels().iter().zip(expected.pixels()) {
         // A file with 16 bits.
         assert!(
@@ -74,7 +74,44 @@ fn blend_writes_the_blended_height_beside_the_other_maps() {
         "some/",
     ];
     assert_done(&folder.run(&some), "blend");
-    assert!(!folder.path("some/height.png").exists(), "no height");
+    assert!(!folder.path("some/blend_height.png").exists(), "no height");
+}
+
+#[test]
+fn tile_cuts_by_default_with_a_margin_that_fits() {
+    let folder = Folder::with_inputs("tile-default");
+    assert_done(
+        &folder.run(&["tile", "height.exr", "-o", "out.exr"]),
+        "tile",
+    );
+    let source = gray(&folder, "height.exr");
+    let side = source.width().min(source.height());
+    let cut = SoftCut {
+        margin: 32.min(side / 4),
+        ..SoftCut::default()
+    };
+    let expected = Seamless::new(Method::SoftCut(cut)).apply(&source).unwrap();
+    assert_eq!(gray(&folder, "out.exr"), expected);
+}
+
+#[test]
+fn auto_names_its_method_and_is_never_worse_than_others() {
+    let folder = Folder::with_inputs("tile-auto");
+    let output = folder.run(&["tile", "height.exr", "--method", "auto", "-o", "out.exr"]);
+    assert_done(&output, "tile");
+    let said = stdout(&output);
+    let name = said
+        .lines()
+        .find_map(|line| line.strip_prefix("auto takes "));
+    let name = name.expect("the method is named");
+    let mut again = vec!["tile", "height.exr", "-o", "again.exr", "--method"];
+    again.extend(name.split(' '));
+    assert_done(&folder.run(&again), name);
+    assert_eq!(
+        gray(&folder, "again.exr"),
+        gray(&folder, "out.exr"),
+        "{name}"
+    );
 }
 
 #[test]
@@ -153,6 +190,8 @@ fn a_region_is_what_is_tiled() {
         "photo.png",
         "--region",
         "8,16,32,24",
+        "--method",
+        "periodic",
         "-o",
         "out.png",
     ];

@@ -23,7 +23,9 @@ use crate::draw::enlarged;
 use anyhow::Context;
 use dapple_pups::hash::Seed;
 use dapple_raster::{Raster, Wrap};
-use dapple_tile::{Basis, BlendMap, Pixels, Seam, SeamOptions, SeamReport, SplineProject, repeat};
+use dapple_tile::{
+    Basis, BlendMap, Method, Pixels, Seam, SeamOptions, SeamReport, SoftCut, SplineProject, repeat,
+};
 use dapple_wavelet::{Degree, Phase};
 use grass::grass;
 use patch::{Edges, Material};
@@ -62,6 +64,17 @@ fn tile_side(size: u32) -> u32 {
     (size / 32 * 8).max(8)
 }
 
+/// The margin of a cut that makes a tile of `side` pixels, and the cut: an image has to be larger by the margin.
+fn cut(side: u32) -> (u32, Method) {
+    let margin = side / 4;
+    let cut = SoftCut {
+        margin,
+        half_width: margin as f32 / 8.0,
+        ..SoftCut::default()
+    };
+    (margin, Method::SoftCut(cut))
+}
+
 /// The size of a stone or a pebble in a picture `side` pixels wide: a sixth of it, for the larger ones.
 fn stone_px(side: u32) -> f64 {
     (0.16 * f64::from(side)).max(1.0)
@@ -92,7 +105,7 @@ fn crops(side: u32) -> anyhow::Result<[(&'static str, Raster<f32>); 4]> {
     ])
 }
 
-/// The [`SeamReport`] of a tile beside its original, in four short lines.
+/// The [`SeamReport`] of a tile beside its original, in four short lines, and its verdict.
 fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> {
     let options = SeamOptions {
         lattice: [1 << BLEND_TILE.levels; 2],
@@ -112,8 +125,19 @@ fn report(original: &Raster<f32>, tile: &Raster<f32>) -> anyhow::Result<String> 
         "seam at 1, 2, 4, 8 px{seams}\n\
          detail, finest first {octaves}\n\
          least detail, before {local}\n\
-         contrast             {contrast}\n"
+         contrast             {contrast}\n\
+         {}\n",
+        verdict(&report)
     ))
+}
+
+/// What is wrong with a tile, a line for each fault.
+fn verdict(report: &SeamReport) -> String {
+    let faults: Vec<_> = report.faults().iter().map(ToString::to_string).collect();
+    match faults.as_slice() {
+        [] => "passes".to_owned(),
+        faults => format!("does not pass: {}", faults.join(",\n  ")),
+    }
 }
 
 /// A sheet `width` pixels wide with a tile at its upper left and, on the right, two by two copies of it.

@@ -12,18 +12,25 @@ const NOTHING: &str = "-";
 impl fmt::Display for SeamReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;
-        write!(f, "a tile of {width} × {height} pixels: ")?;
-        if self.passes() {
-            writeln!(f, "passes")?;
-        } else {
-            let [least, most] = Self::ACCEPTED;
-            let [near, far] = Self::JUDGED;
-            writeln!(f, "does not pass")?;
-            writeln!(
-                f,
-                "  (it would with ratios of both from {least} to {most} at {near} and at {far} px)"
-            )?;
+        writeln!(
+            f,
+            "a tile of {width} × {height} pixels: {}",
+            if self.passes() {
+                "passes"
+            } else {
+                "does not pass"
+            }
+        )?;
+        for fault in self.faults() {
+            writeln!(f, "  ({fault})")?;
         }
+        self.write_table(f)
+    }
+}
+
+impl SeamReport {
+    /// The numbers, without the verdict.
+    pub(super) fn write_table(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:<22}", "seam ratio")?;
         for axis in ["x", "y", "both"] {
             write!(f, "{axis:>CELL$}")?;
@@ -33,6 +40,11 @@ impl fmt::Display for SeamReport {
             for ratio in [seam.x, seam.y, seam.both] {
                 write!(f, "{:>CELL$}", cell(ratio))?;
             }
+        }
+        write!(f, "\n{:<22}", "seam stands out by")?;
+        for seam in &self.seams {
+            let by = seam.stands_out.map_or_else(|| NOTHING.to_owned(), number);
+            write!(f, "{:>12}", format!("{} px: {by}", seam.width))?;
         }
         write!(f, "\n{:<22}", "lowest local detail")?;
         write!(f, "{:>CELL$.3}", self.lowest_local_detail)?;
@@ -57,7 +69,11 @@ impl DetailKept {
             write!(f, "{octave:>CELL$}")?;
         }
         let contrast = number(self.contrast);
-        write!(f, "\n{:<22}{contrast:>CELL$}", "contrast kept")
+        write!(f, "\n{:<22}{contrast:>CELL$}", "contrast kept")?;
+        let strange = self.strangeness.map_or_else(|| NOTHING.to_owned(), number);
+        write!(f, "\n{:<22}{strange:>CELL$}", "strangeness")?;
+        let clipped = format!("{:.1} %", 100.0 * self.clipped);
+        write!(f, "\n{:<22}{clipped:>CELL$}", "clipped")
     }
 }
 

@@ -1,7 +1,8 @@
 //! Whole reports: their numbers, text and limits.
 
-use super::{SeamOptions, SeamReport};
-use crate::{TileError, TileErrorKind};
+use super::{Fault, SeamOptions, SeamReport};
+use crate::test_fields::gravel;
+use crate::{Crossfade, Feather, Method, Seamless, SoftCut, TileError, TileErrorKind};
 use dapple_hash::{Seed, hash2, unit_f32};
 use dapple_raster::Raster;
 use proptest::prelude::*;
@@ -82,6 +83,39 @@ fn gate_passes_noise_and_stops_seams() {
 }
 
 #[test]
+fn faults_name_what_crossfades_and_mirrors_do() {
+    // The joints are above 0, so that nothing is clipped.
+    let source = gravel(4, [160; 2], false).map(|value| 0.2 + 0.6 * value);
+    let faults = |method| {
+        let tile = Seamless::new(method).apply(&source).unwrap();
+        SeamReport::beside(&source, &tile, &SeamOptions::default())
+            .unwrap()
+            .faults()
+    };
+    let feather = |crossfade| {
+        Method::Feather(Feather::Margin {
+            margin: 32,
+            crossfade,
+        })
+    };
+    assert_eq!(faults(Method::SoftCut(SoftCut::default())), []);
+    assert!(faults(feather(Crossfade::Linear)).contains(&Fault::Soft));
+    assert!(faults(Method::Feather(Feather::HalfShift)).contains(&Fault::Ghosts));
+    assert!(faults(Method::Mirror).contains(&Fault::Mirrored));
+}
+
+#[test]
+fn a_frame_of_one_color_and_a_soft_seam_are_no_faults() {
+    let framed = Raster::from_fn([64; 2], |x, y| match x.min(y).min(63 - x).min(63 - y) {
+        0..6 => 1.0,
+        _ => unit_f32(hash2(Seed(1), [x.into(), y.into()], 0) as u32),
+    });
+    let report = SeamReport::of(&framed.unwrap(), &SeamOptions::default()).unwrap();
+    assert_eq!(report.seams[0].both.unwrap().ratio, 0.0);
+    assert!(report.passes(), "{report}");
+}
+
+#[test]
 fn axes_that_do_not_repeat_are_not_measured() {
     let tile = noise([40, 24], 6);
     let options = SeamOptions {
@@ -158,15 +192,20 @@ fn table_reads_as_it_should() {
     let report = SeamReport::beside(&ramp, &half, &SeamOptions::default()).unwrap();
     let expected = "\
 a tile of 64 × 64 pixels: does not pass
-  (it would with ratios of both from 0.8 to 1.25 at 1 and at 4 px)
+  (the seam shows, most at 1 px)
+  (contrast is lost, as in a double exposure)
+  (the seam is unlike anything in the source)
 seam ratio                           x               y            both
   at 1 px                 63.00 ± 0.00    63.00 ± 0.00    63.00 ± 0.00
   at 2 px                 31.00 ± 0.00    31.00 ± 0.00    31.00 ± 0.00
   at 4 px                 15.00 ± 0.00    15.00 ± 0.00    15.00 ± 0.00
   at 8 px                  7.00 ± 0.00     7.00 ± 0.00     7.00 ± 0.00
+seam stands out by       1 px: 185 2 px: 91.33 4 px: 44.87 8 px: 21.47
 lowest local detail              0.707  (of the source 0.707)
 detail kept                  1/2: 0.25       1/4: 0.25       1/8: 0.25
-contrast kept                     0.50";
+contrast kept                     0.50
+strangeness                      58.59
+clipped                          0.0 %";
     assert_eq!(report.to_string(), expected);
 }
 
@@ -201,10 +240,14 @@ proptest! {
                 .flat_map(|ratio| [Some(ratio.ratio), ratio.spread])
                 .flatten()
                 .chain(kept.octaves)
-                .chain([kept.contrast, report.lowest_local_detail, kept.source_lowest_local_detail]);
+                .chain(report.seams.iter().filter_map(|seam| seam.stands_out))
+                .chain(kept.strangeness)
+                .chain([kept.contrast, report.lowest_local_detail, kept.source_lowest_local_detail])
+                .chain([kept.clipped, report.badness()]);
             for number in numbers {
                 prop_assert!((0.0..=SeamReport::MOST).contains(&number), "{}", number);
             }
+            prop_assert_eq!(report.passes(), report.badness() <= 1.0, "{}", report);
         }
     }
 }

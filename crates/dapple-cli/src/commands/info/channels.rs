@@ -1,7 +1,7 @@
 //! The channels of an image as the file has them, and their statistics.
 
 use anyhow::Result;
-use dapple::color::{Code, LinearRgb};
+use dapple::color::Code;
 use dapple::image::{Image, PngPixels, Transfer};
 use dapple::raster::Raster;
 use serde::Serialize;
@@ -20,7 +20,7 @@ const RGBA: [&str; 4] = ["red", "green", "blue", "alpha"];
 
 /// A channel with its name.
 pub(super) struct Channel {
-    name: String,
+    pub(super) name: String,
     pub(super) values: Raster<f32>,
 }
 
@@ -137,28 +137,6 @@ pub(super) fn format(image: &Image) -> String {
     }
 }
 
-/// The values on which seams are measured: the luminance of colors, or the first channel.
-pub(super) fn luminance(channels: &[Channel]) -> Option<Raster<f32>> {
-    let named = |names: [&str; 2]| {
-        let is_named = |channel: &&Channel| names.contains(&channel.name.as_str());
-        channels
-            .iter()
-            .find(is_named)
-            .map(|channel| &channel.values)
-    };
-    let colors = [
-        named(["red", "R"]),
-        named(["green", "G"]),
-        named(["blue", "B"]),
-    ];
-    let [Some(red), Some(green), Some(blue)] = colors else {
-        return channels.first().map(|channel| channel.values.clone());
-    };
-    let pairs = red.zip_map(green, |&r, &g| (r, g)).ok()?;
-    let luminance = pairs.zip_map(blue, |&(r, g), &b| LinearRgb::new(r, g, b).luminance());
-    luminance.ok()
-}
-
 /// How much of an image is transparent, as parts of its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Transparency {
@@ -218,7 +196,7 @@ fn split<C: Code, const N: usize>(raster: &Raster<[C; N]>, names: [&str; N]) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::{BARS, BINS, Channel, Transparency, luminance, transparency};
+    use super::{BARS, BINS, Channel, Transparency, transparency};
     use dapple::raster::Raster;
 
     fn channel(values: Vec<f32>) -> Channel {
@@ -265,11 +243,5 @@ mod tests {
         let channel = channel(vec![f32::NAN; 4]);
         assert_eq!(channel.histogram(), [0; BINS as usize]);
         assert!(channel.to_json()["mean"].is_null(), "a mean of nothing");
-    }
-
-    #[test]
-    fn one_plane_is_its_own_luminance() {
-        let values = luminance(&[channel(vec![0.25; 4])]).unwrap();
-        assert_eq!(values.pixels(), [0.25; 4]);
     }
 }

@@ -14,6 +14,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "kebab-case")]
 enum Name {
+    Auto,
     Periodic,
     Poisson,
     #[value(alias = "soft_cut")]
@@ -35,16 +36,31 @@ enum BasisName {
     Sines,
 }
 
+/// A method with its options.
+pub(super) struct Candidate {
+    /// What it is called on the command line.
+    pub(super) name: String,
+    pub(super) method: Method,
+    /// How many pixels apart the boundaries of a tile are that are like its wrap.
+    pub(super) lattice: [u32; 2],
+}
+
+/// The margin where none is given: that of the library, if the image has room for it.
+fn default_margin(size: [u32; 2]) -> u32 {
+    let shorter = size[0].min(size[1]);
+    SoftCut::default().margin.min((shorter / 4).max(1))
+}
+
 /// The method and its options.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Method")]
 pub(super) struct MethodArgs {
     /// How.
-    #[arg(long, value_enum, default_value_t = Name::Periodic)]
+    #[arg(long, value_enum, default_value_t = Name::SoftCut)]
     method: Name,
 
     /// soft-cut, feather: how wide the two sides lie over each other, in pixels, from 1 to half of the side. By default 32
-    /// for soft-cut; without it, feather mixes the image with itself moved by half.
+    /// for soft-cut, or a quarter of the shorter side if that is less; without it, feather mixes the image with itself moved by half.
     #[arg(long, value_name = "PX")]
     margin: Option<u32>,
 
@@ -79,17 +95,45 @@ pub(super) struct MethodArgs {
 }
 
 impl MethodArgs {
-    /// The method with its options.
-    ///
-    /// # Errors
-    ///
-    /// If an option was given that the method does not have.
-    pub(super) fn method(&self) -> Result<Method> {
-        self.check_used()?;
-        Ok(match self.method {
+    /// The method with its options for images of a size, or all of them if the best shall be found.
+    pub(super) fn candidates(&self, size: [u32; 2]) -> Vec<Candidate> {
+        if !self.is_auto() {
+            return vec![self.candidate(self.method, size)];
+        }
+        let names = Name::value_variants().iter().copied();
+        // Poisson with zero is the periodic part.
+        let named = names.filter(|name| !matches!(name, Name::Auto | Name::Poisson));
+        let named = named.map(|name| self.candidate(name, size));
+        let margin = default_margin(size);
+        let crossfade = Crossfade::default();
+        let more = [
+            (
+                "poisson --wrap-gradient extrapolate".to_owned(),
+                Method::Poisson(WrapGradient::Extrapolate),
+            ),
+            (
+                format!("feather --margin {margin}"),
+                Method::Feather(Feather::Margin { margin, crossfade }),
+            ),
+        ];
+        let more = more.map(|(name, method)| Candidate {
+            name,
+            method,
+            lattice: [1; 2],
+        });
+        named.chain(more).collect()
+    }
+
+    /// Whether the best of all methods is to be found.
+    pub(super) fn is_auto(&self) -> bool {
+        self.method == Name::Auto
+    }
+
+    fn candidate(&self, name: Name, size: [u32; 2]) -> Candidate {
+        let method = match name {
             Name::Periodic => Method::Periodic,
             Name::Poisson => Method::Poisson(self.wrap_gradient.unwrap_or_default()),
-            Name::SoftCut => Method::SoftCut(self.soft_cut()),
+            Name::Auto | Name::SoftCut => Method::SoftCut(self.soft_cut(size)),
             Name::Spline => Method::SplineProject(self.project()),
             Name::PeriodicSpline => Method::PeriodicThenProject(self.project()),
             Name::Feather => Method::Feather(match self.margin {
@@ -100,22 +144,24 @@ impl MethodArgs {
                 },
             }),
             Name::Mirror => Method::Mirror,
-        })
-    }
-
-    /// Which boundaries of the tile are like its wrap.
-    pub(super) fn lattice(&self) -> [u32; 2] {
-        match self.method {
-            Name::Spline | Name::PeriodicSpline => {
-                [1_u32.checked_shl(self.levels.unwrap_or(1)).unwrap_or(1); 2]
+        };
+        let lattice = match method {
+            Method::SplineProject(project) | Method::PeriodicThenProject(project) => {
+                1_u32.checked_shl(project.levels).unwrap_or(1)
             }
-            _ => [1; 2],
+            _ => 1,
+        };
+        let possible = name.to_possible_value();
+        Candidate {
+            name: possible.map_or_else(String::new, |value| value.get_name().to_owned()),
+            method,
+            lattice: [lattice; 2],
         }
     }
 
-    fn soft_cut(&self) -> SoftCut {
+    fn soft_cut(&self, size: [u32; 2]) -> SoftCut {
         let default = SoftCut::default();
-        let margin = self.margin.unwrap_or(default.margin);
+        let margin = self.margin.unwrap_or(default_margin(size));
         let most = margin as f32 / 2.0;
         SoftCut {
             margin,
@@ -145,7 +191,11 @@ impl MethodArgs {
     }
 
     /// Refuses options of other methods, which would have no effect.
-    fn check_used(&self) -> Result<()> {
+    ///
+    /// # Errors
+    ///
+    /// If there is one.
+    pub(super) fn check_used(&self) -> Result<()> {
         use Name::{Feather, PeriodicSpline, Poisson, SoftCut, Spline};
         let splines = &[Spline, PeriodicSpline][..];
         let given = [

@@ -2,12 +2,15 @@
 //!
 //! The blend tile is made of the features of the stones, and grass comes first where it is low. So it grows from the cracks
 //! and around the pebbles, and nothing but the tile says so. It covers exactly 35 % of the ground.
+//!
+//! The textures are crops that do not repeat, as photographs are. They are cut to tiles first; the features of a tile repeat then,
+//! and halving and doubling smooths them.
 
 use super::grass::grass;
-use super::patch::{Edges, Material};
+use super::patch::Edges;
 use super::pebble::pebble;
 use super::stone::stone;
-use super::{BLEND_TILE, enlarged, report, stone_px, tile_side};
+use super::{BLEND_TILE, cut, enlarged, report, stone_px, tile_side};
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_color::LinearRgb;
@@ -22,6 +25,7 @@ pub(super) const FIGURE: Figure = Figure {
     number: "4",
     parameters: &[
         ("tile, map", "128 × 128, 256 × 256"),
+        ("margin of the cut", "32 pixels"),
         ("grass", "35 % of the area"),
         ("gain of the mask", "8"),
     ],
@@ -35,41 +39,55 @@ const GRASS: f32 = 0.35;
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let side = tile_side(size);
     let map = [2 * side; 2];
-    let stone = stone(side, Seed(1), Edges::Repeating)?;
-    let pebble = pebble(side, Seed(1), Edges::Repeating)?;
-    let grass = grass(map[0], Seed(1), Edges::Repeating)?;
-    let on_stone = overgrown(&stone, &grass.color)?;
-    let on_pebble = overgrown(&pebble, &grass.color)?;
-    let tile = blend_tile(&stone)?;
+    let (margin, cut) = cut(side);
+    let seamless = Seamless::new(cut);
+    let stones = stone(side + margin, Seed(1), Edges::Cropped)?.color;
+    let pebbles = pebble(side + margin, Seed(1), Edges::Cropped)?.color;
+    let (stone, pebble) = (
+        seamless.apply_color(&stones)?,
+        seamless.apply_color(&pebbles)?,
+    );
+    let (margin, cut) = super::cut(map[0]);
+    let wide = grass(map[0] + margin, Seed(1), Edges::Cropped)?.color;
+    let grass = Seamless::new(cut).apply_color(&wide)?;
+    let feature = stone_px(stones.width());
+    let on_stone = overgrown(&stone, feature, &grass)?;
+    let on_pebble = overgrown(&pebble, feature, &grass)?;
+    let features = rank_equalize(&BlendMap::new(feature).apply_color(&stone)?)?;
+    let tile = blend_tile(&stone, feature)?;
     let panel = |label: &str, color: &Raster<LinearRgb>| -> anyhow::Result<Panel> {
         Ok(Panel::color(label, enlarged(&repeat(color, map)?, size)?).repeating())
     };
     Ok(vec![
-        panel("stone", &stone.color)?,
-        panel("pebble", &pebble.color)?,
-        panel("grass", &grass.color)?,
+        panel("stone", &stone)?,
+        panel("pebble", &pebble)?,
+        panel("grass", &grass)?,
         Panel::gray("blend tile of the stone", enlarged(&tile, size)?)
             .repeating()
-            .with_note(report(&tile, &tile)?),
+            .with_note(report(&features, &tile)?),
         panel("c1: stone with grass", &on_stone)?,
         panel("c2: pebble with grass", &on_pebble)?,
     ])
 }
 
-/// The blend tile of a texture: its features, halved and doubled once, and then as ranks.
-fn blend_tile(ground: &Material) -> anyhow::Result<Raster<f32>> {
-    let features = BlendMap::new(stone_px(ground.color.width())).apply_color(&ground.color)?;
+/// The blend tile of a texture: its features, so many pixels large, halved and doubled once, and then as ranks.
+fn blend_tile(ground: &Raster<LinearRgb>, feature: f64) -> anyhow::Result<Raster<f32>> {
+    let features = BlendMap::new(feature).apply_color(ground)?;
     let tile = Seamless::new(Method::SplineProject(BLEND_TILE)).apply(&features)?;
     Ok(rank_equalize(&tile)?)
 }
 
 /// The ground, tiled, with grass where its blend tile is low.
-fn overgrown(ground: &Material, grass: &Raster<LinearRgb>) -> anyhow::Result<Raster<LinearRgb>> {
+fn overgrown(
+    ground: &Raster<LinearRgb>,
+    feature: f64,
+    grass: &Raster<LinearRgb>,
+) -> anyhow::Result<Raster<LinearRgb>> {
     let size = grass.size();
-    let mask = repeat(&blend_tile(ground)?, size)?;
+    let mask = repeat(&blend_tile(ground, feature)?, size)?;
     let maps = [
         [Map::Color(grass.clone())],
-        [Map::Color(repeat(&ground.color, size)?)],
+        [Map::Color(repeat(ground, size)?)],
     ];
     let weights = [GRASS, 1.0 - GRASS].map(|weight| Raster::filled(size, weight));
     let [of_grass, of_ground] = weights;
@@ -90,7 +108,7 @@ fn overgrown(ground: &Material, grass: &Raster<LinearRgb>) -> anyhow::Result<Ras
 
 #[cfg(test)]
 mod tests {
-    use super::{Edges, GRASS, overgrown, pebble, stone};
+    use super::{Edges, GRASS, overgrown, pebble, stone, stone_px};
     use dapple_color::LinearRgb;
     use dapple_pups::hash::Seed;
     use dapple_raster::Raster;
@@ -104,7 +122,7 @@ mod tests {
             // Where grass of another color gives another picture, there is grass.
             let [on_black, on_white] = [0.0, 1.0].map(|gray| {
                 let grass = Raster::filled([128; 2], LinearRgb::gray(gray)).unwrap();
-                overgrown(&ground, &grass).unwrap()
+                overgrown(&ground.color, stone_px(128), &grass).unwrap()
             });
             let grass = on_black.zip_map(&on_white, |a, b| b.g - a.g).unwrap();
             let covered = grass.statistics().mean;

@@ -1,0 +1,211 @@
+//! Reports of all channels of a map, and one verdict over them.
+
+use super::{SeamOptions, SeamReport};
+use crate::{Map, TileError};
+use core::fmt;
+use dapple_color::LinearRgb;
+use dapple_raster::Raster;
+
+/// The seam reports of all channels of an image.
+///
+/// A seam that only one channel has shows as a change of hue, and the luminance need not have it. `Display` names the channels
+/// that do not pass and why, above the table of the worst.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SeamReports {
+    /// The reports, one for each channel, at least one.
+    channels: Vec<ChannelReport>,
+}
+
+/// The seam report of a channel.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ChannelReport {
+    /// The name of the channel; none where it is the only one.
+    pub channel: String,
+    /// Its report.
+    pub report: SeamReport,
+}
+
+impl SeamReports {
+    /// How well an image repeats whose channels have these names. Without channels it fails as too small.
+    ///
+    /// # Errors
+    ///
+    /// See [`SeamReport::of`].
+    pub fn of<'a>(
+        channels: impl IntoIterator<Item = (&'a str, &'a Raster<f32>)>,
+        options: &SeamOptions,
+    ) -> Result<Self, TileError> {
+        let reports = channels.into_iter().map(|(name, values)| {
+            Ok(ChannelReport {
+                channel: name.to_owned(),
+                report: SeamReport::of(values, options)?,
+            })
+        });
+        Ok(Self {
+            channels: reports.collect::<Result<_, TileError>>()?,
+        })
+    }
+
+    /// How well a map repeats: values as they are, normals by x and y, and colors as they are displayed, in sRGB.
+    ///
+    /// # Errors
+    ///
+    /// See [`SeamReport::of`].
+    pub fn of_map(tile: &Map, options: &SeamOptions) -> Result<Self, TileError> {
+        let channels = channels(tile)?;
+        Self::of(
+            channels.iter().map(|(name, values)| (*name, values)),
+            options,
+        )
+    }
+
+    /// How well a map repeats, and what it has kept of the map of the same kind that it was made of.
+    ///
+    /// # Errors
+    ///
+    /// See [`SeamReport::beside`].
+    pub fn beside(source: &Map, tile: &Map, options: &SeamOptions) -> Result<Self, TileError> {
+        let pairs = channels(source)?.into_iter().zip(channels(tile)?);
+        let reports = pairs.map(|((name, source), (_, tile))| {
+            Ok(ChannelReport {
+                channel: name.to_owned(),
+                report: SeamReport::beside(&source, &tile, options)?,
+            })
+        });
+        Ok(Self {
+            channels: reports.collect::<Result<_, TileError>>()?,
+        })
+    }
+
+    /// The reports, one for each channel.
+    #[must_use]
+    pub fn channels(&self) -> &[ChannelReport] {
+        &self.channels
+    }
+
+    /// Whether all channels pass, and there is one.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        !self.channels.is_empty() && self.channels.iter().all(|of| of.report.passes())
+    }
+
+    /// The largest [`badness`](SeamReport::badness) of a channel.
+    #[must_use]
+    pub fn badness(&self) -> f64 {
+        self.worst()
+            .map_or(SeamReport::MOST, |of| of.report.badness())
+    }
+
+    /// The channel with the largest badness, the first of equals.
+    #[must_use]
+    pub fn worst(&self) -> Option<&ChannelReport> {
+        let worse =
+            |a: &'_ ChannelReport, b: &'_ ChannelReport| b.report.badness() > a.report.badness();
+        self.channels
+            .iter()
+            .reduce(|worst, of| if worse(worst, of) { of } else { worst })
+    }
+}
+
+impl fmt::Display for SeamReports {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(worst) = self.worst() else {
+            return f.write_str("no channel");
+        };
+        if self.channels.len() > 1 {
+            let [width, height] = worst.report.size;
+            let verdict = if self.passes() {
+                "passes"
+            } else {
+                "does not pass"
+            };
+            writeln!(f, "a tile of {width} × {height} pixels: {verdict}")?;
+            for of in &self.channels {
+                for fault in of.report.faults() {
+                    writeln!(f, "  ({}: {fault})", of.channel)?;
+                }
+            }
+            writeln!(
+                f,
+                "the worst of {} channels, {}:",
+                self.channels.len(),
+                worst.channel
+            )?;
+            return worst.report.write_table(f);
+        }
+        worst.report.fmt(f)
+    }
+}
+
+/// The channels of a map as they are seen.
+fn channels(map: &Map) -> Result<Vec<(&'static str, Raster<f32>)>, TileError> {
+    Ok(match map {
+        Map::Value(values) => vec![("", values.clone())],
+        Map::Normal(normals) => vec![
+            ("x", normals.map(|normal| normal.x)),
+            ("y", normals.map(|normal| normal.y)),
+        ],
+        Map::Color(colors) => {
+            crate::map::check_planes(&crate::map::color_planes(colors))?;
+            let shown = colors.map(|color: &LinearRgb| color.to_srgb::<u16>());
+            let channel =
+                |index: usize| shown.map(|codes| f32::from(codes[index]) / f32::from(u16::MAX));
+            vec![
+                ("red", channel(0)),
+                ("green", channel(1)),
+                ("blue", channel(2)),
+            ]
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Fault;
+    use super::{SeamOptions, SeamReports};
+    use crate::Map;
+    use crate::test_fields::fbm;
+    use dapple_color::LinearRgb;
+    use dapple_raster::Raster;
+
+    fn colored(red: &Raster<f32>, blue: &Raster<f32>) -> Map {
+        let color = red.zip_map(blue, |r, b| {
+            LinearRgb::new(0.4 + 0.3 * r, 0.4, 0.4 + 0.3 * b)
+        });
+        Map::Color(color.unwrap())
+    }
+
+    #[test]
+    fn a_seam_in_one_channel_fails_and_is_named() {
+        let [even, torn] = [true, false].map(|repeats| fbm(1, [96; 2], repeats));
+        let options = SeamOptions::default();
+        let good = SeamReports::of_map(&colored(&even, &even), &options).unwrap();
+        assert!(good.passes(), "{good}");
+        let bad = SeamReports::of_map(&colored(&even, &torn), &options).unwrap();
+        assert!(!bad.passes(), "{bad}");
+        let failed: Vec<_> = bad
+            .channels()
+            .iter()
+            .filter(|of| !of.report.passes())
+            .map(|of| of.channel.as_str())
+            .collect();
+        assert_eq!(failed, ["blue"]);
+        assert!(bad.to_string().contains("(blue: the seam shows"), "{bad}");
+    }
+
+    #[test]
+    fn what_is_clipped_is_counted_and_fails() {
+        let even = fbm(1, [96; 2], true);
+        let pale = Map::Value(even.map(|value| 0.5 + 0.3 * value));
+        let dark = Map::Value(even.map(|value| 0.1 + 0.3 * value));
+        let report = SeamReports::beside(&pale, &dark, &SeamOptions::default()).unwrap();
+        let faults = report.channels()[0].report.faults();
+        let share = faults.iter().find_map(|fault| match fault {
+            Fault::Clipped { share } => Some(*share),
+            _ => None,
+        });
+        assert!(share.is_some_and(|share| share > 0.05), "{report}");
+    }
+}

@@ -1,0 +1,217 @@
+//! How unlike anything in the source a tile is near its seams.
+//!
+//! Each of some squares of pixels across and beside the wrap is compared with all of the source. What was cut or moved as
+//! a whole is found there; a stain, a cut-off line, or two pictures laid over each other is not. How near a good match
+//! is depends on the picture, and is what squares of the source find elsewhere in the source: the measure is the mean distance
+//! to the nearest, as a multiple of theirs.
+//!
+//! Reference: our own, after the nearest neighbors of Alexei A. Efros and Thomas K. Leung, "Texture Synthesis by
+//! Non-parametric Sampling", ICCV 1999, <https://doi.org/10.1109/ICCV.1999.790383>.
+
+use super::quotient;
+use crate::TileError;
+use crate::axis::transpose;
+use dapple_raster::{Raster, Wrap};
+
+/// The side of a square, in pixels.
+const SIDE: u32 = 8;
+
+/// How many squares are compared in each zone.
+const SQUARES: u32 = 128;
+
+/// The most places of the source that are looked at.
+const PLACES: u32 = 1 << 15;
+
+/// The part of a side, on the far side of the wrap, where methods lay two pictures over each other.
+const BESIDE: u32 = 5;
+
+/// The least distance that a match in the source is taken to have, as a multiple of the deviation of the source.
+const LEAST_DISTANCE: f64 = 0.01;
+
+type Square = [f32; (SIDE * SIDE) as usize];
+
+/// [`DetailKept::strangeness`](super::DetailKept::strangeness): the strangest of all zones; `None` if an image is too small.
+pub(super) fn strangeness(
+    source: &Raster<f32>,
+    tile: &Raster<f32>,
+    axes: [bool; 2],
+) -> Result<Option<f64>, TileError> {
+    let sides = source.size().into_iter().chain(tile.size());
+    if sides.min().unwrap_or(0) < 3 * SIDE {
+        return Ok(None);
+    }
+    let places = Places::new(source);
+    let usual = places.usual();
+    let deviation = source.statistics().deviation;
+    if deviation == 0.0 {
+        return Ok(None);
+    }
+    let usual = usual.max(LEAST_DISTANCE * deviation * f64::from(SIDE));
+    let mut most: f64 = 0.0;
+    for (axis, _) in axes.iter().enumerate().filter(|(_, repeats)| **repeats) {
+        let turned = match axis {
+            0 => tile.clone(),
+            _ => transpose(tile)?,
+        };
+        for zone in zones(&turned, axis == 1) {
+            most = most.max(quotient(places.mean_distance(&zone), usual));
+        }
+    }
+    Ok(Some(most))
+}
+
+/// Squares across the wrap of the columns, and squares beside it; turned back if the tile was turned.
+fn zones(tile: &Raster<f32>, is_turned: bool) -> [Vec<Square>; 2] {
+    let [width, height] = tile.size();
+    let beside = (width / BESIDE).saturating_sub(SIDE).max(1);
+    let across = |index: u32| i64::from(width - 1 - index % (SIDE - 1));
+    let from = |column: i64, index: u32| square(tile, [column, spread(index, height)], is_turned);
+    [
+        (0..SQUARES)
+            .map(|index| from(across(index), index))
+            .collect(),
+        (0..SQUARES)
+            .map(|index| from((index % beside).into(), index))
+            .collect(),
+    ]
+}
+
+/// Places along a side that are far from each other: the golden section of the side, again and again.
+fn spread(index: u32, side: u32) -> i64 {
+    // 2^32 divided by the golden ratio.
+    let part = u64::from(index.wrapping_mul(2_654_435_769));
+    ((part * u64::from(side)) >> 32) as i64
+}
+
+/// The pixels of a square from its corner on, of a tile that repeats.
+fn square(tile: &Raster<f32>, corner: [i64; 2], is_turned: bool) -> Square {
+    core::array::from_fn(|index| {
+        let (row, column) = (
+            index as i64 / i64::from(SIDE),
+            index as i64 % i64::from(SIDE),
+        );
+        let [x, y] = if is_turned {
+            [row, column]
+        } else {
+            [column, row]
+        };
+        *tile.at(corner[0] + x, corner[1] + y, [Wrap::Repeat; 2])
+    })
+}
+
+/// Squares of the source, on a lattice that is fine enough for as many as are looked at.
+struct Places<'a> {
+    source: &'a Raster<f32>,
+    corners: Vec<[u32; 2]>,
+}
+
+impl<'a> Places<'a> {
+    fn new(source: &'a Raster<f32>) -> Self {
+        let ends = source.size().map(|side| side - SIDE + 1);
+        let count = u64::from(ends[0]) * u64::from(ends[1]);
+        let step = (1..)
+            .find(|step| count / (step * step) <= u64::from(PLACES))
+            .unwrap_or(1) as usize;
+        let rows = (0..ends[1]).step_by(step);
+        let corners = rows.flat_map(|y| (0..ends[0]).step_by(step).map(move |x| [x, y]));
+        Self {
+            source,
+            corners: corners.collect(),
+        }
+    }
+
+    /// The mean distance of squares of the source from their nearest match elsewhere in it.
+    fn usual(&self) -> f64 {
+        let [columns, rows] = self.source.size().map(|side| side - SIDE + 1);
+        let distances: Vec<f64> = (0..SQUARES)
+            .map(|index| {
+                let corner = [
+                    spread(index.wrapping_mul(7) + 3, columns),
+                    spread(index, rows),
+                ];
+                let own = square(self.source, corner, false);
+                let corner = corner.map(|at| at as u32);
+                self.distance(&own, |place| {
+                    (0..2).all(|axis| place[axis].abs_diff(corner[axis]) < SIDE)
+                })
+            })
+            .collect();
+        distances.iter().sum::<f64>() / f64::from(SQUARES)
+    }
+
+    fn mean_distance(&self, squares: &[Square]) -> f64 {
+        let distance = |square: &Square| self.distance(square, |_| false);
+        #[cfg(feature = "rayon")]
+        let distances: Vec<f64> = {
+            use rayon::prelude::*;
+            squares.par_iter().map(distance).collect()
+        };
+        #[cfg(not(feature = "rayon"))]
+        let distances: Vec<f64> = squares.iter().map(distance).collect();
+        distances.iter().sum::<f64>() / squares.len() as f64
+    }
+
+    /// The distance of a square from the nearest in the source, other than some.
+    fn distance(&self, square: &Square, is_left_out: impl Fn(&[u32; 2]) -> bool) -> f64 {
+        let mut least = f64::INFINITY;
+        for corner in self.corners.iter().filter(|corner| !is_left_out(corner)) {
+            let mut sum = 0.0;
+            for (row, part) in (corner[1]..).zip(square.chunks_exact(SIDE as usize)) {
+                let line = &self.source.row(row)[corner[0] as usize..][..SIDE as usize];
+                sum += part
+                    .iter()
+                    .zip(line)
+                    .map(|(a, b)| {
+                        let apart = f64::from(*a) - f64::from(*b);
+                        apart * apart
+                    })
+                    .sum::<f64>();
+                if sum >= least {
+                    break;
+                }
+            }
+            least = least.min(sum);
+        }
+        least.sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::strangeness;
+    use crate::test_fields::{fbm, gravel};
+    use crate::{Crossfade, Feather, Method, Seamless, SoftCut};
+    use dapple_raster::Raster;
+
+    fn of(method: Method) -> f64 {
+        let source = gravel(4, [128; 2], false);
+        let tile = Seamless::new(method).apply(&source).unwrap();
+        strangeness(&source, &tile, [true; 2]).unwrap().unwrap()
+    }
+
+    #[test]
+    fn crossfaded_stones_are_stranger_than_cut_ones() {
+        let cut = of(Method::SoftCut(SoftCut::default()));
+        let faded = of(Method::Feather(Feather::Margin {
+            margin: 32,
+            crossfade: Crossfade::KeepVariance,
+        }));
+        assert!(cut < 0.8 && faded > 1.5 * cut, "{cut} and {faded}");
+    }
+
+    #[test]
+    fn a_picture_that_repeats_is_not_strange_beside_itself() {
+        let tile = fbm(2, [96, 64], true);
+        let strangeness = strangeness(&tile, &tile, [true; 2]).unwrap().unwrap();
+        // Squares inside are found exactly, and those across the wrap like any that are not.
+        assert!(strangeness < 1.12, "{strangeness}");
+    }
+
+    #[test]
+    fn small_and_flat_sources_are_not_compared() {
+        let flat = Raster::filled([64; 2], 0.5).unwrap();
+        assert_eq!(strangeness(&flat, &flat, [true; 2]), Ok(None));
+        let small = fbm(2, [20, 64], true);
+        assert_eq!(strangeness(&small, &small, [true; 2]), Ok(None));
+    }
+}

@@ -1,0 +1,130 @@
+//! How plainly the step across the wrap shows among the boundaries inside.
+//!
+//! A step is hidden by what changes around it, and shows on even ground: so each step is divided by the mean of the steps
+//! beside it on its line, before lines are averaged (contrast masking). That tells a cut through a brick from the joints
+//! between bricks, which the mean of plain steps does not.
+//!
+//! Reference: our own.
+
+use super::quotient;
+use super::seam::boundaries;
+use dapple_raster::Raster;
+
+/// How many steps on either side hide a step.
+const AROUND: usize = 8;
+
+/// The part of the mean step of a line that is added to the steps around, so that nothing is divided by zero.
+const FLOOR: f64 = 0.1;
+
+/// The least standard deviation of the boundaries inside, as a part of their mean: what the eye does not tell apart.
+const LEAST_DEVIATION: f64 = 0.05;
+
+/// [`Seam::stands_out`](super::Seam::stands_out) along the rows of a tile, for means of `width` pixels.
+pub(super) fn stands_out(tile: &Raster<f32>, width: usize, lattice: usize) -> Option<f64> {
+    let n = tile.width() as usize;
+    let around = AROUND.min((n / 2).saturating_sub(width));
+    let at: Vec<usize> = boundaries(n, width, lattice)
+        .into_iter()
+        .map(|[_, after]| after)
+        .collect();
+    // The wrap, and at least two boundaries inside.
+    if around == 0 || at.len() < 3 {
+        return None;
+    }
+    let mut shown = vec![0.0; at.len()];
+    for line in tile.view().rows() {
+        let steps = steps(line, width);
+        let floor = FLOOR * steps.iter().sum::<f64>() / n as f64;
+        for (shown, &at) in shown.iter_mut().zip(&at) {
+            let beside = (width..width + around)
+                .map(|off| steps[(at + off) % n] + steps[(at + n - off) % n]);
+            let beside = beside.sum::<f64>() / (2 * around) as f64 + floor;
+            if beside > 0.0 {
+                *shown += steps[at] / beside;
+            }
+        }
+    }
+    let (&wrap, inside) = shown.split_first()?;
+    Some(above(wrap, inside))
+}
+
+/// By how many standard deviations a number is above the largest of others, at least 0.
+fn above(wrap: f64, inside: &[f64]) -> f64 {
+    let mean = inside.iter().sum::<f64>() / inside.len() as f64;
+    let squares = inside.iter().map(|shown| (shown - mean) * (shown - mean));
+    let variance = squares.sum::<f64>() / (inside.len() - 1) as f64;
+    let most = inside.iter().copied().fold(0.0, f64::max);
+    match wrap > most {
+        true => quotient(wrap - most, variance.sqrt().max(LEAST_DEVIATION * mean)),
+        false => 0.0,
+    }
+}
+
+/// The steps between the means of `width` pixels before and after each pixel's left border, once around.
+fn steps(line: &[f32], width: usize) -> Vec<f64> {
+    let n = line.len();
+    let sums: Vec<f64> = (0..n)
+        .map(|first| {
+            (first..first + width)
+                .map(|at| f64::from(line[at % n]))
+                .sum()
+        })
+        .collect();
+    (0..n)
+        .map(|at| f64::abs(sums[at] - sums[(at + n - width) % n]))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::stands_out;
+    use dapple_hash::{Seed, hash2, unit_f32};
+    use dapple_raster::Raster;
+
+    fn noise(x: u32, y: u32) -> f32 {
+        unit_f32(hash2(Seed(3), [x.into(), y.into()], 0) as u32)
+    }
+
+    /// Even bricks of 32 × 32 pixels with bright joints, whose sides rise over 4 pixels.
+    fn bricks(x: u32, y: u32) -> f32 {
+        let [x, y] = [x, y].map(|at| (at % 32).min(32 - at % 32));
+        0.2 + 0.15 * (4.0 - x.min(y) as f32).max(0.0)
+    }
+
+    #[test]
+    fn a_joint_at_the_wrap_is_like_the_joints_inside() {
+        let tile = Raster::from_fn([128; 2], bricks).unwrap();
+        assert_eq!(stands_out(&tile, 1, 1), Some(0.0));
+        assert_eq!(stands_out(&tile, 4, 1), Some(0.0));
+    }
+
+    #[test]
+    fn a_step_on_even_ground_stands_out_among_stronger_steps() {
+        // The wrap is in the middle of bricks, which grow lighter. Its step is smaller than those of the joints.
+        let lit = |x: u32, y| bricks(x + 16, y) + 0.001 * x as f32;
+        let lit = Raster::from_fn([96, 128], lit).unwrap();
+        let shown = stands_out(&lit, 1, 1).unwrap();
+        assert!(shown > 2.5, "{shown}");
+    }
+
+    #[test]
+    fn flat_and_mirrored_borders_do_not_stand_out() {
+        let framed = Raster::from_fn([64; 2], |x, y| match x.min(y).min(63 - x).min(63 - y) {
+            0..4 => 1.0,
+            _ => noise(x, y),
+        });
+        assert_eq!(stands_out(&framed.unwrap(), 1, 1), Some(0.0));
+        let even = Raster::filled([64; 2], 0.5).unwrap();
+        assert_eq!(stands_out(&even, 1, 1), Some(0.0));
+    }
+
+    #[test]
+    fn too_few_boundaries_are_not_judged() {
+        let small = Raster::filled([9, 9], 0.5).unwrap();
+        assert_eq!(stands_out(&small, 4, 1), None);
+        assert_eq!(
+            stands_out(&Raster::filled([64, 9], 0.5).unwrap(), 1, 32),
+            None
+        );
+    }
+}
