@@ -23,6 +23,7 @@ fn windows() -> [Window; 5] {
         pixel: pixel.into(),
         first: [-3, 5],
         size: [67, 35],
+        scale: DVec2::ONE,
     };
     [
         window([0.3, -0.7], [1.0 / 64.0, 1.0 / 64.0]),
