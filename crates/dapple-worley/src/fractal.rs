@@ -190,6 +190,26 @@ where
         self.value_of(sum)
     }
 
+    /// The values at as many positions.
+    pub(crate) fn values(&self, positions: &[Vector<N>], values: &mut [f32]) {
+        let mut tones = vec![0.0; values.len()];
+        values.fill(0.0);
+        for octave in &self.octaves {
+            let scaled = positions.iter().map(|&position| {
+                let position: [f64; N] = position.into();
+                position.map(|part| part * octave.frequency).into()
+            });
+            let scaled: Vec<Vector<N>> = scaled.collect();
+            octave.worley.tones(&self.tone, &scaled, &mut tones);
+            for (value, tone) in values.iter_mut().zip(&tones) {
+                *value += tone * octave.weight;
+            }
+        }
+        for value in values {
+            *value = self.value_of(*value);
+        }
+    }
+
     /// The value of a sum of octaves. What is not a number has the same bits everywhere.
     fn value_of(&self, sum: f32) -> f32 {
         if sum.is_nan() {
@@ -300,6 +320,12 @@ where
 impl Field for Fractal<2> {
     fn sample(&self, position: DVec2) -> f32 {
         self.value(position)
+    }
+
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        RasterError::check_length(values.len(), positions.len())?;
+        self.values(positions, values);
+        Ok(())
     }
 
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {

@@ -63,6 +63,17 @@ impl Field for Slice {
         }
     }
 
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        RasterError::check_length(values.len(), positions.len())?;
+        let positions = positions.iter().map(|&position| self.plane.position(position));
+        let positions: Vec<_> = positions.collect();
+        match &self.texture {
+            Texture::Cellular(cellular) => cellular.values(&positions, values),
+            Texture::Fractal(fractal) => fractal.values(&positions, values),
+        }
+        Ok(())
+    }
+
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         match &self.texture {
             Texture::Cellular(cellular) => cellular.render_plane(&self.plane, window, out),
@@ -93,6 +104,10 @@ mod tests {
                 let rendered = raster.row(row)[column as usize];
                 assert_eq!(sample.to_bits(), rendered.to_bits(), "{column}, {row}");
             }
+            let positions: Vec<DVec2> = (0..23).map(|column| window.position(column, 9)).collect();
+            let mut values = [0.0; 23];
+            slice.sample_many(&positions, &mut values).unwrap();
+            assert_eq!(values, *raster.row(9));
         }
     }
 }

@@ -6,6 +6,7 @@ mod far_away;
 mod forced;
 mod fractal;
 mod lipschitz;
+mod many;
 pub(crate) mod oracle;
 mod properties;
 #[cfg(feature = "serde")]
