@@ -1,8 +1,7 @@
 //! The fields of nodes that make something of nothing but a seed.
 //!
-//! A field that has a frequency is asked at the position times the frequency. Where the frequency is a power of two this
-//! is exact, and a whole window is rendered at once; else each position is multiplied on its own, so that a window has the
-//! bits of its positions.
+//! A field that has a frequency is asked at the position times the frequency: a whole window is rendered at once, as one
+//! whose positions are those products.
 
 use super::{Images, Picture};
 use crate::operation::{coordinate, distance};
@@ -350,14 +349,6 @@ struct Scaled {
     frequency: DVec2,
 }
 
-impl Scaled {
-    /// Whether a product with the frequency is exact.
-    fn is_exact(&self) -> bool {
-        let is_power_of_two = |number: f64| number.is_normal() && number.to_bits() << 12 == 0;
-        is_power_of_two(self.frequency.x) && is_power_of_two(self.frequency.y)
-    }
-}
-
 impl Field for Scaled {
     fn sample(&self, position: DVec2) -> f32 {
         self.field.sample(position * self.frequency)
@@ -372,12 +363,7 @@ impl Field for Scaled {
     }
 
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        if self.is_exact() {
-            let scaled = Window {
-                origin: window.origin * self.frequency,
-                pixel: window.pixel * self.frequency,
-                ..*window
-            };
+        if let Some(scaled) = window.scaled(self.frequency) {
             return self.field.render(&scaled, out);
         }
         window.check_size(out.size())?;
