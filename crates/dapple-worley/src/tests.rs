@@ -2,6 +2,7 @@
 
 mod bits;
 mod doors;
+mod edges;
 mod far_away;
 mod forced;
 mod fractal;

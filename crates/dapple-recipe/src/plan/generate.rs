@@ -262,7 +262,7 @@ fn plane_field(node: &WorleyNode, worley: Worley2) -> Result<Arc<dyn Field>, Rec
     let combination = match node.value {
         WorleyValue::Combination(combination) => combination,
         WorleyValue::CellValue => return Ok(Arc::new(worley.cell_values())),
-        WorleyValue::EdgeDistance => return Ok(Arc::new(EdgeDistances(worley))),
+        WorleyValue::EdgeDistance => return Ok(Arc::new(worley.edge_distances())),
     };
     let cellular = worley.combine(combination);
     Ok(match (node.octaves, node.range) {
@@ -283,7 +283,7 @@ fn moving_field(
     let combination = match node.value {
         WorleyValue::Combination(combination) => combination,
         WorleyValue::CellValue => return Ok(slice(place, move |at| cell_value(&worley, at))),
-        WorleyValue::EdgeDistance => return Ok(slice(place, move |at| worley.edge_distance(at))),
+        WorleyValue::EdgeDistance => return Ok(Arc::new(worley.edge_distances().slice(place))),
     };
     let cellular = worley.combine(combination);
     Ok(Arc::new(match (node.octaves, node.range) {
@@ -320,15 +320,6 @@ fn check_single(node: &WorleyNode, metric: bool) -> Result<(), RecipeError> {
         return Ok(());
     };
     Err(RecipeError::new(RecipeErrorKind::Conflict { rule }))
-}
-
-/// The distances to the borders of cells.
-struct EdgeDistances(Worley2);
-
-impl Field for EdgeDistances {
-    fn sample(&self, position: DVec2) -> f32 {
-        self.0.edge_distance(position)
-    }
 }
 
 /// A function of space and time, over the plane at one depth and one time.

@@ -56,6 +56,7 @@ fn sample_many_equals_sample_bit_for_bit() -> Result<(), WorleyError> {
             doors_agree(&texture.fractal(octaves)?, &what);
         }
         doors_agree(&worley.cell_values(), &what);
+        doors_agree(&worley.edge_distances(), &what);
     }
     let varying = Worley2::new(Seed(5)).with_varying_density(|at| 1.0 + at.x.abs());
     doors_agree(&varying.combine(Combination::F1), "varying density");
