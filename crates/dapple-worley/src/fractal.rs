@@ -71,6 +71,17 @@ impl Default for Octaves {
     }
 }
 
+impl Octaves {
+    /// The paper's sum: six octaves of one and the same field, each twice as fine and half as high as the one before.
+    #[must_use]
+    pub fn paper() -> Self {
+        Self {
+            seeds: OctaveSeeds::Same,
+            ..Self::default()
+        }
+    }
+}
+
 /// A fractal sum of a scalar texture.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/fractal.md"))]
