@@ -2,7 +2,8 @@
 //!
 //! Worley sums `G_n(x) = Σ 2^-i F_n(2^i x)` for `i` from 0 to 5, of `F_n` and of their combinations ("A Cellular Texture
 //! Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). His octaves are literally one field,
-//! which shows where they agree: at the origin all have the same center. A seed for each octave avoids that.
+//! which shows where they agree: at the origin all have the same center. So we give each octave a seed of its own, unless
+//! one asks for the paper's sum: [`Octaves::paper`].
 //!
 //! With a period, octave `i` repeats after `lacunarity^i` times as many of its own cells, so that the sum repeats with
 //! the period of the first octave and no octave more often.
@@ -36,7 +37,7 @@ pub struct Octaves {
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-gain.md"))]
     pub gain: f64,
-    /// Whether the octaves are one field.
+    /// Whether the octaves are one field; each has its own by default.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octave-seeds.md"))]
     pub seeds: OctaveSeeds,
@@ -52,21 +53,21 @@ pub struct Octaves {
     serde(rename_all = "snake_case")
 )]
 pub enum OctaveSeeds {
-    /// All octaves are literally the same field, as in the paper.
-    #[default]
+    /// All octaves are literally the same field, as in the paper. They all have the same center at the origin.
     Same,
     /// Every octave has feature points of its own.
+    #[default]
     Own,
 }
 
 impl Default for Octaves {
-    /// The paper's: six octaves, each twice as fine and half as high.
+    /// Six octaves with feature points of their own, each twice as fine and half as high as the one before.
     fn default() -> Self {
         Self {
             count: 6,
             lacunarity: 2.0,
             gain: 0.5,
-            seeds: OctaveSeeds::Same,
+            seeds: OctaveSeeds::Own,
         }
     }
 }

@@ -35,7 +35,7 @@ pub struct Surface {
 pub fn material()
 -> Result<impl Fn(DVec2) -> Surface + Send + Sync, Box<dyn std::error::Error + Send + Sync>> {
     let seed = Seed(17);
-    let scales_field = worley::Worley2::new(seed.child("furrow", 0)).with_period([Some(8), Some(8)])?.combine(worley::Combination::F2_MINUS_F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, count: 4, gain: 0.45, ..worley::Octaves::default() })?;
+    let scales_field = worley::Worley2::new(seed.child("furrow", 0)).with_period([Some(8), Some(8)])?.combine(worley::Combination::F2_MINUS_F1).fractal(worley::Octaves { count: 4, gain: 0.45, ..worley::Octaves::default() })?;
     let furrow_field = worley::Worley2::new(seed.child("furrow", 0)).with_period([Some(8), Some(8)])?.combine(worley::Combination::F2_MINUS_F1);
     let leather_field = wavelet::WaveletNoise2::new(128, seed.child("leather", 0))?.with_weights(&[0.12261039, 0.08582727, 0.06007909, 0.04205536])?;
     let ramp_1 = color::ColorRamp::new([color::ColorStop { position: 0.05, color: LinearRgb::from_srgb([0x3d_u8, 0x33, 0x24]) }, color::ColorStop { position: 0.3, color: LinearRgb::from_srgb([0x5c_u8, 0x56, 0x34]) }, color::ColorStop { position: 0.6, color: LinearRgb::from_srgb([0x86_u8, 0x80, 0x4d]) }, color::ColorStop { position: 0.95, color: LinearRgb::from_srgb([0xb3_u8, 0xa8, 0x78]) }])?;

@@ -32,7 +32,7 @@ pub struct Surface {
 pub fn material()
 -> Result<impl Fn(DVec2) -> Surface + Send + Sync, Box<dyn std::error::Error + Send + Sync>> {
     let seed = Seed(8);
-    let range_field = worley::Worley4::new(seed.child("range", 0)).with_period([Some(4), Some(4), None, Some(1)])?.combine(worley::Combination::F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, count: 7, gain: 0.45, ..worley::Octaves::default() })?;
+    let range_field = worley::Worley4::new(seed.child("range", 0)).with_period([Some(4), Some(4), None, Some(1)])?.combine(worley::Combination::F1).fractal(worley::Octaves { count: 7, gain: 0.45, ..worley::Octaves::default() })?;
     let weather_field = wavelet::WaveletNoise2::new(32, seed.child("weather", 0))?.with_weights(&[0.11985618, 0.08389933, 0.05872953, 0.04111067, 0.028777469, 0.020144228])?;
     let ramp_1 = color::ColorRamp::new([color::ColorStop { position: 0.15, color: LinearRgb::from_srgb([0x4d_u8, 0x5f, 0x35]) }, color::ColorStop { position: 0.35, color: LinearRgb::from_srgb([0x3c_u8, 0x4f, 0x2b]) }, color::ColorStop { position: 0.46, color: LinearRgb::from_srgb([0x57_u8, 0x55, 0x3c]) }, color::ColorStop { position: 0.54, color: LinearRgb::from_srgb([0x74_u8, 0x69, 0x5a]) }, color::ColorStop { position: 0.66, color: LinearRgb::from_srgb([0x7d_u8, 0x76, 0x6c]) }, color::ColorStop { position: 0.7, color: LinearRgb::from_srgb([0xe8_u8, 0xec, 0xef]) }, color::ColorStop { position: 0.9, color: LinearRgb::from_srgb([0xf4_u8, 0xf6, 0xf8]) }])?;
     Ok(move |at: DVec2| {

@@ -35,7 +35,7 @@ pub struct Surface {
 pub fn material()
 -> Result<impl Fn(DVec2) -> Surface + Send + Sync, Box<dyn std::error::Error + Send + Sync>> {
     let seed = Seed(21);
-    let blocks_field = worley::Worley4::new(seed.child("blocks", 0)).with_period([Some(4), Some(4), None, Some(1)])?.combine(worley::Combination::F2_MINUS_F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, gain: 0.46, ..worley::Octaves::default() })?;
+    let blocks_field = worley::Worley4::new(seed.child("blocks", 0)).with_period([Some(4), Some(4), None, Some(1)])?.combine(worley::Combination::F2_MINUS_F1).fractal(worley::Octaves { gain: 0.46, ..worley::Octaves::default() })?;
     let grain_field = wavelet::WaveletNoise2::new(64, seed.child("grain", 0))?.with_weights(&[0.10961724, 0.087693796, 0.07015504, 0.056124028])?;
     let ramp_1 = color::ColorRamp::new([color::ColorStop { position: 0.02, color: LinearRgb::from_srgb([0x2e_u8, 0x2a, 0x26]) }, color::ColorStop { position: 0.14, color: LinearRgb::from_srgb([0x5c_u8, 0x55, 0x4e]) }, color::ColorStop { position: 0.35, color: LinearRgb::from_srgb([0x87_u8, 0x7d, 0x72]) }, color::ColorStop { position: 0.75, color: LinearRgb::from_srgb([0xaa_u8, 0xa0, 0x94]) }])?;
     let stain_field = pups::octaves(&pups::OctavesOptions { domain: points::Domain { origin: DVec2::new(0.0, 0.0), size: DVec2::new(4.0, 4.0), wrap: [true, true] }, spacing: pups::Spacing::from(1.0), gain: 0.65, ..pups::OctavesOptions::default() }, seed.child("stain", 0))?.normalized();
