@@ -274,7 +274,7 @@ fn worley_combinations() -> anyhow::Result<Vec<u8>> {
     {
         let plane = Plane::slice([0.0, 0.0, 0.3].into());
         let texture = worley.combine(combination);
-        let fractal = texture.fractal(Octaves::default())?;
+        let fractal = texture.fractal(Octaves::paper())?;
         let above = row as u32 * half;
         let plain = picture.view_mut().crop([0, above], [half; 2])?;
         texture.normalized()?.render_plane(&plane, &window, plain)?;

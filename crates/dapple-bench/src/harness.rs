@@ -156,7 +156,6 @@ impl Bench {
     }
 
     /// Runs a job on one thread: its seconds of processor time, and what it made.
-    #[cfg(feature = "peers")]
     pub(crate) fn on_one<T: Send>(&self, job: impl FnOnce() -> T + Send) -> (f64, T) {
         self.one.install(|| {
             let start = ThreadTime::now();

@@ -5,7 +5,7 @@
 //! or a part of a case's or peer's name.
 //!
 //! How rows are measured is in `harness`, how peers are used at their best in `peers`, and what each group sets side by
-//! side in `pups`, `points`, `graph`, `worley`, `wavelet`, `tile`, `mesh` and `synth`. The peers are built only with the
+//! side in `pups`, `points`, `graph`, `worley`, `wavelet`, `tile`, `mesh`, `synth` and `recipe`. The peers are built only with the
 //! feature `peers`, which `cargo xtask bench` turns on; without it the rows of ours alone run.
 
 #![forbid(unsafe_code)]
@@ -29,6 +29,7 @@ mod graph;
 mod mesh;
 mod points;
 mod pups;
+mod recipe;
 mod synth;
 mod tile;
 mod wavelet;
@@ -45,7 +46,7 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask bench")]
 struct Arguments {
-    /// Groups (pups, points, graph, worley, wavelet, tile, mesh, synth), or parts of the names of cases or peers; all
+    /// Groups (pups, points, graph, worley, wavelet, tile, mesh, synth, recipe), or parts of the names of cases or peers; all
     /// of them by default.
     filters: Vec<String>,
     /// Writes the rows as JSON to this file.
@@ -80,6 +81,7 @@ fn main() -> Result<ExitCode> {
     tile::run(&mut bench)?;
     mesh::run(&mut bench)?;
     synth::run(&mut bench)?;
+    recipe::run(&mut bench)?;
     let rows = bench.into_rows();
     ensure!(!rows.is_empty(), "no case matches {:?}", arguments.filters);
 

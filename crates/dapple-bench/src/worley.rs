@@ -11,6 +11,7 @@ mod alone;
 #[cfg(feature = "peers")]
 mod beside_peers;
 mod digest;
+mod edges;
 mod features;
 #[cfg(feature = "peers")]
 mod scattered;
@@ -32,6 +33,7 @@ pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     }
     alone::run(bench)?;
     features::run(bench)?;
+    edges::run(bench)?;
     two_builds::run(bench)
 }
 

@@ -12,7 +12,7 @@ const MAX_RADIUS: u32 = 1 << 14;
 /// The width and height of a window in the plane.
 pub(crate) fn extent(window: &Window) -> DVec2 {
     let size = DVec2::new(window.size[0].into(), window.size[1].into());
-    (window.pixel * size).abs()
+    (window.pixel * window.scale * size).abs()
 }
 
 /// Refuses a strength that is not finite and an extent that is not above zero and finite.

@@ -46,18 +46,29 @@ impl Line {
 
 /// The longest stretches in which coordinates go one way, as they do until a period ends. What is not finite stands by
 /// itself.
+///
+/// The way is the one that makes fewer stretches: where a period ends, two neighbors go the other way.
 pub(crate) fn runs(coordinates: &[f64]) -> Vec<Range<usize>> {
-    let descends = coordinates.len() > 1 && coordinates[1] < coordinates[0];
-    let goes_on = |last: f64, next: f64| if descends { next <= last } else { next >= last };
-    let mut runs = Vec::new();
+    let ascending = stretches(coordinates, |last, next| next >= last);
+    let descending = stretches(coordinates, |last, next| next <= last);
+    if descending.len() < ascending.len() {
+        descending
+    } else {
+        ascending
+    }
+}
+
+/// The longest stretches in which every coordinate but the first goes on from the one before.
+fn stretches(coordinates: &[f64], goes_on: impl Fn(f64, f64) -> bool) -> Vec<Range<usize>> {
+    let mut stretches = Vec::new();
     let mut start = 0;
     for index in 1..=coordinates.len() {
         if index == coordinates.len() || !goes_on(coordinates[index - 1], coordinates[index]) {
-            runs.push(start..index);
+            stretches.push(start..index);
             start = index;
         }
     }
-    runs
+    stretches
 }
 
 #[cfg(test)]
@@ -73,6 +84,23 @@ mod tests {
             runs(&[1.0]).iter().eq([&(0..1)]),
             "a single coordinate is a stretch"
         );
+    }
+
+    #[test]
+    fn runs_are_as_few_as_periods_wherever_the_window_begins() {
+        for step in [1.0 / 256.0, -1.0 / 256.0] {
+            for first in 0..=256 {
+                let coordinate =
+                    |index: i32| ((f64::from(first + index) + 0.5) * step).rem_euclid(1.0);
+                let coordinates: Vec<f64> = (0..300).map(coordinate).collect();
+                let n_runs = runs(&coordinates).len();
+                // 300 columns of a period of 256 lie in two or three periods.
+                assert!(
+                    n_runs <= 3,
+                    "{n_runs} runs, in steps of {step} from column {first} on"
+                );
+            }
+        }
     }
 
     #[test]

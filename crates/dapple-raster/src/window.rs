@@ -4,7 +4,7 @@ use crate::raster::check_same_size;
 use crate::{RasterError, RasterErrorKind};
 use glam::DVec2;
 
-/// A grid of pixels in the plane: the pixel `[i, j]` has its center at `origin + (first + [i, j] + ½) · pixel`.
+/// A grid of pixels in the plane: the pixel `[i, j]` has its center at `(origin + (first + [i, j] + ½) · pixel) · scale`.
 ///
 /// `first` counts whole pixels from the origin, so a part of a window keeps the origin and the pixel of the whole and
 /// has the same positions to the last bit: see [`crop`](Self::crop).
@@ -19,6 +19,10 @@ pub struct Window {
     pub first: [i64; 2],
     /// Columns and rows.
     pub size: [u32; 2],
+    /// What positions are multiplied by last, such as the frequency of a texture: 1, but for [`scaled`](Self::scaled)
+    /// windows.
+    #[cfg_attr(feature = "serde", serde(default = "one"))]
+    pub scale: DVec2,
 }
 
 impl Window {
@@ -46,6 +50,7 @@ impl Window {
             pixel,
             first: [0, 0],
             size,
+            scale: DVec2::ONE,
         })
     }
 
@@ -76,18 +81,39 @@ impl Window {
         })
     }
 
+    /// The window whose positions are those of this one times `factor`, to the last bit: the way to render a field at
+    /// another frequency. None if that takes two products that are rounded, since `scale` is one of them already.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_raster::{Window, glam::DVec2};
+    ///
+    /// let window = Window::unit([64, 64])?;
+    /// let scaled = window.scaled(DVec2::new(12.0, 0.3)).expect("nothing was scaled before");
+    /// assert_eq!(scaled.position(5, 7), window.position(5, 7) * DVec2::new(12.0, 0.3));
+    /// # Ok::<(), dapple_raster::RasterError>(())
+    /// ```
+    #[must_use]
+    pub fn scaled(&self, factor: DVec2) -> Option<Self> {
+        let is_exact = |a, b| is_power_of_two(a) || is_power_of_two(b);
+        let is_exact = is_exact(self.scale.x, factor.x) && is_exact(self.scale.y, factor.y);
+        let scale = self.scale * factor;
+        is_exact.then_some(Self { scale, ..*self })
+    }
+
     /// The x coordinate of the centers of column `column`, counted within the window.
     #[must_use]
     #[inline]
     pub fn column_x(&self, column: u32) -> f64 {
-        center(self.origin.x, self.pixel.x, self.first[0], column)
+        center(self.origin.x, self.pixel.x, self.first[0], column) * self.scale.x
     }
 
     /// The y coordinate of the centers of row `row`, counted within the window.
     #[must_use]
     #[inline]
     pub fn row_y(&self, row: u32) -> f64 {
-        center(self.origin.y, self.pixel.y, self.first[1], row)
+        center(self.origin.y, self.pixel.y, self.first[1], row) * self.scale.y
     }
 
     /// The center of a pixel.
@@ -117,6 +143,17 @@ impl Window {
 #[inline]
 fn center(origin: f64, pixel: f64, first: i64, index: u32) -> f64 {
     origin + (first.saturating_add(i64::from(index)) as f64 + 0.5) * pixel
+}
+
+/// Whether products with a number are exact.
+fn is_power_of_two(number: f64) -> bool {
+    number.is_normal() && number.to_bits() << 12 == 0
+}
+
+/// The scale of windows that were written without one.
+#[cfg(feature = "serde")]
+fn one() -> DVec2 {
+    DVec2::ONE
 }
 
 /// Refuses sizes without pixels and sizes past the limit.
@@ -158,6 +195,29 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn scaled_positions_are_products_bit_for_bit() {
+        let window =
+            Window::new(DVec2::new(1e3 + 0.1, -0.3), DVec2::new(0.7, 1.3), [11, 7]).unwrap();
+        let [odd, even] = [DVec2::new(12.0, 0.3), DVec2::new(8.0, -0.25)];
+        for factors in [[DVec2::ONE, odd], [odd, even], [even, odd], [even, even]] {
+            let scaled = window.scaled(factors[0]).unwrap();
+            let scaled = scaled.scaled(factors[1]).unwrap();
+            for column in 0..11 {
+                let [here, there] = [
+                    scaled.position(column, 3),
+                    window.position(column, 3) * factors[0] * factors[1],
+                ];
+                assert_eq!(
+                    here.to_array().map(f64::to_bits),
+                    there.to_array().map(f64::to_bits)
+                );
+            }
+        }
+        let twice = window.scaled(odd).unwrap().scaled(odd);
+        assert_eq!(twice, None, "two products would be rounded");
     }
 
     #[test]

@@ -185,6 +185,7 @@ impl Plan {
             pixel: self.extent / DVec2::new(size[0].into(), size[1].into()),
             first: [0, 0],
             size,
+            scale: DVec2::ONE,
         })
     }
 

@@ -37,6 +37,15 @@ impl Field for CellValues {
         value(nearest.distance, nearest.id)
     }
 
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        RasterError::check_length(values.len(), positions.len())?;
+        self.worley
+            .nearest_of_many(positions, |index, distance, id| {
+                values[index] = value(distance, id);
+            });
+        Ok(())
+    }
+
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         window.check_size(out.size())?;
         let mut ids = Raster::filled(window.size, 0)?;

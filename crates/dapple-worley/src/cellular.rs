@@ -59,6 +59,11 @@ where
         place.map_or(f32::NAN, |place| self.tone.at(&self.worley, place))
     }
 
+    /// The values at as many positions.
+    pub(crate) fn values(&self, positions: &[Vector<N>], values: &mut [f32]) {
+        self.worley.tones(&self.tone, positions, values);
+    }
+
     /// The gradient of the value at a position, per cell: the sum of the gradients of the distances.
     ///
     /// On the borders between cells it jumps. All NaN if the position has no place.
@@ -189,6 +194,12 @@ where
 impl Field for Cellular<2> {
     fn sample(&self, position: DVec2) -> f32 {
         self.value(position)
+    }
+
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        RasterError::check_length(values.len(), positions.len())?;
+        self.values(positions, values);
+        Ok(())
     }
 
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {

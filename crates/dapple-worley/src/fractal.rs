@@ -2,7 +2,8 @@
 //!
 //! Worley sums `G_n(x) = Σ 2^-i F_n(2^i x)` for `i` from 0 to 5, of `F_n` and of their combinations ("A Cellular Texture
 //! Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). His octaves are literally one field,
-//! which shows where they agree: at the origin all have the same center. A seed for each octave avoids that.
+//! which shows where they agree: at the origin all have the same center. So we give each octave a seed of its own, unless
+//! one asks for the paper's sum: [`Octaves::paper`].
 //!
 //! With a period, octave `i` repeats after `lacunarity^i` times as many of its own cells, so that the sum repeats with
 //! the period of the first octave and no octave more often.
@@ -37,7 +38,7 @@ pub struct Octaves {
     #[cfg_attr(doc, doc = include_str!("../docs/octaves-gain.md"))]
     #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
     pub gain: f64,
-    /// Whether the octaves are one field.
+    /// Whether the octaves are one field; each has its own by default.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/octave-seeds.md"))]
     pub seeds: OctaveSeeds,
@@ -53,21 +54,32 @@ pub struct Octaves {
     serde(rename_all = "snake_case")
 )]
 pub enum OctaveSeeds {
-    /// All octaves are literally the same field, as in the paper.
-    #[default]
+    /// All octaves are literally the same field, as in the paper. They all have the same center at the origin.
     Same,
     /// Every octave has feature points of its own.
+    #[default]
     Own,
 }
 
 impl Default for Octaves {
-    /// The paper's: six octaves, each twice as fine and half as high.
+    /// Six octaves with feature points of their own, each twice as fine and half as high as the one before.
     fn default() -> Self {
         Self {
             count: 6,
             lacunarity: 2.0,
             gain: 0.5,
+            seeds: OctaveSeeds::Own,
+        }
+    }
+}
+
+impl Octaves {
+    /// The paper's sum: six octaves of one and the same field, each twice as fine and half as high as the one before.
+    #[must_use]
+    pub fn paper() -> Self {
+        Self {
             seeds: OctaveSeeds::Same,
+            ..Self::default()
         }
     }
 }
@@ -193,6 +205,26 @@ where
         self.value_of(sum)
     }
 
+    /// The values at as many positions.
+    pub(crate) fn values(&self, positions: &[Vector<N>], values: &mut [f32]) {
+        let mut tones = vec![0.0; values.len()];
+        values.fill(0.0);
+        for octave in &self.octaves {
+            let scaled = positions.iter().map(|&position| {
+                let position: [f64; N] = position.into();
+                position.map(|part| part * octave.frequency).into()
+            });
+            let scaled: Vec<Vector<N>> = scaled.collect();
+            octave.worley.tones(&self.tone, &scaled, &mut tones);
+            for (value, tone) in values.iter_mut().zip(&tones) {
+                *value += tone * octave.weight;
+            }
+        }
+        for value in values {
+            *value = self.value_of(*value);
+        }
+    }
+
     /// The value of a sum of octaves. What is not a number has the same bits everywhere.
     fn value_of(&self, sum: f32) -> f32 {
         if sum.is_nan() {
@@ -303,6 +335,12 @@ where
 impl Field for Fractal<2> {
     fn sample(&self, position: DVec2) -> f32 {
         self.value(position)
+    }
+
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        RasterError::check_length(values.len(), positions.len())?;
+        self.values(positions, values);
+        Ok(())
     }
 
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {

@@ -27,7 +27,7 @@
 //! slice ([`Cellular::render_slices`]).
 //!
 //! On top of F1 to F4 are [`Combination`]s, [`Fractal`] sums, [`Profile`]s for bumps, [`Radial`] cells for spheres, and
-//! what the Voronoi cells give: [`Worley::edge_distance`], [`Worley::smooth_f1`], [`Worley::sphere_radius`],
+//! what the Voronoi cells give: [`Worley::edge_distance`] and, as a texture, [`EdgeDistances`], [`Worley::smooth_f1`], [`Worley::sphere_radius`],
 //! [`Feature::cell_value`]. A [`FeatureSet`] is the same basis over points that you have placed.
 //!
 //! Positions are `f64` and in cells, distances are `f32` and in cells. A position is rounded down to [`RESOLUTION`].
@@ -49,6 +49,7 @@ mod combination;
 
 mod cell_values;
 mod cellular;
+mod edges;
 mod features;
 mod fractal;
 mod plane;
@@ -78,6 +79,7 @@ pub use cellular::Cellular;
 pub use combination::Combination;
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;
+pub use edges::EdgeDistances;
 pub use error::{WorleyError, WorleyErrorKind};
 pub use features::FeatureView;
 pub use fractal::{Fractal, OctaveSeeds, Octaves};

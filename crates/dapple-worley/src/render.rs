@@ -6,13 +6,15 @@
 //! ([`kernel`]; [`track`], where it matters which points they are). The most usual pictures go a shorter way through the
 //! same stages ([`sheet`]). Where a tile needs points further away than its neighborhood reaches, the
 //! neighborhood grows; where that would not be exact, single positions are searched. Where cells have few pixels, points
-//! are sorted by the pixels near to them ([`bins`]), and compared at all of these ([`splat`]).
+//! are sorted by the pixels near to them ([`bins`]), and compared at all of these ([`splat`]). Distances to the edges of
+//! cells are a second pass over the nearest points ([`edge`]).
 //!
 //! What runs in registers are stages with nothing but memory between them, so that each is compiled only for what it
 //! depends on.
 
 mod bins;
 mod block;
+mod edge;
 mod kernel;
 mod sheet;
 mod shortlist;
@@ -32,6 +34,8 @@ use dapple_raster::{RasterViewMut, Window, simd};
 use fearless_simd::Level;
 use glam::DVec2;
 use std::sync::Arc;
+
+pub(crate) use edge::render_edges;
 
 /// The pixels of a register.
 pub(crate) const LANES: usize = 16;

@@ -1,8 +1,11 @@
 //! The door for many scattered positions, such as the shading points of a renderer.
 
+use crate::fixed::Place;
 use crate::many::{GROUP, Group, Points, Search};
 use crate::metric::{Chebyshev, Euclidean, Manhattan, Norm};
+use crate::sink::Tone;
 use crate::{Axes, Feature, LIMIT, Metric, Space, Vector, Worley, WorleyError};
+use core::ops::Range;
 use dapple_raster::simd;
 use fearless_simd::{Level, dispatch};
 
@@ -62,9 +65,71 @@ where
         positions: &[Vector<N>],
         features: &mut [[Feature<Vector<N>>; K]],
     ) {
+        self.each_group::<D>(level, positions, |range, holds, points| {
+            let positions = &positions[range.clone()];
+            let features = &mut features[range];
+            if holds != 0 {
+                put(points, features);
+            }
+            let mut again = u64::MAX >> (64 - positions.len()) & !holds;
+            while again != 0 {
+                let place = again.trailing_zeros() as usize;
+                features[place] = self.sample(positions[place]);
+                again &= again - 1;
+            }
+        });
+    }
+
+    /// The values of a combination at many positions.
+    pub(crate) fn tones(&self, tone: &Tone, positions: &[Vector<N>], values: &mut [f32]) {
+        match tone.depth() {
+            ..=2 => self.tones_of::<2>(tone, positions, values),
+            _ => self.tones_of::<4>(tone, positions, values),
+        }
+    }
+
+    /// The values of a combination of up to `D` distances.
+    fn tones_of<const D: usize>(&self, tone: &Tone, positions: &[Vector<N>], values: &mut [f32]) {
+        self.each_group::<D>(simd::level(), positions, |range, holds, points| {
+            for (place, index) in range.enumerate() {
+                values[index] = if holds >> place & 1 != 0 {
+                    tone.of(&points.each_ref().map(|points| points.distances[place]))
+                } else {
+                    let place = Place::new(positions[index].into());
+                    place.map_or(f32::NAN, |place| tone.at(self, place))
+                };
+            }
+        });
+    }
+
+    /// Calls `put` with the index of each position, and the distance and the id of the nearest point.
+    pub(crate) fn nearest_of_many(
+        &self,
+        positions: &[Vector<N>],
+        mut put: impl FnMut(usize, f32, u64),
+    ) {
+        self.each_group::<2>(simd::level(), positions, |range, holds, [nearest, _]| {
+            for (place, index) in range.enumerate() {
+                if holds >> place & 1 != 0 {
+                    put(index, nearest.distances[place], nearest.ids[place]);
+                } else {
+                    let [Feature { distance, id, .. }] = self.sample(positions[index]);
+                    put(index, distance, id);
+                }
+            }
+        });
+    }
+
+    /// Calls `found` with each group of positions, those of them for which the nearest points hold, as bits, and these
+    /// points.
+    fn each_group<const D: usize>(
+        &self,
+        level: Level,
+        positions: &[Vector<N>],
+        mut found: impl FnMut(Range<usize>, u64, &[Points<N>; D]),
+    ) {
         let mut group = Group::<N, D>::new();
-        let groups = positions.chunks(GROUP).zip(features.chunks_mut(GROUP));
-        for (positions, features) in groups {
+        for (index, positions) in positions.chunks(GROUP).enumerate() {
             let holds = match self.metric {
                 // One at a time it would be, in any case.
                 _ if self.lattice.density.is_some() => 0,
@@ -73,15 +138,8 @@ where
                 Metric::Manhattan => self.search(level, Manhattan, positions, &mut group),
                 Metric::Chebyshev => self.search(level, Chebyshev, positions, &mut group),
             };
-            if holds != 0 {
-                put(group.points(), features);
-            }
-            let mut again = u64::MAX >> (64 - positions.len()) & !holds;
-            while again != 0 {
-                let place = again.trailing_zeros() as usize;
-                features[place] = self.sample(positions[place]);
-                again &= again - 1;
-            }
+            let first = index * GROUP;
+            found(first..first + positions.len(), holds, group.points());
         }
     }
 

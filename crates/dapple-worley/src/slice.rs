@@ -3,7 +3,7 @@
 //! Rendering is compiled for every metric, depth and SIMD level, which takes a while in four dimensions, so this lies behind
 //! the feature `slices`: it is compiled here once, and not again in every crate that uses it.
 
-use crate::{Cellular, Fractal, Plane};
+use crate::{Cellular, EdgeDistances, Fractal, Plane};
 use dapple_raster::glam::{DVec2, DVec4};
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 
@@ -29,6 +29,7 @@ pub struct Slice {
 enum Texture {
     Cellular(Cellular<4>),
     Fractal(Fractal<4>),
+    Edges(EdgeDistances<4>),
 }
 
 impl Cellular<4> {
@@ -47,6 +48,14 @@ impl Fractal<4> {
     }
 }
 
+impl EdgeDistances<4> {
+    /// The slice at a place along the third and the fourth axis, in cells.
+    #[must_use]
+    pub fn slice(&self, place: [f64; 2]) -> Slice {
+        Slice::new(Texture::Edges(self.clone()), place)
+    }
+}
+
 impl Slice {
     fn new(texture: Texture, [z, w]: [f64; 2]) -> Self {
         let plane = Plane::slice(DVec4::new(0.0, 0.0, z, w));
@@ -60,13 +69,33 @@ impl Field for Slice {
         match &self.texture {
             Texture::Cellular(cellular) => cellular.value(position),
             Texture::Fractal(fractal) => fractal.value(position),
+            Texture::Edges(edges) => edges.value(position),
         }
+    }
+
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        RasterError::check_length(values.len(), positions.len())?;
+        let positions = positions
+            .iter()
+            .map(|&position| self.plane.position(position));
+        let positions: Vec<_> = positions.collect();
+        match &self.texture {
+            Texture::Cellular(cellular) => cellular.values(&positions, values),
+            Texture::Fractal(fractal) => fractal.values(&positions, values),
+            Texture::Edges(edges) => {
+                for (value, &position) in values.iter_mut().zip(&positions) {
+                    *value = edges.value(position);
+                }
+            }
+        }
+        Ok(())
     }
 
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         match &self.texture {
             Texture::Cellular(cellular) => cellular.render_plane(&self.plane, window, out),
             Texture::Fractal(fractal) => fractal.render_plane(&self.plane, window, out),
+            Texture::Edges(edges) => edges.render_plane(&self.plane, window, out),
         }
     }
 }
@@ -86,13 +115,22 @@ mod tests {
         };
         let fractal = cells.fractal(octaves).unwrap();
         let window = Window::new(DVec2::new(-3.0, 7.0), DVec2::new(4.0, 3.0), [23, 17]).unwrap();
-        for slice in [cells.slice([0.5, 1.25]), fractal.slice([0.5, 1.25])] {
+        let edges = cells.worley().edge_distances();
+        for slice in [
+            cells.slice([0.5, 1.25]),
+            fractal.slice([0.5, 1.25]),
+            edges.slice([0.5, 1.25]),
+        ] {
             let raster = slice.to_raster(&window).unwrap();
             for (row, column) in (0..17).flat_map(|row| (0..23).map(move |column| (row, column))) {
                 let sample = slice.sample(window.position(column, row));
                 let rendered = raster.row(row)[column as usize];
                 assert_eq!(sample.to_bits(), rendered.to_bits(), "{column}, {row}");
             }
+            let positions: Vec<DVec2> = (0..23).map(|column| window.position(column, 9)).collect();
+            let mut values = [0.0; 23];
+            slice.sample_many(&positions, &mut values).unwrap();
+            assert_eq!(values, *raster.row(9));
         }
     }
 }

@@ -2,10 +2,12 @@
 
 mod bits;
 mod doors;
+mod edges;
 mod far_away;
 mod forced;
 mod fractal;
 mod lipschitz;
+mod many;
 pub(crate) mod oracle;
 mod properties;
 #[cfg(feature = "serde")]

@@ -36,7 +36,7 @@ pub fn material()
 -> Result<impl Fn(DVec2) -> Surface + Send + Sync, Box<dyn std::error::Error + Send + Sync>> {
     let seed = Seed(5);
     let swirl_field = wavelet::WaveletNoise2::new(4, seed.child("swirl", 0))?.with_weights(&[0.1490712, 0.0745356])?;
-    let strands_field = worley::Worley2::new(seed.child("strands", 0)).with_period([Some(128), Some(8)])?.combine(worley::Combination::F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, count: 2, gain: 0.6, ..worley::Octaves::default() })?;
+    let strands_field = worley::Worley2::new(seed.child("strands", 0)).with_period([Some(128), Some(8)])?.combine(worley::Combination::F1).fractal(worley::Octaves { count: 2, gain: 0.6, ..worley::Octaves::default() })?;
     let tufts_field = worley::Worley2::new(seed.child("tufts", 0)).with_period([Some(24), Some(6)])?.combine(worley::Combination::F2_MINUS_F1);
     let ramp_1 = color::ColorRamp::new([color::ColorStop { position: 0.15, color: LinearRgb::from_srgb([0xb0_u8, 0x9c, 0x84]) }, color::ColorStop { position: 0.5, color: LinearRgb::from_srgb([0xd8_u8, 0xcc, 0xba]) }, color::ColorStop { position: 0.85, color: LinearRgb::from_srgb([0xef_u8, 0xe9, 0xde]) }])?;
     let ramp_2 = color::ColorRamp::new([color::ColorStop { position: 0.2, color: LinearRgb::from_srgb([0x16_u8, 0x11, 0x0e]) }, color::ColorStop { position: 0.55, color: LinearRgb::from_srgb([0x26_u8, 0x1d, 0x18]) }, color::ColorStop { position: 0.9, color: LinearRgb::from_srgb([0x3c_u8, 0x30, 0x29]) }])?;

@@ -32,8 +32,8 @@ pub struct Surface {
 pub fn material()
 -> Result<impl Fn(DVec2) -> Surface + Send + Sync, Box<dyn std::error::Error + Send + Sync>> {
     let seed = Seed(12);
-    let front_field = worley::Worley4::new(seed.child("front", 0)).with_period([Some(4), Some(4), None, Some(1)])?.with_scatter(worley::Scatter::Poisson { density: 1.0 })?.combine(worley::Combination::F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, count: 4, gain: 0.33, ..worley::Octaves::default() })?;
-    let back_field = worley::Worley4::new(seed.child("back", 0)).with_period([Some(4), Some(4), None, Some(1)])?.with_scatter(worley::Scatter::Poisson { density: 1.0 })?.combine(worley::Combination::F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, count: 4, gain: 0.33, ..worley::Octaves::default() })?;
+    let front_field = worley::Worley4::new(seed.child("front", 0)).with_period([Some(4), Some(4), None, Some(1)])?.with_scatter(worley::Scatter::Poisson { density: 1.0 })?.combine(worley::Combination::F1).fractal(worley::Octaves { count: 4, gain: 0.33, ..worley::Octaves::default() })?;
+    let back_field = worley::Worley4::new(seed.child("back", 0)).with_period([Some(4), Some(4), None, Some(1)])?.with_scatter(worley::Scatter::Poisson { density: 1.0 })?.combine(worley::Combination::F1).fractal(worley::Octaves { count: 4, gain: 0.33, ..worley::Octaves::default() })?;
     let ramp_1 = color::ColorRamp::new([color::ColorStop { position: 0.1, color: LinearRgb::from_srgb([0xd6_u8, 0xcf, 0xc0]) }, color::ColorStop { position: 0.45, color: LinearRgb::from_srgb([0xe6_u8, 0xe1, 0xd6]) }, color::ColorStop { position: 0.9, color: LinearRgb::from_srgb([0xec_u8, 0xe8, 0xdf]) }])?;
     let fiber_field = wavelet::WaveletNoise2::new(128, seed.child("fiber", 0))?.with_weights(&[0.11641641, 0.09313313, 0.0745065])?;
     Ok(move |at: DVec2| {

@@ -35,7 +35,7 @@ pub struct Surface {
 pub fn material()
 -> Result<impl Fn(DVec2) -> Surface + Send + Sync, Box<dyn std::error::Error + Send + Sync>> {
     let seed = Seed(17);
-    let scales_field = worley::Worley2::new(seed.child("furrow", 0)).with_period([Some(8), Some(8)])?.combine(worley::Combination::F2_MINUS_F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, count: 4, gain: 0.45, ..worley::Octaves::default() })?;
+    let scales_field = worley::Worley2::new(seed.child("furrow", 0)).with_period([Some(8), Some(8)])?.combine(worley::Combination::F2_MINUS_F1).fractal(worley::Octaves { count: 4, gain: 0.45, ..worley::Octaves::default() })?;
     let furrow_field = worley::Worley2::new(seed.child("furrow", 0)).with_period([Some(8), Some(8)])?.combine(worley::Combination::F2_MINUS_F1);
     let pore_field = worley::Worley2::new(seed.child("pore", 0)).with_period([Some(128), Some(128)])?.combine(worley::Combination::F1);
     let crust_field = wavelet::WaveletNoise2::new(64, seed.child("crust", 0))?.with_weights(&[0.1134812, 0.085110895, 0.06383318, 0.04787488, 0.03590616])?;

@@ -36,7 +36,7 @@ pub fn material()
 -> Result<impl Fn(DVec2) -> Surface + Send + Sync, Box<dyn std::error::Error + Send + Sync>> {
     let seed = Seed(6);
     let swirl_field = wavelet::WaveletNoise2::new(4, seed.child("swirl", 0))?.with_weights(&[0.1490712, 0.0745356])?;
-    let strands_field = worley::Worley2::new(seed.child("strands", 0)).with_period([Some(144), Some(10)])?.combine(worley::Combination::F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, count: 2, gain: 0.6, ..worley::Octaves::default() })?;
+    let strands_field = worley::Worley2::new(seed.child("strands", 0)).with_period([Some(144), Some(10)])?.combine(worley::Combination::F1).fractal(worley::Octaves { count: 2, gain: 0.6, ..worley::Octaves::default() })?;
     let tufts_field = worley::Worley2::new(seed.child("tufts", 0)).with_period([Some(24), Some(6)])?.combine(worley::Combination::F2_MINUS_F1);
     let tone_field = pups::octaves(&pups::OctavesOptions { domain: points::Domain { origin: DVec2::new(0.0, 0.0), size: DVec2::new(2.0, 2.0), wrap: [true, true] }, spacing: pups::Spacing::from(0.3333333333333333), octaves: 3, ..pups::OctavesOptions::default() }, seed.child("tone", 0))?.normalized();
     let ramp_1 = color::ColorRamp::new([color::ColorStop { position: 0.3, color: LinearRgb::from_srgb([0xcf_u8, 0xae, 0x7c]) }, color::ColorStop { position: 0.7, color: LinearRgb::from_srgb([0xe0_u8, 0xc8, 0x9d]) }])?;

@@ -35,7 +35,7 @@ pub struct Surface {
 pub fn material()
 -> Result<impl Fn(DVec2) -> Surface + Send + Sync, Box<dyn std::error::Error + Send + Sync>> {
     let seed = Seed(5);
-    let deep_field = worley::Worley2::new(seed.child("deep", 0)).with_period([Some(4), Some(4)])?.combine(worley::Combination::F2_MINUS_F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, count: 4, gain: 0.6, ..worley::Octaves::default() })?;
+    let deep_field = worley::Worley2::new(seed.child("deep", 0)).with_period([Some(4), Some(4)])?.combine(worley::Combination::F2_MINUS_F1).fractal(worley::Octaves { count: 4, gain: 0.6, ..worley::Octaves::default() })?;
     let cloud_field = pups::octaves(&pups::OctavesOptions { domain: points::Domain { origin: DVec2::new(0.0, 0.0), size: DVec2::new(4.0, 4.0), wrap: [true, true] }, spacing: pups::Spacing::from(0.6666666666666666), octaves: 5, gain: 0.6, ..pups::OctavesOptions::default() }, seed.child("cloud", 0))?.normalized();
     let cracks_field = worley::Worley2::new(seed.child("cracks", 0)).with_period([Some(4), Some(4)])?.with_scatter(worley::Scatter::Jittered { jitter: 1.0 })?.combine(worley::Combination::F2_MINUS_F1);
     let ramp_1 = color::ColorRamp::new([color::ColorStop { position: 0.0, color: LinearRgb::from_srgb([0xcf_u8, 0xe6, 0xee]) }, color::ColorStop { position: 0.25, color: LinearRgb::from_srgb([0x7f_u8, 0xb2, 0xc8]) }, color::ColorStop { position: 0.6, color: LinearRgb::from_srgb([0x3f_u8, 0x7f, 0x9f]) }, color::ColorStop { position: 1.0, color: LinearRgb::from_srgb([0x23_u8, 0x5b, 0x7d]) }])?;

@@ -35,7 +35,7 @@ pub struct Surface {
 pub fn material()
 -> Result<impl Fn(DVec2) -> Surface + Send + Sync, Box<dyn std::error::Error + Send + Sync>> {
     let seed = Seed(21);
-    let blocks_field = worley::Worley4::new(seed.child("blocks", 0)).with_period([Some(4), Some(4), None, Some(1)])?.combine(worley::Combination::F2_MINUS_F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, gain: 0.46, ..worley::Octaves::default() })?;
+    let blocks_field = worley::Worley4::new(seed.child("blocks", 0)).with_period([Some(4), Some(4), None, Some(1)])?.combine(worley::Combination::F2_MINUS_F1).fractal(worley::Octaves { gain: 0.46, ..worley::Octaves::default() })?;
     let grain_field = wavelet::WaveletNoise2::new(64, seed.child("grain", 0))?.with_weights(&[0.10961724, 0.087693796, 0.07015504, 0.056124028])?;
     let crystal_field = worley::Worley2::new(seed.child("crystal", 0)).with_period([Some(96), Some(96)])?.cell_values();
     let ramp_1 = color::ColorRamp::even(&[LinearRgb::from_srgb([0x8b_u8, 0x81, 0x78]), LinearRgb::from_srgb([0xa8_u8, 0x9d, 0x92]), LinearRgb::from_srgb([0x9b_u8, 0x97, 0x93]), LinearRgb::from_srgb([0xb6_u8, 0xac, 0xa0]), LinearRgb::from_srgb([0x7f_u8, 0x7a, 0x76]), LinearRgb::from_srgb([0xad_u8, 0xa2, 0x9c])])?;

@@ -34,7 +34,7 @@ pub struct Surface {
 pub fn material()
 -> Result<impl Fn(DVec2) -> Surface + Send + Sync, Box<dyn std::error::Error + Send + Sync>> {
     let seed = Seed(9);
-    let waves_field = worley::Worley4::new(seed.child("waves", 0)).with_period([Some(4), Some(8), None, Some(2)])?.with_scatter(worley::Scatter::Poisson { density: 1.0 })?.combine(worley::Combination::F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, count: 5, gain: 0.42, ..worley::Octaves::default() })?;
+    let waves_field = worley::Worley4::new(seed.child("waves", 0)).with_period([Some(4), Some(8), None, Some(2)])?.with_scatter(worley::Scatter::Poisson { density: 1.0 })?.combine(worley::Combination::F1).fractal(worley::Octaves { count: 5, gain: 0.42, ..worley::Octaves::default() })?;
     let swell_field = pups::octaves(&pups::OctavesOptions { domain: points::Domain { origin: DVec2::new(0.0, 0.0), size: DVec2::new(8.0, 8.0), wrap: [true, true] }, spacing: pups::Spacing::from(2.0), octaves: 3, ..pups::OctavesOptions::default() }, seed.child("swell", 0))?.normalized();
     let ramp_1 = color::ColorRamp::new([color::ColorStop { position: 0.15, color: LinearRgb::from_srgb([0x06_u8, 0x22, 0x2f]) }, color::ColorStop { position: 0.45, color: LinearRgb::from_srgb([0x0a_u8, 0x3a, 0x48]) }, color::ColorStop { position: 0.75, color: LinearRgb::from_srgb([0x14_u8, 0x60, 0x6a]) }, color::ColorStop { position: 1.0, color: LinearRgb::from_srgb([0x4b_u8, 0x9a, 0x98]) }])?;
     Ok(move |at: DVec2| {

@@ -32,8 +32,8 @@ pub struct Surface {
 pub fn material()
 -> Result<impl Fn(DVec2) -> Surface + Send + Sync, Box<dyn std::error::Error + Send + Sync>> {
     let seed = Seed(31);
-    let front_field = worley::Worley4::new(seed.child("front", 0)).with_period([Some(8), Some(8), None, Some(1)])?.combine(worley::Combination::F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, count: 3, gain: 0.36, ..worley::Octaves::default() })?;
-    let back_field = worley::Worley4::new(seed.child("back", 0)).with_period([Some(8), Some(8), None, Some(1)])?.combine(worley::Combination::F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, count: 3, gain: 0.36, ..worley::Octaves::default() })?;
+    let front_field = worley::Worley4::new(seed.child("front", 0)).with_period([Some(8), Some(8), None, Some(1)])?.combine(worley::Combination::F1).fractal(worley::Octaves { count: 3, gain: 0.36, ..worley::Octaves::default() })?;
+    let back_field = worley::Worley4::new(seed.child("back", 0)).with_period([Some(8), Some(8), None, Some(1)])?.combine(worley::Combination::F1).fractal(worley::Octaves { count: 3, gain: 0.36, ..worley::Octaves::default() })?;
     let sheet_field = worley::Worley4::new(seed.child("sheet", 0)).with_period([Some(2), Some(2), None, Some(1)])?.combine(worley::Combination::F1);
     let roll_field = worley::Worley2::new(seed.child("roll", 0)).with_period([Some(512), Some(4)])?.combine(worley::Combination::F1);
     Ok(move |at: DVec2| {

@@ -35,7 +35,7 @@ pub fn material()
 -> Result<impl Fn(DVec2) -> Surface + Send + Sync, Box<dyn std::error::Error + Send + Sync>> {
     let seed = Seed(11);
     let growth_field = worley::Worley4::new(seed.child("growth", 0)).with_period([Some(4), Some(1), None, Some(1)])?.combine(worley::Combination::new([0.25, 0.25, 0.25, 0.25]));
-    let fiber_field = worley::Worley2::new(seed.child("fiber", 0)).with_period([Some(128), Some(4)])?.combine(worley::Combination::F1).fractal(worley::Octaves { seeds: worley::OctaveSeeds::Own, count: 2, gain: 0.6, ..worley::Octaves::default() })?;
+    let fiber_field = worley::Worley2::new(seed.child("fiber", 0)).with_period([Some(128), Some(4)])?.combine(worley::Combination::F1).fractal(worley::Octaves { count: 2, gain: 0.6, ..worley::Octaves::default() })?;
     let pore_field = worley::Worley2::new(seed.child("pore", 0)).with_period([Some(256), Some(16)])?.with_scatter(worley::Scatter::Poisson { density: 1.0 })?.combine(worley::Combination::F1);
     let tone_field = pups::octaves(&pups::OctavesOptions { domain: points::Domain { origin: DVec2::new(0.0, 0.0), size: DVec2::new(4.0, 4.0), wrap: [true, true] }, spacing: pups::Spacing::from(1.0), octaves: 2, ..pups::OctavesOptions::default() }, seed.child("tone", 0))?.normalized();
     let ramp_1 = color::ColorRamp::even(&[LinearRgb::from_srgb([0xb9_u8, 0x8a, 0x58]), LinearRgb::from_srgb([0xc9_u8, 0x9b, 0x69])])?;

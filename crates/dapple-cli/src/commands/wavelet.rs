@@ -122,11 +122,11 @@ fn other_cells(cells: [f64; 2], size: Size) -> String {
     let below = (shorter / step).floor().max(least) * step;
     let above = if below > shorter { below } else { below + step };
     match (below < shorter, above <= f64::from(width.min(height))) {
-        (true, true) => format!("take --cells {below} or --cells {above}, or --axes none"),
-        (true, false) => format!("take --cells {below}, or --axes none"),
-        (false, true) => format!("take --cells {above}, or --axes none"),
+        (true, true) => format!("take --cells {below} or --cells {above}, or --wrap none"),
+        (true, false) => format!("take --cells {below}, or --wrap none"),
+        (false, true) => format!("take --cells {above}, or --wrap none"),
         (false, false) => {
-            "take a --size whose sides have a simpler ratio, or --axes none".to_owned()
+            "take a --size whose sides have a simpler ratio, or --wrap none".to_owned()
         }
     }
 }
@@ -164,19 +164,19 @@ mod tests {
             (
                 [640, 480],
                 32.0,
-                "take --cells 30 or --cells 36, or --axes none",
+                "take --cells 30 or --cells 36, or --wrap none",
             ),
-            ([80, 64], 5.0, "take --cells 8, or --axes none"),
-            ([512, 512], 2.0, "take --cells 4, or --axes none"),
+            ([80, 64], 5.0, "take --cells 8, or --wrap none"),
+            ([512, 512], 2.0, "take --cells 4, or --wrap none"),
             (
                 [1080, 1920],
                 32.0,
-                "take --cells 18 or --cells 36, or --axes none",
+                "take --cells 18 or --cells 36, or --wrap none",
             ),
             (
                 [641, 480],
                 32.0,
-                "take a --size whose sides have a simpler ratio, or --axes none",
+                "take a --size whose sides have a simpler ratio, or --wrap none",
             ),
         ] {
             let size = Size(size);

@@ -17,6 +17,7 @@ Examples:
   dapple worley --value f2_minus_f1 --cells 12 --size 1024 --seed 3 -o cracks.png
   dapple worley --metric manhattan --ramp ember --size 1024x512 -o hull.png
   dapple worley --octaves 6 --value f1 -o crumpled.exr
+  dapple worley --octaves 6 --octave-seeds same --lacunarity 2 --gain 0.5 -o worley-1996.png
   dapple worley --coefficients=-1,-1,2,0 -o odd.png
   dapple worley --frames 24 --loop-cells 2 --size 96 -o sea.png
   dapple worley --size 8192 --region 0,0,256,256 -o corner.png
@@ -88,14 +89,36 @@ pub(crate) struct Args {
     )]
     jitter: Option<f64>,
 
-    /// Sum so many octaves, from 1 to 32, each twice as fine.
+    /// Sum so many octaves, from 1 to 32.
     #[arg(long, value_name = "N", help_heading = "Texture")]
     octaves: Option<u32>,
 
-    /// How high an octave is beside the one before.
+    /// How much finer an octave is than the one before, from 1 to 16; a whole number where the picture repeats.
     #[arg(
         long,
-        alias = "persistence",
+        value_name = "N",
+        default_value_t = 2.0,
+        requires = "octaves",
+        help_heading = "Texture"
+    )]
+    lacunarity: f64,
+
+    /// Whether each octave has its own feature points, or all have the same, as in Worley's paper.
+    #[arg(
+        long,
+        value_name = "SEEDS",
+        default_value = "own",
+        value_parser = Word::<OctaveSeeds>::of(&["own", "same"]),
+        requires = "octaves",
+        help_heading = "Texture"
+    )]
+    octave_seeds: OctaveSeeds,
+
+    /// How high an octave is beside the one before, from -1 to 1.
+    #[arg(
+        long,
+        visible_alias = "persistence",
+        allow_negative_numbers = true,
         value_name = "PART",
         default_value_t = 0.5,
         requires = "octaves",
@@ -164,9 +187,9 @@ impl Args {
         };
         let octaves = self.octaves.map(|count| Octaves {
             count,
+            lacunarity: self.lacunarity,
             gain: self.gain,
-            seeds: OctaveSeeds::Own,
-            ..Octaves::default()
+            seeds: self.octave_seeds,
         });
         let value = match self.coefficients {
             Some(Numbers(coefficients)) => WorleyValue::Combination(Combination::new(coefficients)),

@@ -1,10 +1,13 @@
 //! What comes out is what the libraries make.
 
 use crate::support::{Folder, assert_done, stderr, stdout};
+use dapple::hash::Seed;
 use dapple::image::{Depth, Limits, decode_image, read_image, write_gray_png};
 use dapple::mesh::io::read_model;
-use dapple::raster::Raster;
+use dapple::raster::glam::DVec2;
+use dapple::raster::{Field as _, Raster, Window};
 use dapple::tile::{Method, Seamless, SoftCut};
+use dapple::worley::{Combination, OctaveSeeds, Octaves, Worley2};
 use std::fs;
 
 fn gray(folder: &Folder, name: &str) -> Raster<f32> {
@@ -112,6 +115,64 @@ fn auto_names_its_method_and_is_never_worse_than_others() {
         gray(&folder, "out.exr"),
         "{name}"
     );
+}
+
+#[test]
+fn octaves_of_worley_are_those_of_the_library() {
+    let folder = Folder::new("octaves");
+    let octaves = |seeds, lacunarity| Octaves {
+        count: 3,
+        lacunarity,
+        gain: -0.25,
+        seeds,
+    };
+    let cases: [(&str, &[&str], Octaves); 4] = [
+        (
+            "usual.exr",
+            &[],
+            Octaves {
+                count: 3,
+                ..Octaves::default()
+            },
+        ),
+        (
+            "paper.exr",
+            &["--octave-seeds", "same"],
+            Octaves {
+                count: 3,
+                ..Octaves::paper()
+            },
+        ),
+        (
+            "own.exr",
+            &["--octave-seeds", "own", "--lacunarity", "3", "--gain=-0.25"],
+            octaves(OctaveSeeds::Own, 3.0),
+        ),
+        (
+            "same.exr",
+            &[
+                "--octave-seeds=same",
+                "--lacunarity=4",
+                "--persistence",
+                "-0.25",
+            ],
+            octaves(OctaveSeeds::Same, 4.0),
+        ),
+    ];
+    let worley = Worley2::new(Seed(7).child("worley", 0));
+    let worley = worley.with_period([Some(4); 2]).unwrap();
+    let window = Window::new(DVec2::ZERO, DVec2::splat(4.0), [64; 2]).unwrap();
+    for (name, options, octaves) in cases {
+        let run = "worley --octaves 3 --cells 4 --size 64 --seed 7 -o";
+        let run: Vec<&str> = run.split(' ').chain([name]).collect();
+        assert_done(&folder.run(&[&run, options].concat()), name);
+        let texture = worley.combine(Combination::F1).fractal(octaves).unwrap();
+        assert_eq!(
+            gray(&folder, name),
+            texture.to_raster(&window).unwrap(),
+            "{name}"
+        );
+    }
 }
 
 #[test]

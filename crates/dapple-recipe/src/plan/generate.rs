@@ -1,8 +1,7 @@
 //! The fields of nodes that make something of nothing but a seed.
 //!
-//! A field that has a frequency is asked at the position times the frequency. Where the frequency is a power of two this
-//! is exact, and a whole window is rendered at once; else each position is multiplied on its own, so that a window has the
-//! bits of its positions.
+//! A field that has a frequency is asked at the position times the frequency: a whole window is rendered at once, as one
+//! whose positions are those products.
 
 use super::{Images, Picture};
 use crate::operation::{coordinate, distance};
@@ -260,7 +259,7 @@ fn plane_field(node: &WorleyNode, worley: Worley2) -> Result<Arc<dyn Field>, Rec
     let combination = match node.value {
         WorleyValue::Combination(combination) => combination,
         WorleyValue::CellValue => return Ok(Arc::new(worley.cell_values())),
-        WorleyValue::EdgeDistance => return Ok(Arc::new(EdgeDistances(worley))),
+        WorleyValue::EdgeDistance => return Ok(Arc::new(worley.edge_distances())),
     };
     let cellular = worley.combine(combination);
     Ok(match (node.octaves, node.range) {
@@ -281,7 +280,7 @@ fn moving_field(
     let combination = match node.value {
         WorleyValue::Combination(combination) => combination,
         WorleyValue::CellValue => return Ok(slice(place, move |at| cell_value(&worley, at))),
-        WorleyValue::EdgeDistance => return Ok(slice(place, move |at| worley.edge_distance(at))),
+        WorleyValue::EdgeDistance => return Ok(Arc::new(worley.edge_distances().slice(place))),
     };
     let cellular = worley.combine(combination);
     Ok(Arc::new(match (node.octaves, node.range) {
@@ -320,15 +319,6 @@ fn check_single(node: &WorleyNode, metric: bool) -> Result<(), RecipeError> {
     Err(RecipeError::new(RecipeErrorKind::Conflict { rule }))
 }
 
-/// The distances to the borders of cells.
-struct EdgeDistances(Worley2);
-
-impl Field for EdgeDistances {
-    fn sample(&self, position: DVec2) -> f32 {
-        self.0.edge_distance(position)
-    }
-}
-
 /// A function of space and time, over the plane at one depth and one time.
 struct Slice<F> {
     place: [f64; 2],
@@ -347,14 +337,6 @@ struct Scaled {
     frequency: DVec2,
 }
 
-impl Scaled {
-    /// Whether a product with the frequency is exact.
-    fn is_exact(&self) -> bool {
-        let is_power_of_two = |number: f64| number.is_normal() && number.to_bits() << 12 == 0;
-        is_power_of_two(self.frequency.x) && is_power_of_two(self.frequency.y)
-    }
-}
-
 impl Field for Scaled {
     fn sample(&self, position: DVec2) -> f32 {
         self.field.sample(position * self.frequency)
@@ -369,12 +351,7 @@ impl Field for Scaled {
     }
 
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        if self.is_exact() {
-            let scaled = Window {
-                origin: window.origin * self.frequency,
-                pixel: window.pixel * self.frequency,
-                ..*window
-            };
+        if let Some(scaled) = window.scaled(self.frequency) {
             return self.field.render(&scaled, out);
         }
         window.check_size(out.size())?;

@@ -17,10 +17,10 @@ use fearless_simd::{Level, dispatch};
 use std::sync::Arc;
 
 /// The most cells of a block, with its neighborhood; where there are more, a pixel is larger than a cell.
-const MOST_CELLS: u128 = 1 << 16;
+pub(super) const MOST_CELLS: u128 = 1 << 16;
 
 /// The most cells along an axis, so that steps fit into 32 bits.
-const LONGEST_SIDE: usize = 1000;
+pub(super) const LONGEST_SIDE: usize = 1000;
 
 /// The most columns and rows of a tile.
 const LARGE_TILE: usize = 32;

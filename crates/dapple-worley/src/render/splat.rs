@@ -68,9 +68,10 @@ impl Splat {
         }
         let window = block.picture.window;
         let frequency = block.picture.frequency;
+        let pixel = window.pixel * window.scale;
         let pixel = [
-            (u[0] * window.pixel.x * frequency) as f32,
-            (v[row_axis] * window.pixel.y * frequency) as f32,
+            (u[0] * pixel.x * frequency) as f32,
+            (v[row_axis] * pixel.y * frequency) as f32,
         ];
         // A tile begins half a pixel before its first pixel.
         let reach = |pixel: f32, pixels: usize| (pixels as f32 + 0.5) * pixel.abs() * SURE;

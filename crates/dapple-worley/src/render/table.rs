@@ -218,6 +218,37 @@ impl<const N: usize> Table<N> {
         }
     }
 
+    /// How many points it has.
+    pub(super) fn n_points(&self) -> usize {
+        self.starts.last().map_or(0, |&end| end as usize)
+    }
+
+    /// A point, in steps from the lower corner of the box.
+    pub(super) fn point(&self, index: usize) -> [i32; N] {
+        self.steps.each_ref().map(|steps| steps[index])
+    }
+
+    /// Whether it has the cells from `first` to `last` along each axis.
+    pub(super) fn has_cells(&self, [first, last]: [[i32; N]; 2]) -> bool {
+        (0..N).all(|axis| first[axis] >= 0 && (last[axis] as usize) < self.cells.side(axis))
+    }
+
+    /// The points of the cells up to `ring` cells from that of a point, if the table has these cells.
+    pub(super) fn around<'a>(
+        &self,
+        point: [i32; N],
+        ring: i32,
+        runs: &'a mut Vec<Range<usize>>,
+    ) -> Option<&'a [Range<usize>]> {
+        let cell = point.map(|steps| steps >> STEP_BITS);
+        let cells = [cell.map(|cell| cell - ring), cell.map(|cell| cell + ring)];
+        if !self.has_cells(cells) {
+            return None;
+        }
+        self.runs(cells, runs);
+        Some(runs)
+    }
+
     /// The points of the cells from `first` to `last` along each axis, row by row.
     pub(super) fn runs(&self, [first, last]: [[i32; N]; 2], runs: &mut Vec<Range<usize>>) {
         runs.clear();

@@ -75,6 +75,7 @@ where
         pixel: DVec2::splat(PIXEL),
         first: [0, 0],
         size: [5, 3],
+        scale: DVec2::ONE,
     };
     (Plane::slice(origin.into()), window)
 }

@@ -86,6 +86,7 @@ fn pattern_far_away_is_as_precise_as_near_the_origin() -> Result<(), WorleyError
                     pixel: DVec2::new(1.0 / 64.0, 1.0 / 32.0),
                     first: [0, 0],
                     size: [70, 50],
+                    scale: DVec2::ONE,
                 };
                 let mut values = Raster::filled(window.size, -1.0)?;
                 texture.render(&window, values.view_mut())?;
@@ -205,6 +206,7 @@ fn windows_without_a_place() -> Vec<Window> {
         pixel: pixel.into(),
         first,
         size: [37, 5],
+        scale: DVec2::ONE,
     };
     vec![
         window([f64::NAN, 0.0], [0.1, 0.1], [0, 0]),

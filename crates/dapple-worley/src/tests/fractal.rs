@@ -23,6 +23,7 @@ fn windows() -> [Window; 5] {
         pixel: pixel.into(),
         first: [-3, 5],
         size: [67, 35],
+        scale: DVec2::ONE,
     };
     [
         window([0.3, -0.7], [1.0 / 64.0, 1.0 / 64.0]),
@@ -140,7 +141,7 @@ where
         let texture = Worley::<N>::new(seed)
             .with_metric(metric)?
             .combine(combination);
-        for octaves in [Octaves::default(), ODD] {
+        for octaves in [Octaves::paper(), ODD] {
             let fractal = texture.fractal(octaves)?;
             for index in 0..n {
                 let at = position::<N>(Seed(104), index, 100.0);
@@ -167,11 +168,7 @@ fn fractal_is_the_sum_of_its_octaves() -> Result<(), WorleyError> {
 #[test]
 fn octaves_with_one_seed_are_one_field_and_others_are_not() -> Result<(), WorleyError> {
     let texture = Worley::<3>::new(Seed(105)).combine(Combination::F1);
-    let same = Octaves::default();
-    let own = Octaves {
-        seeds: OctaveSeeds::Own,
-        ..same
-    };
+    let [same, own] = [Octaves::paper(), Octaves::default()];
     let [same, own] = [texture.fractal(same)?, texture.fractal(own)?];
     // At the origin all octaves have the same center: the weights sum to 2 - 2^-5.
     let center = texture.value([0.0; 3]) * (2.0 - 1.0 / 32.0);

@@ -196,6 +196,7 @@ fn pictures_have_no_jumps_in_any_metric_or_scatter() -> Result<(), WorleyError> 
         pixel: pixel.into(),
         first: [0, 0],
         size,
+        scale: DVec2::ONE,
     };
     let slanted = Plane::slice([0.0, 0.0, 0.625].into());
     for (metric, scatter) in METRICS.iter().flat_map(|&m| SCATTERS.map(|s| (m, s))) {

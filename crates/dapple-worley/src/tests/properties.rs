@@ -150,6 +150,7 @@ fn any_window() -> impl Strategy<Value = Window> {
             pixel: pixel.into(),
             first,
             size,
+            scale: glam::DVec2::ONE,
         })
 }
 

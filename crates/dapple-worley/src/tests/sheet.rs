@@ -84,6 +84,7 @@ where
                 pixel,
                 first: [0, 0],
                 size: [50, 47],
+                scale: DVec2::ONE,
             };
             for combination in combinations {
                 picture_equals_value(&worley, combination, &plane, &window)?;

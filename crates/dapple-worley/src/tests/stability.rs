@@ -180,7 +180,7 @@ fn value_stability_fractal() -> Result<(), WorleyError> {
         gain: 0.75,
         seeds: OctaveSeeds::Own,
     };
-    let same = texture.fractal(Octaves::default())?;
+    let same = texture.fractal(Octaves::paper())?;
     let own = texture.fractal(own)?;
     let values = (0..3).map(position::<3>);
     let values = values.flat_map(|at| [same.value(at), own.value(at)]);

@@ -97,6 +97,7 @@ fn windows_equal_samples_where_the_density_varies() -> Result<(), WorleyError> {
         pixel: pixel.into(),
         first: [0, 0],
         size: [90, 70],
+        scale: DVec2::ONE,
     });
     for (index, window) in windows.iter().enumerate() {
         let worley = varying::<2>(97).with_metric(METRICS[index])?;

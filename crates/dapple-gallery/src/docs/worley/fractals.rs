@@ -37,7 +37,7 @@ pub(super) const FRACTAL: Strip = Strip {
         ];
         let panels = combinations
             .into_iter()
-            .map(|(label, combination)| sum(label, combination, Octaves::default()));
+            .map(|(label, combination)| sum(label, combination, Octaves::paper()));
         panels.collect()
     },
 };
@@ -50,7 +50,7 @@ pub(super) const COUNT: Strip = Strip {
         let panels = counts.into_iter().map(|(count, label)| {
             let octaves = Octaves {
                 count,
-                ..Octaves::default()
+                ..Octaves::paper()
             };
             sum(label, Combination::F1, octaves)
         });
@@ -66,7 +66,7 @@ pub(super) const LACUNARITY: Strip = Strip {
             let octaves = Octaves {
                 count: 3,
                 lacunarity,
-                ..Octaves::default()
+                ..Octaves::paper()
             };
             sum(
                 &format!("lacunarity {lacunarity}"),
@@ -86,7 +86,7 @@ pub(super) const GAIN: Strip = Strip {
             let octaves = Octaves {
                 count: 3,
                 gain,
-                ..Octaves::default()
+                ..Octaves::paper()
             };
             sum(&format!("gain {gain}"), Combination::F1, octaves)
         });
@@ -102,7 +102,7 @@ pub(super) const SEEDS: Strip = Strip {
         let panels = kinds.into_iter().map(|(label, seeds)| {
             let octaves = Octaves {
                 seeds,
-                ..Octaves::default()
+                ..Octaves::paper()
             };
             let corner = DVec2::splat(-0.5 * CELLS);
             sum_from(corner, label, Combination::F2_MINUS_F1, octaves)

@@ -47,7 +47,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         .combine(Combination::F1)
         .fractal(Octaves {
             count: 2,
-            ..Octaves::default()
+            ..Octaves::paper()
         })?;
     let stain = FractalNoise::new(0.2, Seed(4))?;
 

@@ -35,7 +35,7 @@ const BUMP: f64 = 0.3;
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let octaves = Octaves {
         count: 4,
-        ..Octaves::default()
+        ..Octaves::paper()
     };
     let hide = Worley3::new(Seed(55))
         .combine(Combination::F1)

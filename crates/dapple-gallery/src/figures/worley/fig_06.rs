@@ -94,7 +94,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
 fn solid(primitive: Combination, seed: Seed) -> anyhow::Result<Fractal<3>> {
     let octaves = Octaves {
         count: 5,
-        ..Octaves::default()
+        ..Octaves::paper()
     };
     let texture = Worley3::new(seed).combine(primitive).fractal(octaves)?;
     let range = texture.measure_range(seed, N_POSITIONS)?;

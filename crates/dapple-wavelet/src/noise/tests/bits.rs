@@ -80,6 +80,7 @@ fn windows() -> Vec<Window> {
         pixel,
         first: [-3, 7],
         size,
+        scale: DVec2::ONE,
     };
     vec![
         window(0.1, 0.2, DVec2::splat(0.37), [70, 40]),

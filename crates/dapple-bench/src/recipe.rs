@@ -1,0 +1,13 @@
+//! The recipe group: baking beside baking more, and nodes beside what they are made of.
+
+mod maps;
+mod nodes;
+
+use crate::harness::Bench;
+use anyhow::Result;
+
+/// Measures the rows of the group.
+pub(crate) fn run(bench: &mut Bench) -> Result<()> {
+    maps::run(bench)?;
+    nodes::run(bench)
+}

@@ -1,0 +1,77 @@
+//! The distance to the edge of the Voronoi cell at each position, as a texture.
+
+use crate::render::render_edges;
+use crate::{Axes, Metric, Plane, Space, Vector, Worley};
+use dapple_raster::glam::DVec2;
+use dapple_raster::{Field, RasterError, RasterViewMut, Window};
+
+/// The texture of the distances to the edges of the Voronoi cells: [`Worley::edge_distance`] at every position.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_worley::{Worley2, hash::Seed, raster::{Field, Window, glam::DVec2}};
+///
+/// let worley = Worley2::new(Seed(7));
+/// let edges = worley.edge_distances();
+/// let window = Window::new(DVec2::ZERO, DVec2::splat(4.0), [64, 64])?;
+/// let raster = edges.to_raster(&window)?;
+/// assert_eq!(raster.row(3)[5], worley.edge_distance(window.position(5, 3)));
+/// # Ok::<(), dapple_worley::raster::RasterError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct EdgeDistances<const N: usize> {
+    /// With the Euclidean metric.
+    worley: Worley<N>,
+}
+
+impl<const N: usize> Worley<N>
+where
+    Axes: Space<N>,
+{
+    /// The texture whose value is the distance to the nearest edge of the Voronoi cell.
+    #[must_use]
+    pub fn edge_distances(&self) -> EdgeDistances<N> {
+        let worley = Self {
+            metric: Metric::Euclidean,
+            ..self.clone()
+        };
+        EdgeDistances { worley }
+    }
+}
+
+impl<const N: usize> EdgeDistances<N>
+where
+    Axes: Space<N>,
+{
+    /// The value at a position: [`Worley::edge_distance`].
+    #[must_use]
+    pub fn value(&self, position: impl Into<Vector<N>>) -> f32 {
+        self.worley.edge_distance(position)
+    }
+
+    /// The values at the pixel centers of a window of a plane, into memory of its size.
+    ///
+    /// # Errors
+    ///
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if `out` has another size than the window.
+    pub fn render_plane(
+        &self,
+        plane: &Plane<N>,
+        window: &Window,
+        out: RasterViewMut<'_, f32>,
+    ) -> Result<(), RasterError> {
+        window.check_size(out.size())?;
+        render_edges(&self.worley, plane, window, out)
+    }
+}
+
+impl Field for EdgeDistances<2> {
+    fn sample(&self, position: DVec2) -> f32 {
+        self.value(position)
+    }
+
+    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        self.render_plane(&Plane::default(), window, out)
+    }
+}
