@@ -26,6 +26,7 @@ const QUIET: Duration = Duration::from_millis(60);
 /// Bake a recipe again at every save of it or of its images, small first.
 #[derive(clap::Args, Debug)]
 #[command(after_help = EXAMPLES)]
+#[group(skip)]
 pub(crate) struct Args {
     #[command(flatten)]
     bake: bake::Args,
