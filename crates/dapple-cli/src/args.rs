@@ -13,6 +13,7 @@ pub(crate) use size::{Extent, Size};
 use crate::encode::Format;
 use crate::error::{Hint, usage};
 use crate::output::Target;
+use crate::progress::Style;
 use anyhow::Result;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
@@ -25,6 +26,11 @@ pub(crate) struct Common {
     /// How many threads compute; 0 is one for each core. The result is the same bit for bit.
     #[arg(long, global = true, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub(crate) threads: u16,
+
+    /// How progress is shown on standard error: as a bar on a terminal and as lines elsewhere, or always as lines, or as lines
+    /// of JSON.
+    #[arg(long, global = true, value_enum, value_name = "STYLE", default_value_t = Style::Auto)]
+    pub(crate) progress: Style,
 
     /// Print nothing but errors and what was asked for.
     #[arg(short, long, global = true)]

@@ -12,7 +12,7 @@ use dapple::image::{Content, RowWriter};
 use dapple::recipe::{
     Bake, Images, MapKind, MapRows, Picture, Recipe, RecipeError, RecipeErrorKind,
 };
-use dapple::tile::Map;
+use dapple::tile::{Map, repeat};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -24,6 +24,8 @@ use std::sync::Arc;
 pub(crate) struct MapFile {
     pub(crate) kind: MapKind,
     pub(crate) output: OutputIdx,
+    /// Where 2 x 2 copies go, if there are to be any.
+    pub(crate) sheet: Option<OutputIdx>,
     pub(crate) format: Format,
 }
 
@@ -94,32 +96,53 @@ pub(crate) fn read_picture(path: &Path) -> Result<Picture> {
     })
 }
 
-/// Draws the maps of a bake into files that were claimed.
+/// Draws the maps of a bake into files that were claimed, and says of each row that it is done.
 ///
 /// # Errors
 ///
 /// What the recipe or the operating system refuses.
-pub(crate) fn write(job: &mut Job<'_>, bake: &mut Bake<'_>, files: &[MapFile]) -> Result<()> {
+pub(crate) fn write(
+    job: &mut Job<'_>,
+    bake: Bake<'_>,
+    files: &[MapFile],
+    progress: &Progress,
+) -> Result<()> {
     let size = bake.size();
     let mut rows = Vec::new();
     for file in files {
-        let (content, encoding) = (content(file.kind), file.format.encoding());
-        rows.push(Rows {
-            writer: RowWriter::new(job.writer(file.output)?, size, content, encoding)?,
-            range: [f32::INFINITY, f32::NEG_INFINITY],
-        });
+        rows.push(Rows::new(job, file, size)?);
     }
-    let progress = Progress::bar("baking", size[1].into(), job.is_quiet());
-    for band in bake {
-        let band = band.map_err(advise)?;
-        let height = band.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
-        let work = rows.par_iter_mut().zip(&band.maps);
-        work.try_for_each(|(rows, (_, map))| rows.write(map))?;
-        progress.set(u64::from(band.first_row) + u64::from(height));
+    // The lower half of a sheet is baked a second time, and so takes no memory.
+    let has_sheets = files.iter().any(|file| file.sheet.is_some());
+    let again = has_sheets.then(|| bake.clone());
+    draw(bake, &mut rows, progress, Rows::write)?;
+    if let Some(again) = again {
+        draw(again, &mut rows, progress, Rows::write_sheet)?;
     }
     for (rows, file) in rows.into_iter().zip(files) {
-        rows.writer.finish()?.flush()?;
+        rows.map.finish()?.flush()?;
         job.note(file.output, file.format, size, rows.range);
+        if let (Some(writer), Some(sheet)) = (rows.sheet, file.sheet) {
+            writer.finish()?.flush()?;
+            job.note(sheet, file.format, size.map(|side| 2 * side), rows.range);
+        }
+    }
+    Ok(())
+}
+
+/// Gives the bands of a bake to all maps.
+fn draw(
+    bake: Bake<'_>,
+    rows: &mut [Rows],
+    progress: &Progress,
+    write: fn(&mut Rows, &MapRows) -> Result<()>,
+) -> Result<()> {
+    for band in bake {
+        let band = band.map_err(advise)?;
+        let n_rows = band.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
+        let work = rows.par_iter_mut().zip(&band.maps);
+        work.try_for_each(|(rows, (_, map))| write(rows, map))?;
+        progress.add(n_rows.into());
     }
     Ok(())
 }
@@ -149,24 +172,70 @@ pub(crate) fn advise(error: RecipeError) -> Error {
     Error::new(error).hint(hint)
 }
 
-/// A map on its way into a file.
+/// What images are written with.
+type Writer = RowWriter<BufWriter<File>>;
+
+/// A map on its way into a file, and into 2 x 2 copies of it.
 struct Rows {
-    writer: RowWriter<BufWriter<File>>,
+    map: Writer,
+    sheet: Option<Writer>,
     /// The smallest and the largest number so far.
     range: [f32; 2],
 }
 
 impl Rows {
-    fn write(&mut self, map: &MapRows) -> Result<()> {
-        match map {
-            MapRows::Gray(raster) => self.writer.write_gray(raster.view())?,
-            MapRows::Color(raster) => self.writer.write_color(raster.view())?,
-            MapRows::Normal(raster) => self.writer.write_normals(raster.view())?,
-            MapRows::Packed(raster) => self.writer.write_packed(raster.view())?,
-        }
-        self.range = map.range(self.range);
-        Ok(())
+    fn new(job: &Job<'_>, file: &MapFile, size: [u32; 2]) -> Result<Self> {
+        let writer = |output, size| -> Result<Writer> {
+            let (content, encoding) = (content(file.kind), file.format.encoding());
+            Ok(RowWriter::new(
+                job.writer(output)?,
+                size,
+                content,
+                encoding,
+            )?)
+        };
+        let twice = size.map(|side| side.saturating_mul(2));
+        Ok(Self {
+            map: writer(file.output, size)?,
+            sheet: file.sheet.map(|sheet| writer(sheet, twice)).transpose()?,
+            range: [f32::INFINITY, f32::NEG_INFINITY],
+        })
     }
+
+    fn write(&mut self, map: &MapRows) -> Result<()> {
+        write_rows(&mut self.map, map)?;
+        self.range = map.range(self.range);
+        self.write_sheet(map)
+    }
+
+    fn write_sheet(&mut self, map: &MapRows) -> Result<()> {
+        match &mut self.sheet {
+            Some(sheet) => write_rows(sheet, &beside_itself(map)?),
+            None => Ok(()),
+        }
+    }
+}
+
+fn write_rows(writer: &mut Writer, map: &MapRows) -> Result<()> {
+    match map {
+        MapRows::Gray(raster) => writer.write_gray(raster.view())?,
+        MapRows::Color(raster) => writer.write_color(raster.view())?,
+        MapRows::Normal(raster) => writer.write_normals(raster.view())?,
+        MapRows::Packed(raster) => writer.write_packed(raster.view())?,
+    }
+    Ok(())
+}
+
+/// Rows with a copy of them to their right.
+fn beside_itself(map: &MapRows) -> Result<MapRows> {
+    let [width, height] = map.size();
+    let size = [width.saturating_mul(2), height];
+    Ok(match map {
+        MapRows::Gray(raster) => MapRows::Gray(repeat(raster, size)?),
+        MapRows::Color(raster) => MapRows::Color(repeat(raster, size)?),
+        MapRows::Normal(raster) => MapRows::Normal(repeat(raster, size)?),
+        MapRows::Packed(raster) => MapRows::Packed(repeat(raster, size)?),
+    })
 }
 
 fn content(kind: MapKind) -> Content {

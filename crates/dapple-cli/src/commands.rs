@@ -11,6 +11,7 @@ mod pups;
 mod recipe;
 mod synth;
 mod tile;
+mod watch;
 mod wavelet;
 mod worley;
 
@@ -23,6 +24,7 @@ use clap::Subcommand;
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     Bake(Box<bake::Args>),
+    Watch(Box<watch::Args>),
     Recipe(Box<recipe::Args>),
     Worley(Box<worley::Args>),
     Pups(Box<pups::Args>),
@@ -45,6 +47,7 @@ pub(crate) enum Command {
 pub(crate) fn run(command: &Command, context: &Context) -> Result<Exit> {
     match command {
         Command::Bake(args) => bake::run(args, context),
+        Command::Watch(args) => watch::run(args, context),
         Command::Recipe(args) => recipe::run(args, context),
         Command::Worley(args) => worley::run(args, context),
         Command::Pups(args) => pups::run(args, context),

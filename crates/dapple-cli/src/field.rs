@@ -6,6 +6,7 @@ use crate::encode::{Format, ramped_recipe};
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job, put_text};
 use crate::output::Target;
+use crate::progress::Progress;
 use anyhow::{Error, Result};
 use dapple::hash::Seed;
 use dapple::recipe::{
@@ -134,6 +135,7 @@ pub(crate) fn draw(
         Ok(MapFile {
             kind,
             output,
+            sheet: None,
             format,
         })
     };
@@ -145,12 +147,16 @@ pub(crate) fn draw(
         maps: vec![kind],
         memory: BakeMemory::Banded,
     };
+    let n_rows = args.region.map_or(args.size.0[1], |region| region.size[1]);
+    let n_rows = u64::from(n_rows) * files.len() as u64;
+    let progress = Progress::bar("drawing", n_rows, context);
     for (index, file) in (0_u32..).zip(&files) {
         let time = f64::from(index) / files.len() as f64;
         let plan = Plan::new(&recipe, &field.images, time).map_err(refused)?;
-        let mut baking = Bake::new(&plan, &bake).map_err(refused)?;
-        baking::write(&mut job, &mut baking, std::slice::from_ref(file))?;
+        let bake = Bake::new(&plan, &bake).map_err(refused)?;
+        baking::write(&mut job, bake, std::slice::from_ref(file), &progress)?;
     }
+    drop(progress);
     let told = Told {
         options,
         recipe: &recipe,

@@ -4,6 +4,7 @@ use crate::args::{ImageArgs, OutputArgs};
 use crate::encode::{Format, default_format, encode, ramped, range};
 use crate::error::{Exit, Hint, usage};
 use crate::output::{OutputIdx, Outputs, Target};
+use crate::progress::Style;
 use anyhow::{Context as _, Result};
 use dapple::tile::Map;
 use serde::Serialize;
@@ -17,6 +18,8 @@ use std::path::Path;
 pub(crate) struct Context {
     /// Whether nothing is said that was not asked for.
     pub(crate) quiet: bool,
+    /// How progress is shown.
+    pub(crate) progress: Style,
     /// The command line, as it was given.
     pub(crate) arguments: Vec<String>,
 }
@@ -71,11 +74,6 @@ impl<'a> Job<'a> {
             files: Vec::new(),
             sidecar: None,
         }
-    }
-
-    /// Whether nothing is said that was not asked for.
-    pub(crate) fn is_quiet(&self) -> bool {
-        self.context.quiet
     }
 
     /// Claims a file that is no text.
@@ -225,6 +223,10 @@ impl<'a> Job<'a> {
         }
         let is_file = |output| self.outputs.target(output) != &Target::Stdout;
         let files = self.files.iter().filter(|(output, _)| is_file(*output));
+        let told = match self.context.progress {
+            Style::Json => told_as_json,
+            Style::Auto | Style::Lines => told,
+        };
         let written: Vec<_> = files.map(|(_, record)| told(record)).collect();
         self.outputs.commit()?;
         for line in written.iter().filter(|_| !self.context.quiet) {
@@ -298,6 +300,12 @@ pub(crate) fn put_text(
 /// Prints to standard error. If nobody listens there, nobody is missed.
 pub(crate) fn eprintln_if_possible(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// What is said of a file to a program.
+fn told_as_json(record: &FileRecord) -> String {
+    serde_json::json!({ "wrote": record.file, "size": record.size, "format": record.format })
+        .to_string()
 }
 
 /// What is said of a file.

@@ -18,6 +18,7 @@ mod field;
 mod input;
 mod job;
 mod output;
+mod preview;
 mod progress;
 mod words;
 
@@ -48,6 +49,7 @@ fn run(cli: &Cli, arguments: &[String]) -> Result<Exit> {
         .context("the threads cannot be started")?;
     let context = Context {
         quiet: cli.common.quiet,
+        progress: cli.common.progress,
         arguments: arguments.to_vec(),
     };
     commands::run(&cli.command, &context)

@@ -1,51 +1,91 @@
-//! How far the work is, on standard error: only on a terminal, and only if it takes a while.
+//! How far the work is, on standard error: a bar on a terminal, and lines elsewhere, if it takes a while.
 
+use crate::job::{Context, eprintln_if_possible};
+use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
-use std::time::Duration;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
-/// How long nothing is shown.
+/// How long no bar is shown.
 const DELAY: Duration = Duration::from_millis(500);
 /// How often what is shown moves.
 const TICK: Duration = Duration::from_millis(120);
+/// The time between lines for people.
+const PERIOD: Duration = Duration::from_secs(5);
+/// The time between lines for programs.
+const PERIOD_JSON: Duration = Duration::from_millis(100);
+
+/// How progress is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Style {
+    /// A bar on a terminal, and lines elsewhere.
+    #[default]
+    Auto,
+    /// A line every few seconds.
+    Lines,
+    /// Lines of JSON, also for the files that were written.
+    Json,
+}
 
 /// A bar, or a spinner where nobody knows how long it takes. It goes away when this does.
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: ProgressBar,
+    label: &'static str,
+    style: Style,
+    /// When the next line is due, if there are lines.
+    next_line: Option<Mutex<Instant>>,
 }
 
 impl Progress {
     /// Shows that something is worked on.
-    pub(crate) fn spinner(label: &'static str, quiet: bool) -> Self {
+    pub(crate) fn spinner(label: &'static str, context: &Context) -> Self {
         let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
-        Self::new(ProgressBar::no_length(), style, label, quiet)
+        Self::new(ProgressBar::no_length(), style, label, context)
     }
 
     /// Shows how much of `length` is done.
-    pub(crate) fn bar(label: &'static str, length: u64, quiet: bool) -> Self {
+    pub(crate) fn bar(label: &'static str, length: u64, context: &Context) -> Self {
         let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {eta}");
-        Self::new(ProgressBar::new(length), style, label, quiet)
+        Self::new(ProgressBar::new(length), style, label, context)
     }
 
     /// Says how much is done by now.
     pub(crate) fn set(&self, done: u64) {
         self.bar.set_position(done);
+        let (Some(next), Some(length)) = (&self.next_line, self.bar.length()) else {
+            return;
+        };
+        let (now, is_json) = (Instant::now(), self.style == Style::Json);
+        let mut next = next.lock().unwrap_or_else(PoisonError::into_inner);
+        if now < *next && !(is_json && done >= length) {
+            return;
+        }
+        *next = now + if is_json { PERIOD_JSON } else { PERIOD };
+        eprintln_if_possible(&line(self.label, done, length, is_json));
+    }
+
+    /// Says that so much more is done.
+    pub(crate) fn add(&self, more: u64) {
+        self.set(self.bar.position() + more);
     }
 
     fn new(
         bar: ProgressBar,
-        style: Result<ProgressStyle, indicatif::style::TemplateError>,
+        template: Result<ProgressStyle, indicatif::style::TemplateError>,
         label: &'static str,
-        quiet: bool,
+        context: &Context,
     ) -> Self {
         bar.set_draw_target(ProgressDrawTarget::hidden());
         // The templates above are right; if they were not, a plain bar would do.
-        if let Ok(style) = style {
-            bar.set_style(style);
+        if let Ok(template) = template {
+            bar.set_style(template);
         }
         bar.set_message(label);
-        if !quiet && io::stderr().is_terminal() {
+        let style = context.progress;
+        let is_bar = style == Style::Auto && io::stderr().is_terminal();
+        if !context.quiet && is_bar {
             let bar = bar.clone();
             std::thread::spawn(move || {
                 std::thread::sleep(DELAY);
@@ -55,8 +95,26 @@ impl Progress {
                 }
             });
         }
-        Self { bar }
+        let first_line = match style {
+            Style::Json => Instant::now(),
+            Style::Auto | Style::Lines => Instant::now() + PERIOD,
+        };
+        Self {
+            bar,
+            label,
+            style,
+            next_line: (!context.quiet && !is_bar).then(|| Mutex::new(first_line)),
+        }
     }
+}
+
+/// What is said of the progress.
+fn line(label: &str, done: u64, length: u64, is_json: bool) -> String {
+    if is_json {
+        return serde_json::json!({ "step": label, "done": done, "of": length }).to_string();
+    }
+    let percent = done.saturating_mul(100) / length.max(1);
+    format!("{label}: {percent} %")
 }
 
 impl Drop for Progress {
@@ -67,16 +125,31 @@ impl Drop for Progress {
 
 #[cfg(test)]
 mod tests {
-    use super::Progress;
+    use super::{Progress, Style, line};
+    use crate::job::Context;
 
     #[test]
     fn a_bar_goes_to_its_end_and_is_finished_when_it_goes() {
-        let progress = Progress::bar("working", 10, true);
+        let context = Context {
+            quiet: true,
+            progress: Style::Auto,
+            arguments: Vec::new(),
+        };
+        let progress = Progress::bar("working", 10, &context);
         progress.set(7);
+        progress.add(1);
         let bar = progress.bar.clone();
-        assert_eq!((bar.position(), bar.is_finished()), (7, false));
+        assert_eq!((bar.position(), bar.is_finished()), (8, false));
         drop(progress);
         assert!(bar.is_finished(), "it went");
-        drop(Progress::spinner("waiting", true));
+        drop(Progress::spinner("waiting", &context));
+    }
+
+    #[test]
+    fn lines_say_how_much_is_done() {
+        assert_eq!(line("baking", 3, 4, false), "baking: 75 %");
+        assert_eq!(line("baking", 0, 0, false), "baking: 0 %");
+        let json = r#"{"done":3,"of":4,"step":"baking"}"#;
+        assert_eq!(line("baking", 3, 4, true), json);
     }
 }

@@ -1,17 +1,24 @@
-//! `dapple bake`: the maps of a recipe.
+//! `dapple bake`: the maps of recipes.
+
+mod recipes;
 
 use crate::args::{OutputArgs, Region, Size, seed};
 use crate::baking::{self, MapFile, advise, read_images, read_recipe};
 use crate::encode::Format;
-use crate::error::{Exit, Hint};
-use crate::job::{Context, Job};
+use crate::error::{Exit, Hint, report as report_error, usage};
+use crate::job::{Context, Job, eprintln_if_possible};
+use crate::output::OutputIdx;
+use crate::preview::{self, Thing};
+use crate::progress::Progress;
 use crate::words::{Word, nearest, with_underscores};
-use anyhow::Result;
+use anyhow::{Context as _, Result};
 use dapple::color::NormalY;
 use dapple::hash::Seed;
 use dapple::recipe::{Bake, BakeMemory, BakeOptions, MapKind, Plan, Recipe};
+use dapple::tile::Map;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 const EXAMPLES: &str = "\
@@ -23,6 +30,8 @@ Examples:
   dapple bake marble --maps albedo -o marble.png --size 1024x512
   dapple bake clouds --maps height --size 4096 --region 0,0,512,512 -o part.exr
   dapple bake craters --maps height --size 4096x256 --banded -o wide.exr
+  dapple bake rock ice marble -o all/ --size 256 --preview
+  dapple bake 'my-*.toml' --keep-going --maps albedo --sheet -o mine/
 
 `dapple recipe --list` names the built-in recipes, and `dapple recipe rock` prints one, to
 begin your own with.
@@ -32,13 +41,14 @@ a height of 1 stands for. Normals point out of the surface; occlusion is 1 where
 sky is seen; curvature is 0.5 where it is flat. Albedo is sRGB in PNG and linear in EXR, and
 everything else is linear in both.";
 
-/// Bake the maps of a material from a recipe: height, normal, ao, curvature, albedo, roughness, metallic, orm.
-#[derive(clap::Args, Debug, Serialize)]
+/// Bake the maps of materials from recipes: height, normal, ao, curvature, albedo, roughness, metallic, orm.
+#[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// A built-in recipe, or a file in TOML or JSON; `-` is standard input.
-    #[arg(value_name = "RECIPE")]
-    recipe: String,
+    /// Built-in recipes, or files in TOML or JSON; `-` is standard input. A pattern such as 'rocks/*.toml' stands for the files
+    /// that it matches, or for built-in recipes if there are none.
+    #[arg(value_name = "RECIPE", required = true)]
+    recipes: Vec<String>,
 
     /// Columns and rows of the tile, in pixels.
     #[arg(long, value_name = "WxH", default_value = "1024")]
@@ -72,6 +82,18 @@ pub(crate) struct Args {
     /// Keep only some rows in memory, however large the tile is. Refused where a node sees the whole tile.
     #[arg(long)]
     banded: bool,
+
+    /// Go on with the others if one of several recipes cannot be baked.
+    #[arg(long)]
+    keep_going: bool,
+
+    /// Write 2 x 2 copies of each map, too, as `NAME_MAP_2x2`.
+    #[arg(long, help_heading = "Output")]
+    sheet: bool,
+
+    /// Write a picture of the material in light, too, as `NAME_preview.png`: on a plane of 2 x 2 tiles or on a sphere.
+    #[arg(long, value_enum, value_name = "THING", num_args = 0..=1, require_equals = true, default_missing_value = "plane", help_heading = "Output")]
+    preview: Option<Thing>,
 
     /// The format; by default PNG with 16 bits, or EXR where the output ends in `.exr`.
     #[arg(long, value_enum, value_name = "FORMAT", help_heading = "Output")]
@@ -119,29 +141,90 @@ impl Serialize for Maps {
     }
 }
 
+/// A recipe with what its images are relative to.
+struct Work {
+    recipe: Recipe,
+    folder: PathBuf,
+}
+
+/// The files of a recipe.
+struct Claimed {
+    maps: Vec<MapFile>,
+    preview: Option<(OutputIdx, Format)>,
+}
+
 /// Runs it.
 ///
 /// # Errors
 ///
 /// Whatever went wrong.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
-    let (mut recipe, folder) = read_recipe(&args.recipe)?;
-    args.change(&mut recipe);
-    let mut job = Job::new(context, "bake", &args.files);
-    let files = claim(args, &recipe, &mut job)?;
-    let images = read_images(&recipe, folder)?;
-    let plan = Plan::new(&recipe, &images, 0.0).map_err(advise)?;
-    let mut bake =
-        Bake::new(&plan, &args.options()).map_err(|error| advise(error).wrong_value())?;
-    baking::write(&mut job, &mut bake, &files)?;
-    job.finish(
-        &Told {
-            args,
-            recipe: &recipe,
-        },
-        report(&recipe),
-    )?;
-    Ok(Exit::Done)
+    let names = recipes::expanded(&args.recipes)?;
+    let files = args.files_for(names.len())?;
+    let mut batch = Batch::new(names.len(), args.keep_going, context);
+    let mut works = Vec::new();
+    for name in &names {
+        // Whatever is in the way of any is said before the work begins.
+        let work = Work::read(name, args).and_then(|work| {
+            claim(
+                args,
+                &files,
+                &work.recipe,
+                &mut Job::new(context, "bake", &files),
+            )?;
+            Ok((name, work))
+        });
+        works.extend(batch.checked(name, work)?);
+    }
+    for (index, (name, work)) in works.iter().enumerate() {
+        let is_same = |(_, other): &(&String, Work)| other.recipe.name == work.recipe.name;
+        if works[..index].iter().any(is_same) {
+            let message = format!(
+                "{name} and another recipe are both called {}",
+                work.recipe.name
+            );
+            return Err(usage(message).hint("give each a `name`"));
+        }
+    }
+    let n_rows = u64::from(args.n_rows()) * works.len() as u64;
+    let progress = Progress::bar("baking", n_rows, context);
+    for (index, (name, work)) in (0..).zip(&works) {
+        let baked = work.bake(args, &files, Job::new(context, "bake", &files), &progress);
+        batch.checked(name, baked)?;
+        progress.set(u64::from(args.n_rows()) * (index + 1));
+    }
+    drop(progress);
+    Ok(batch.exit())
+}
+
+impl Work {
+    fn read(name: &str, args: &Args) -> Result<Self> {
+        let (mut recipe, folder) = read_recipe(name)?;
+        args.change(&mut recipe);
+        let folder = folder.to_owned();
+        Ok(Self { recipe, folder })
+    }
+
+    fn bake(
+        &self,
+        args: &Args,
+        files: &OutputArgs,
+        mut job: Job<'_>,
+        progress: &Progress,
+    ) -> Result<()> {
+        let recipe = &self.recipe;
+        let claimed = claim(args, files, recipe, &mut job)?;
+        let images = read_images(recipe, &self.folder)?;
+        let plan = Plan::new(recipe, &images, 0.0).map_err(advise)?;
+        let bake =
+            Bake::new(&plan, &args.options()).map_err(|error| advise(error).wrong_value())?;
+        baking::write(&mut job, bake, &claimed.maps, progress)?;
+        if let (Some((output, format)), Some(thing)) = (claimed.preview, args.preview) {
+            let picture = preview::picture(recipe, &images, thing)?;
+            job.write_map(output, &Map::Color(picture), format)?;
+        }
+        job.finish(&Told { args, recipe }, report(recipe))
+    }
 }
 
 /// The options and the recipe that they were used with, for the JSON file.
@@ -165,6 +248,70 @@ fn report(recipe: &Recipe) -> Value {
 }
 
 impl Args {
+    /// The only recipe, which has to be a file.
+    ///
+    /// # Errors
+    ///
+    /// If it is none.
+    pub(super) fn only_file(&self) -> Result<&Path> {
+        match self.recipes.as_slice() {
+            [recipe] if Path::new(recipe).is_file() => Ok(Path::new(recipe)),
+            _ => Err(usage("only a single recipe in a file can be watched")
+                .hint("`dapple recipe NAME -o my.toml` writes one to begin with")),
+        }
+    }
+
+    /// The size, after one like it with a longer side of `small` pixels, if that is less.
+    pub(super) fn sizes(&self, small: u32) -> Vec<Size> {
+        let longer = self.size.0[0].max(self.size.0[1]);
+        if longer <= small || self.region.is_some() {
+            return vec![self.size];
+        }
+        let side =
+            |side: u32| (u64::from(side) * u64::from(small) / u64::from(longer)).max(1) as u32;
+        vec![Size(self.size.0.map(side)), self.size]
+    }
+
+    /// Whether files that are there are replaced.
+    pub(super) fn may_replace(&self) -> bool {
+        self.files.force
+    }
+
+    /// The same bake in another size.
+    pub(super) fn at(&self, size: Size, may_replace: bool) -> Self {
+        let mut args = Self {
+            size,
+            ..self.clone()
+        };
+        args.files.force = may_replace;
+        args
+    }
+
+    /// The outputs of so many recipes, which need a folder if there are several.
+    fn files_for(&self, n_recipes: usize) -> Result<OutputArgs> {
+        let mut files = self.files.clone();
+        if n_recipes == 1 || files.output.is_none() {
+            return Ok(files);
+        }
+        if files.name.is_some() || matches!(files.json, Some(Some(_))) {
+            let message =
+                format!("--name and --json=FILE are for one recipe, and there are {n_recipes}");
+            return Err(usage(message).hint("their files are called after their names"));
+        }
+        // With a slash at its end it is a folder for the files of each.
+        let folder = files.folder(n_recipes).map(|folder| folder.join(""));
+        files.output = Some(folder.ok_or_else(|| {
+            usage("several recipes need a folder").hint("let -o end with a slash, as in -o out/")
+        })?);
+        Ok(files)
+    }
+
+    /// How many rows of maps are baked for a recipe.
+    fn n_rows(&self) -> u32 {
+        let rows = self.region.map_or(self.size.0[1], |region| region.size[1]);
+        if self.sheet { 2 * rows } else { rows }
+    }
+
     /// Puts what the command line says into the recipe.
     fn change(&self, recipe: &mut Recipe) {
         if let Some(seed) = self.seed {
@@ -192,22 +339,85 @@ impl Args {
     }
 }
 
-/// Claims a file for each map: the output itself for a single map, unless that is a folder, and else `NAME_MAP.png`.
-fn claim(args: &Args, recipe: &Recipe, job: &mut Job<'_>) -> Result<Vec<MapFile>> {
-    let names: Vec<_> = args.maps.0.iter().map(|kind| kind.name()).collect();
+/// Claims a file for each map, and for all that goes with them: the output itself for a single one, unless that is a folder,
+/// and else `NAME_MAP.png`.
+fn claim(args: &Args, files: &OutputArgs, recipe: &Recipe, job: &mut Job<'_>) -> Result<Claimed> {
+    let mut parts = Vec::new();
+    for kind in &args.maps.0 {
+        parts.push(kind.name().to_owned());
+        parts.extend(args.sheet.then(|| format!("{}_2x2", kind.name())));
+    }
+    parts.extend(args.preview.map(|_| "preview".to_owned()));
     let ending = args.format.map_or("png", Format::ending);
-    let targets = args.files.targets(&recipe.name, &names, ending)?;
-    let mut files = Vec::new();
-    for (&kind, target) in args.maps.0.iter().zip(&targets.files) {
+    let targets = files.targets(&recipe.name, &parts, ending)?;
+    let mut outputs = Vec::new();
+    for target in &targets.files {
         let format = baking::format(args.format, target)?;
-        files.push(MapFile {
-            kind,
-            output: job.claim(target)?,
-            format,
-        });
+        outputs.push((job.claim(target)?, format));
     }
     job.claim_sidecar(&targets.main)?;
-    Ok(files)
+    let mut outputs = outputs.into_iter();
+    let mut maps = Vec::new();
+    for &kind in &args.maps.0 {
+        let map = outputs.next();
+        let sheet = if args.sheet { outputs.next() } else { None };
+        maps.extend(map.map(|(output, format)| MapFile {
+            kind,
+            output,
+            sheet: sheet.map(|(output, _)| output),
+            format,
+        }));
+    }
+    let preview = outputs.next();
+    Ok(Claimed { maps, preview })
+}
+
+/// What is left of several recipes where some cannot be baked.
+struct Batch<'a> {
+    n_recipes: usize,
+    n_failed: usize,
+    keep_going: bool,
+    context: &'a Context,
+}
+
+impl<'a> Batch<'a> {
+    fn new(n_recipes: usize, keep_going: bool, context: &'a Context) -> Self {
+        Self {
+            n_recipes,
+            n_failed: 0,
+            keep_going,
+            context,
+        }
+    }
+
+    /// What a recipe gave, or nothing after an error that was told and does not end the others.
+    fn checked<T>(&mut self, name: &str, result: Result<T>) -> Result<Option<T>> {
+        if self.n_recipes == 1 {
+            return result.map(Some);
+        }
+        match result.with_context(|| format!("{name} was not baked")) {
+            Ok(value) => Ok(Some(value)),
+            Err(error) if self.keep_going => {
+                report_error(&error, &self.context.arguments);
+                self.n_failed += 1;
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Says how many were baked.
+    fn exit(&self) -> Exit {
+        if self.n_recipes > 1 && !self.context.quiet {
+            let n_baked = self.n_recipes - self.n_failed;
+            eprintln_if_possible(&format!("baked {n_baked} of {} recipes", self.n_recipes));
+        }
+        if self.n_failed > 0 {
+            Exit::Failed
+        } else {
+            Exit::Done
+        }
+    }
 }
 
 #[cfg(test)]

@@ -100,7 +100,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     }
     let has_heights = materials.iter().any(|material| material.height.is_some());
     let how = args.mixing.blend(tile.is_some(), has_heights)?;
-    let progress = Progress::spinner("blending", context.quiet);
+    let progress = Progress::spinner("blending", context);
     let maps = match &tile {
         Some(tile) => blend_by_tile(&layers, tile, &how),
         None => blend(&layers, &how),

@@ -77,7 +77,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         contrast: args.contrast,
         wrap: args.wrap.flags().map(wrap),
     };
-    let progress = Progress::spinner("looking for features", context.quiet);
+    let progress = Progress::spinner("looking for features", context);
     let map = match &loaded.map {
         Map::Value(values) => options.apply(values).wrong_value()?,
         Map::Color(colors) => options.apply_color(colors).wrong_value()?,

@@ -113,7 +113,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         Format::Csv | Format::Json => job.claim_text(&target)?,
     };
     job.claim_sidecar(&target)?;
-    let progress = Progress::spinner("scattering", context.quiet);
+    let progress = Progress::spinner("scattering", context);
     let scattered = args.scatter.scatter()?;
     let report = if args.report || args.output.json.is_some() {
         Some(report::Report::of(&scattered)?)

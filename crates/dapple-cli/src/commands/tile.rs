@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     };
     let mut job = Job::new(context, "tile", &args.image.files);
     let sources = sources(args, &mut job)?;
-    let progress = Progress::spinner("making it repeat", context.quiet);
+    let progress = Progress::spinner("making it repeat", context);
     let maps: Vec<Map> = sources
         .iter()
         .map(|source| source.loaded.map.clone())

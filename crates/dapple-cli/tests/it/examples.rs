@@ -5,8 +5,9 @@
 use crate::support::{Folder, assert_done, stdout};
 use std::fs;
 
-const SUBCOMMANDS: [&str; 13] = [
+const SUBCOMMANDS: [&str; 14] = [
     "bake",
+    "watch",
     "recipe",
     "worley",
     "pups",

@@ -6,6 +6,7 @@
 )]
 
 mod bakes;
+mod batch;
 mod examples;
 mod files;
 mod interrupt;

@@ -26,7 +26,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
         maps,
         exemplar,
     } = args.read()?;
-    let progress = Progress::bar("synthesizing", STEPS.into(), context.quiet);
+    let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let texture = synthesize_plane_with(
         &exemplar,
         args.plane.size.map_or(SIZE, |size| size.0),

@@ -58,16 +58,16 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
         Product::Ply => None,
         _ => Some(atlas(args, &surface, &model, &repair)?),
     };
-    let spinner = Progress::spinner("scattering sites", context.quiet);
+    let spinner = Progress::spinner("scattering sites", context);
     let sites = args.surface.sites(&args.matching);
     let synthesizer = Synthesizer::new(surface, &directions(args)?, &sites).map_err(advise)?;
     drop(spinner);
-    let progress = Progress::bar("synthesizing", STEPS.into(), context.quiet);
+    let progress = Progress::bar("synthesizing", STEPS.into(), context);
     let options = args.matching.options(&args.surface);
     let texture = synthesizer.synthesize_with(&input.exemplar, &options, shown(&progress));
     let texture = texture.map_err(advise)?;
     drop(progress);
-    let spinner = Progress::spinner("baking", context.quiet);
+    let spinner = Progress::spinner("baking", context);
     write(
         args,
         &claimed,

@@ -1,0 +1,41 @@
+//! The recipes that patterns such as `rocks/*.toml` stand for, also where a shell leaves them as they are.
+
+use crate::error::{Hint, usage};
+use anyhow::{Context as _, Result};
+use dapple::recipe::Recipe;
+use glob::{Pattern, glob};
+use std::path::Path;
+
+/// The names, with patterns replaced by what they match: files, or built-in recipes if there are none.
+///
+/// # Errors
+///
+/// If a pattern is none, or matches nothing.
+pub(super) fn expanded(names: &[String]) -> Result<Vec<String>> {
+    let mut all = Vec::new();
+    for name in names {
+        if !name.contains(['*', '?', '[']) || Path::new(name).exists() {
+            all.push(name.clone());
+            continue;
+        }
+        let pattern = Pattern::new(name)
+            .context(format!("{name} is no pattern"))
+            .wrong_value()?;
+        let n_before = all.len();
+        for path in glob(name)? {
+            let path = path?;
+            if path.is_file() {
+                all.push(path.to_string_lossy().into_owned());
+            }
+        }
+        if all.len() == n_before {
+            let builtin = Recipe::builtin_names().filter(|name| pattern.matches(name));
+            all.extend(builtin.map(str::to_owned));
+        }
+        if all.len() == n_before {
+            let message = format!("no file and no built-in recipe matches {name}");
+            return Err(usage(message).hint("`dapple recipe --list` names the built-in recipes"));
+        }
+    }
+    Ok(all)
+}

@@ -1,0 +1,144 @@
+//! A baked material in light: on a plane, seen at a slant, or on a ball.
+
+use crate::baking::advise;
+use anyhow::Result;
+use clap::ValueEnum;
+use dapple::color::{LinearRgb, NormalY};
+use dapple::points::glam::{DVec2, DVec3, Vec3};
+use dapple::preview::{
+    Camera, Environment, Light, Material, Mirror, Object, Scene, Shape, Sky, Supersampling, Surface,
+};
+use dapple::raster::{Raster, Wrap};
+use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
+use serde::Serialize;
+
+/// The side of the picture, in pixels.
+const SIDE: u32 = 512;
+/// The pixels along the longer side of the maps that it shows.
+const TILE: u32 = 512;
+
+/// What the material is on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Thing {
+    /// A plane of 2 x 2 tiles.
+    Plane,
+    /// A ball.
+    Sphere,
+}
+
+/// The maps of a tile.
+struct Maps {
+    normal: Raster<Vec3>,
+    albedo: Raster<LinearRgb>,
+    /// Occlusion, roughness and metallic.
+    orm: Raster<Vec3>,
+    /// How many tiles there are along u and v.
+    tiles: DVec2,
+}
+
+/// The picture of a recipe on a thing.
+///
+/// # Errors
+///
+/// What the recipe refuses.
+pub(crate) fn picture(recipe: &Recipe, images: &Images, thing: Thing) -> Result<Raster<LinearRgb>> {
+    let aspect = recipe.extent[0] / recipe.extent[1];
+    let (shape, camera, tiles) = match thing {
+        Thing::Plane => {
+            let half = [aspect.min(1.0), (1.0 / aspect).min(1.0)];
+            let camera = Camera::look_at(DVec3::new(0.0, 3.1, 1.9), DVec3::new(0.0, 0.0, 0.06));
+            // u and v are units of the plane: the rectangle is 2 wide, and so is the picture of 2 tiles.
+            let tiles = DVec2::new(1.0 / half[0], 1.0 / half[1]);
+            (Shape::rectangle(half[0], half[1]), camera, tiles)
+        }
+        Thing::Sphere => {
+            let camera = Camera::look_at(DVec3::new(0.0, 0.6, 3.2), DVec3::ZERO);
+            // Around a ball is twice as far as from pole to pole; the number of tiles around it is whole.
+            let around = (2.0 / aspect).round().max(1.0);
+            (Shape::sphere(1.0), camera, DVec2::new(around, 1.0))
+        }
+    };
+    let maps = Maps::bake(recipe, images, tiles)?;
+    let sky = Sky {
+        nadir: LinearRgb::gray(0.03),
+        horizon: LinearRgb::gray(0.5),
+        zenith: LinearRgb::new(0.25, 0.35, 0.55),
+    };
+    let scene = Scene::new(camera)
+        .with_object(Object::new(shape, move |surface| maps.material(surface)))
+        .with_light(Light::directional(
+            DVec3::new(-1.0, 1.3, 0.6),
+            LinearRgb::gray(0.95),
+        ))
+        .with_ambient(LinearRgb::gray(0.18))
+        .with_environment(Environment::Sky(sky));
+    Ok(scene.render([SIDE; 2], Supersampling(3))?)
+}
+
+impl Maps {
+    fn bake(recipe: &Recipe, images: &Images, tiles: DVec2) -> Result<Self> {
+        let mut recipe = recipe.clone();
+        recipe.material.normal_y = NormalY::OpenGl;
+        let longer = recipe.extent[0].max(recipe.extent[1]);
+        let side = |extent: f64| (extent / longer * f64::from(TILE)).round().max(1.0) as u32;
+        let size = recipe.extent.map(side);
+        let plan = Plan::new(&recipe, images, 0.0).map_err(advise)?;
+        let options = BakeOptions {
+            size,
+            maps: vec![MapKind::Normal, MapKind::Albedo, MapKind::Orm],
+            ..BakeOptions::default()
+        };
+        let (mut normal, mut albedo, mut orm) = (Vec::new(), Vec::new(), Vec::new());
+        for band in Bake::new(&plan, &options).map_err(advise)? {
+            for (_, rows) in band.map_err(advise)?.maps {
+                match rows {
+                    MapRows::Normal(rows) => {
+                        let rows = rows.into_pixels().into_iter();
+                        normal.extend(rows.map(|normal| Vec3::from(normal.to_array())));
+                    }
+                    MapRows::Color(rows) => albedo.extend(rows.into_pixels()),
+                    MapRows::Packed(rows) => {
+                        orm.extend(rows.into_pixels().into_iter().map(Vec3::from));
+                    }
+                    _ => {}
+                }
+            }
+        }
+        Ok(Self {
+            normal: Raster::from_vec(size, normal)?,
+            albedo: Raster::from_vec(size, albedo)?,
+            orm: Raster::from_vec(size, orm)?,
+            tiles,
+        })
+    }
+
+    /// What a place of a thing looks like.
+    fn material(&self, surface: &Surface) -> Material {
+        let uv = surface.uv().unwrap_or_default() * self.tiles;
+        let wrap = [Wrap::Repeat; 2];
+        let normal = self.normal.sample_bilinear(uv, wrap);
+        let color = self.albedo.sample_bilinear(uv, wrap);
+        let [free, roughness, metallic] = self.orm.sample_bilinear(uv, wrap).to_array();
+        let gloss = 1.0 - roughness.clamp(0.1, 1.0);
+        let rough = roughness.clamp(0.1, 1.0) * roughness.clamp(0.1, 1.0);
+        let [right, up] = directions(surface);
+        // A normal is level at the edge of a hole; such slopes are cut off.
+        let slope = normal.as_dvec3() / f64::from(normal.z.max(0.05));
+        Material::matte(color * free)
+            .with_bump(-slope.x * right - slope.y * up)
+            .with_specular(gloss * (0.1 + 0.6 * metallic), 2.0 / (rough * rough))
+            .with_mirror(Mirror::Constant(metallic * gloss * gloss * 0.6))
+    }
+}
+
+/// Where right and up of the maps point at a place of a thing.
+fn directions(surface: &Surface) -> [DVec3; 2] {
+    let at = surface.position;
+    let outward = DVec2::new(at.x, at.z).length();
+    if surface.normal.y.abs() > 0.999_999 || outward == 0.0 {
+        return [DVec3::X, -DVec3::Z];
+    }
+    let right = DVec3::new(at.z, 0.0, -at.x) / outward;
+    [right, surface.normal.cross(right)]
+}
