@@ -58,7 +58,9 @@ fn a_color_is_refused_where_a_number_is_needed() {
 
 #[test]
 fn a_giraffe_of_the_paper_says_so() {
-    let code = rust("[nodes]\na = { pups = { space_giraffe = { spots = \"literal\", pairs = [5, 8] } } }\n");
+    let code = rust(
+        "[nodes]\na = { pups = { space_giraffe = { spots = \"literal\", pairs = [5, 8] } } }\n",
+    );
     assert!(
         code.contains("spots: pups::Spots::Literal") && code.contains("pairs: [5, 8]"),
         "{code}"
