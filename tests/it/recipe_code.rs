@@ -2,6 +2,11 @@
 //!
 //! `DAPPLE_BLESS=1 cargo test -p dapple-tests recipe_code` writes the files anew.
 #![expect(clippy::disallowed_methods, reason = "the code lies in files")]
+#![expect(
+    clippy::too_many_lines,
+    clippy::needless_update,
+    reason = "printed code is one function for all nodes, and ends every set of options with the defaults"
+)]
 
 use dapple::raster::{Field, glam::DVec2};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
