@@ -67,11 +67,11 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
         Panel::color("sweep distance", lit(mesh, &TORI.view, [size; 2], sweep)?),
         Panel::color(
             "the field from behind",
-            lit(mesh, &TORI.view.from_behind(), [size; 2], field)?,
+            lit(mesh, &TORI.view.opposite(), [size; 2], field)?,
         ),
         Panel::color(
             "sweep distance from behind",
-            lit(mesh, &TORI.view.from_behind(), [size; 2], sweep)?,
+            lit(mesh, &TORI.view.opposite(), [size; 2], sweep)?,
         ),
     ])
 }

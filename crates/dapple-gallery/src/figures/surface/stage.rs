@@ -19,7 +19,7 @@ pub(crate) struct View {
 
 impl View {
     /// The far side: from just as far behind the target, below where the eye was above.
-    pub(crate) fn from_behind(self) -> Self {
+    pub(crate) fn opposite(self) -> Self {
         Self {
             eye: self.target * 2.0 - self.eye,
             ..self
