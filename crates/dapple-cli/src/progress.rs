@@ -53,6 +53,9 @@ impl Progress {
 
     /// Says how much is done by now.
     pub(crate) fn set(&self, done: u64) {
+        if done > 0 && done == self.bar.position() {
+            return;
+        }
         self.bar.set_position(done);
         let (Some(next), Some(length)) = (&self.next_line, self.bar.length()) else {
             return;

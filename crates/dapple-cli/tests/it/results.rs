@@ -436,14 +436,8 @@ fn a_gray_photograph_keeps_its_codes_on_a_mesh() {
         };
         let codes = colors.iter().flat_map(|color| color.to_srgb::<u8>());
         // Between sites, codes are mixed.
-        assert!(
-            codes.clone().all(|code| (91..=131).contains(&code)),
-            "{name}"
-        );
-        let n_codes = codes.clone().count() as f64;
-        let mean = codes.map(f64::from).sum::<f64>() / n_codes;
-        // The squares need not be used equally often.
-        assert!((mean - 111.0).abs() < 5.0, "{name} has a mean of {mean}");
+        assert_eq!(codes.clone().min(), Some(91), "{name}");
+        assert_eq!(codes.max(), Some(131), "{name}");
     }
 }
 
