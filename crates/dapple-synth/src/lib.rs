@@ -67,8 +67,8 @@
 //!
 //! * The neighborhood on the coarser level is centered at exactly half of the coordinates ([`CoarserCenter`]). Rounded
 //!   down, four pixels have the same one, and the first of them always wins.
-//! * A match may be worse if it goes on with what a neighbor took, unless the exemplar is regular ([`Coherence::Auto`]).
-//!   The least difference alone tends to repeat smooth parts of photographs and to blur away their detail.
+//! * A match may be worse if it goes on with what a neighbor took ([`Coherence`]). The least difference alone
+//!   tends to repeat smooth parts of the exemplar and to blur away structure like bricks.
 //! * Pixels that were used cost more on the coarsest level, and those near an edge of the exemplar are used, too
 //!   ([`Options::evenness`]). The least difference alone leaves out a third of the exemplar and most colors that are rare.
 //! * The rows and columns of a neighborhood turn as the field around its site does ([`Axes`]). Straight on, features that

@@ -30,8 +30,7 @@ pub struct Options {
     pub center: CoarserCenter,
     /// Which way neighborhoods on surfaces go on away from their site; by default as the field does.
     pub axes: Axes,
-    /// How much worse a match may be that continues the source of a neighboring site; by default as the exemplar is
-    /// regular or not.
+    /// How much worse a match may be that continues the source of a neighboring site; by default a factor of 2.
     pub coherence: Coherence,
     /// How evenly the pixels of the exemplar are used, from 0 to 1000, by default 1.
     ///
@@ -104,7 +103,7 @@ impl Default for Options {
             schedule: None,
             center: CoarserCenter::Exact,
             axes: Axes::Followed,
-            coherence: Coherence::Auto,
+            coherence: Coherence::Factor(2.0),
             evenness: 1.0,
         }
     }

@@ -39,8 +39,7 @@ pub(crate) struct OwnArguments {
     #[arg(long, value_name = "N", default_value_t = 3, requires = "mesh")]
     levels: usize,
 
-    /// How much worse a match may be that continues its neighbors; by default auto: 0, as in the paper, for a regular
-    /// exemplar, and 2 for any other.
+    /// How much worse a match may be that continues its neighbors; 0 as in the paper.
     #[arg(long, value_name = "auto|K", requires = "mesh")]
     coherence: Option<Coherence>,
 }
