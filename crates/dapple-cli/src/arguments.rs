@@ -112,7 +112,7 @@ fn advised(mut error: clap::Error, words: &[OsString]) -> clap::Error {
     };
     let is_named = |subcommand: &&str| words.iter().skip(1).any(|word| word == *subcommand);
     let advice = ELSEWHERE.iter().find(|(subcommands, option, _)| {
-        option == unknown && subcommands.iter().any(|name| is_named(&name))
+        option == unknown && subcommands.iter().any(&is_named)
     });
     if let Some((_, _, advice)) = advice {
         let advice = vec![StyledStr::from(format!("take {advice}"))];

@@ -1,5 +1,10 @@
 //! How far the work is, on standard error: a bar on a terminal, and lines elsewhere, if it takes a while.
 
+#![expect(
+    clippy::disallowed_methods,
+    reason = "lines come at most so often, and no value depends on it"
+)]
+
 use crate::job::{Context, eprintln_if_possible};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};

@@ -278,7 +278,7 @@ fn split(text: &str) -> (String, Vec<(String, String)>) {
     for part in parts {
         match part.split_once('=') {
             Some((key, value)) if is_key(key) => {
-                pairs.push((with_underscores(key), value.to_owned()))
+                pairs.push((with_underscores(key), value.to_owned()));
             }
             _ => {
                 let before = pairs.last_mut().map_or(&mut path, |(_, value)| value);

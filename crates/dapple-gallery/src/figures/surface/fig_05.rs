@@ -20,7 +20,7 @@ pub(super) const FIGURE: Figure = Figure {
         ("levels", "3: ray, octopus, bunny; 4: tori, zebra, elephant"),
         (
             "coherence, evenness",
-            "2 and 1, the defaults; 0 in the paper",
+            "2 for the ray, whose squares run together with 0, else auto (0, and 2 for puzzle pieces); 1; 0 in the paper",
         ),
         ("texture map", "two pixels of the map for one of the figure"),
     ],

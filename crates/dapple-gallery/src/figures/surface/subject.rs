@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
 use dapple_synth::mesh::{HierarchyOptions, Mesh, MeshError, models};
-use dapple_synth::{Direction, Options};
+use dapple_synth::{Coherence, Direction};
 use glam::DVec3;
 
 /// The size of a figure from which on a subject has as many sites as the paper's.
@@ -29,6 +29,7 @@ pub(crate) struct Subject {
     /// Sites of the finest level at full size, and levels: those of table 1.
     n_sites: usize,
     n_levels: usize,
+    coherence: Coherence,
     /// Positions, and the directions there that are the texture's down.
     directions: &'static [[DVec3; 2]],
     pub(crate) view: View,
@@ -44,6 +45,7 @@ pub(crate) const RAY: Subject = Subject {
     exemplar: "wiggly checker",
     n_sites: 64_000,
     n_levels: 3,
+    coherence: Coherence::Factor(2.0),
     directions: &[
         [DVec3::new(0.15, 0.1, 0.75), DVec3::new(0.9, 0.0, -0.6)],
         [DVec3::new(-0.15, 0.1, 0.75), DVec3::new(-0.9, 0.0, -0.6)],
@@ -67,6 +69,7 @@ const OCTOPUS: Subject = Subject {
     exemplar: "suckers",
     n_sites: 256_000,
     n_levels: 3,
+    coherence: Coherence::Auto,
     directions: &[
         [DVec3::new(0.0, 0.5, 0.4), DVec3::NEG_Y],
         [DVec3::new(0.0, 0.5, -0.6), DVec3::NEG_Y],
@@ -93,6 +96,7 @@ const BUNNY: Subject = Subject {
     exemplar: "scales",
     n_sites: 256_000,
     n_levels: 3,
+    coherence: Coherence::Auto,
     directions: &[
         [models::bunny::LEFT_EAR, DVec3::NEG_Y],
         [DVec3::new(-0.25, 1.05, -0.05), DVec3::NEG_Y],
@@ -117,6 +121,7 @@ pub(crate) const TORI: Subject = Subject {
     exemplar: "woven hooks",
     n_sites: 256_000,
     n_levels: 4,
+    coherence: Coherence::Auto,
     directions: &[
         [DVec3::new(0.55, 0.55, 0.2), DVec3::new(-1.0, 1.0, 0.0)],
         [DVec3::new(-0.55, -0.55, 0.2), DVec3::new(1.0, -1.0, 0.0)],
@@ -139,6 +144,7 @@ const ZEBRA: Subject = Subject {
     exemplar: "text",
     n_sites: 256_000,
     n_levels: 4,
+    coherence: Coherence::Auto,
     directions: &[
         [models::zebra::BACK, DVec3::X],
         [DVec3::new(0.4, 0.0, 0.0), DVec3::NEG_Y],
@@ -159,6 +165,7 @@ const ELEPHANT: Subject = Subject {
     exemplar: "puzzle pieces",
     n_sites: 256_000,
     n_levels: 4,
+    coherence: Coherence::Auto,
     directions: &[
         [models::elephant::BACK, DVec3::NEG_Z],
         [models::elephant::FOREHEAD, DVec3::new(0.0, -1.0, 0.5)],
@@ -215,7 +222,7 @@ impl Subject {
             edges,
             directions: self.directions(),
             sites: self.sites(size),
-            coherence: Options::default().coherence,
+            coherence: self.coherence,
             map_side: (TEXELS * size).max(512),
         };
         job.run()
