@@ -111,9 +111,9 @@ fn advised(mut error: clap::Error, words: &[OsString]) -> clap::Error {
         _ => return error,
     };
     let is_named = |subcommand: &&str| words.iter().skip(1).any(|word| word == *subcommand);
-    let advice = ELSEWHERE.iter().find(|(subcommands, option, _)| {
-        option == unknown && subcommands.iter().any(&is_named)
-    });
+    let advice = ELSEWHERE
+        .iter()
+        .find(|(subcommands, option, _)| option == unknown && subcommands.iter().any(&is_named));
     if let Some((_, _, advice)) = advice {
         let advice = vec![StyledStr::from(format!("take {advice}"))];
         error.remove(ContextKind::SuggestedArg);

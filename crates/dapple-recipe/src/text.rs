@@ -121,6 +121,10 @@ fn text_error(message: &str) -> RecipeError {
 
 /// The message with the names of Rust types, if it ends in one, as what is to be written.
 fn plain(message: &str) -> String {
+    // What the reader of TOML says of an enum.
+    if message == "wanted string or table" {
+        return "expected a word or a table".to_owned();
+    }
     let Some((found, expected)) = message.rsplit_once(", expected ") else {
         return message.to_owned();
     };

@@ -12,10 +12,12 @@ use crate::output::OutputIdx;
 use crate::preview::{self, Thing};
 use crate::progress::Progress;
 use crate::words::{Word, nearest, with_underscores};
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Error, Result};
 use dapple::color::NormalY;
 use dapple::hash::Seed;
-use dapple::recipe::{Bake, BakeMemory, BakeOptions, MapKind, Plan, Recipe};
+use dapple::recipe::{
+    Bake, BakeMemory, BakeOptions, MapKind, Plan, Recipe, RecipeError, RecipeErrorKind,
+};
 use dapple::tile::Map;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
@@ -217,7 +219,7 @@ impl Work {
         let recipe = &self.recipe;
         let claimed = claim(args, files, recipe, &mut job)?;
         let images = read_images(recipe, &self.folder)?;
-        let plan = Plan::new(recipe, &images, 0.0).map_err(advise)?;
+        let plan = Plan::new(recipe, &images, 0.0).map_err(|error| args.blame(error))?;
         foresee(&plan, &args.options(), &claimed.maps, &job)?;
         let bake =
             Bake::new(&plan, &args.options()).map_err(|error| advise(error).wrong_value())?;
@@ -325,6 +327,15 @@ impl Args {
         }
         if let Some(normal_y) = self.normal_y {
             recipe.material.normal_y = normal_y;
+        }
+    }
+
+    /// What a plan refuses, as wrong usage if it is the relief that was typed.
+    fn blame(&self, error: RecipeError) -> Error {
+        let is_typed = matches!(error.kind(), RecipeErrorKind::Range { value, .. } if self.relief == Some(*value));
+        match is_typed {
+            true => advise(error).wrong_value(),
+            false => advise(error),
         }
     }
 

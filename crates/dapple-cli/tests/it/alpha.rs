@@ -40,11 +40,11 @@ fn alpha_goes_the_way_of_the_colors_in_tile_and_synth() {
         ("synth leaf.png --size 40 --seed 3 -o c.png", "c.png"),
         (
             "synth checker.png --region 0,0,32,32 --map cover=d.png --size 20 -o e.png",
-            "e-cover.png",
+            "e_cover.png",
         ),
     ] {
         if line.contains("d.png") {
-            let cut = "tile leaf.png --region 0,0,32,32 -o d.png";
+            let cut = "tile leaf.png --method periodic --region 0,0,32,32 -o d.png";
             assert_done(&folder.run(&cut.split(' ').collect::<Vec<_>>()), cut);
         }
         assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), line);
