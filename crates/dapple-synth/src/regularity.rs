@@ -6,6 +6,8 @@
 //! taken off because clouds would pass for regular: they are alike in what is smooth, and their detail is not.
 //!
 //! A peak of the autocorrelation says less: photographs that were made to tile have one, and wiggly checkers have none.
+//!
+//! Reference: our own.
 
 use crate::{Candidates, CoarserCenter, Edges, Exemplar, Part, Pass, Reads, Shape, distance_sq};
 

@@ -28,7 +28,7 @@ pub fn label_gray(label: u32) -> f32 {
 }
 
 /// A shade of gray, from 0.25 to 1, for each label of the points of a graph, so that labels that meet are easy to tell
-/// apart: where an edge joins two of them, they have different ones of [`SHADES`] shades.
+/// apart: where an edge joins two of them, they have different ones of six shades.
 ///
 /// Labels are numbers from 0 on without gaps. They take shades one after another, always the label that sees the most
 /// different ones around it, and it takes the one that is furthest from those. (D. Brélaz, "New methods to color the
