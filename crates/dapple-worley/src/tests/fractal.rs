@@ -285,7 +285,7 @@ fn octaves_repeat_no_more_often_than_the_first() -> Result<(), WorleyError> {
     let octaves = Octaves {
         count: 4,
         lacunarity: 3.0,
-        ..Octaves::default()
+        ..Octaves::paper()
     };
     let fractal = worley.combine(Combination::F1).fractal(octaves)?;
     for index in 0..100 {
