@@ -54,7 +54,8 @@ pub enum Coherence {
     ///
     /// Where the exemplar has what fits, as hooks that interlock and courses of bricks, the least distance finds it, and
     /// with 2 the texture tears instead. In photographs no detail occurs twice, and the least distance blurs it away: leaves
-    /// keep 0.65 of their standard deviation with 0, and 0.87 with 2.
+    /// keep 0.65 of their standard deviation with 0, and 0.87 with 2. Patches of one color that are larger than a
+    /// neighborhood, as the squares of a checker, may run together on a mesh with 0: look, and take 2 then.
     Auto,
     /// It wins if its squared distance is at most 1 + this times the least; in passes that read no coarser level, where no
     /// later one can mend what does not fit together, 1 + half of this times. Finite and at least 0; at 0 the least always

@@ -9,6 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// The side of the test images, in pixels.
 const SIDE: u32 = 64;
@@ -34,9 +35,12 @@ albedo = "lichen"
 pub(crate) struct Folder(PathBuf);
 
 impl Folder {
-    /// An empty one. Names differ between tests.
+    /// An empty one.
     pub(crate) fn new(name: &str) -> Self {
-        let name = format!("dapple-command-{}-{name}", std::process::id());
+        // Tests run at the same time, and two may choose one name.
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("dapple-command-{}-{count}-{name}", std::process::id());
         let folder = std::env::temp_dir().join(name);
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir_all(&folder).unwrap();
