@@ -209,7 +209,7 @@ mod tests {
         for (wrong, expected) in [
             ("octaves = 3", "a table"),
             ("metric = 3", "a word or a table"),
-            ("frequency = \"high\"", "a number"),
+            ("octaves.gain = \"high\"", "a number"),
             ("octaves.count = -1", "a whole number that is not negative"),
             ("octaves.count = []", "a whole number that is not negative"),
         ] {
