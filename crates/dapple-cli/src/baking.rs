@@ -4,7 +4,7 @@ use crate::encode::Format;
 use crate::error::Hint;
 use crate::input;
 use crate::job::Job;
-use crate::output::{OutputIdx, Target};
+use crate::output::{OutputIdx, Target, cannot_be_written};
 use crate::progress::Progress;
 use crate::words::with_dashes;
 use anyhow::{Context as _, Error, Result};
@@ -247,10 +247,6 @@ fn beside_itself(map: &MapRows) -> Result<MapRows> {
         MapRows::Normal(raster) => MapRows::Normal(repeat(raster, size)?),
         MapRows::Packed(raster) => MapRows::Packed(repeat(raster, size)?),
     })
-}
-
-fn cannot_be_written(target: &Target) -> String {
-    format!("{target} cannot be written")
 }
 
 fn content(kind: MapKind) -> Content {

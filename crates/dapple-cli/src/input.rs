@@ -47,7 +47,7 @@ pub(crate) struct Loaded {
     /// Whether the file has more than 8 bits per channel.
     pub(crate) is_deep: bool,
     /// Whether its numbers are linear light, as in OpenEXR; in a photograph of another format they are sRGB codes.
-    pub(crate) is_linear: bool,
+    is_linear: bool,
 }
 
 impl Loaded {

@@ -3,10 +3,10 @@
 use crate::args::{ImageArgs, OutputArgs};
 use crate::encode::{Format, default_format, encode, encode_with_alpha, ramped, range};
 use crate::error::{Exit, Hint, usage};
-use crate::input::Loaded;
 use crate::output::{OutputIdx, Outputs, Target};
 use crate::progress::Style;
 use anyhow::{Context as _, Result};
+use dapple::raster::Raster;
 use dapple::tile::Map;
 use serde::Serialize;
 use serde_json::Value;
@@ -195,24 +195,20 @@ impl<'a> Job<'a> {
         self.write_map(output, &map, format)
     }
 
-    /// Writes an image as [`write_image`](Self::write_image) does, with its alpha if it has one.
+    /// Writes an image as [`write_image`](Self::write_image) does, with its alpha if it is one of colors that has some.
     ///
     /// # Errors
     ///
     /// As [`write_image`](Self::write_image).
-    pub(crate) fn write_loaded(
+    pub(crate) fn write_with_alpha(
         &mut self,
         output: OutputIdx,
-        loaded: Loaded,
+        map: Map,
+        alpha: Option<&Raster<f32>>,
+        is_deep: bool,
         args: &ImageArgs,
     ) -> Result<()> {
-        let Loaded {
-            map,
-            alpha,
-            is_deep,
-            ..
-        } = loaded;
-        let (Map::Color(colors), Some(alpha)) = (&map, &alpha) else {
+        let (Map::Color(colors), Some(alpha)) = (&map, alpha) else {
             return self.write_image(output, map, is_deep, args);
         };
         let default = default_format(&map, is_deep);

@@ -216,7 +216,7 @@ impl Outputs {
             target, temporary, ..
         } = &self.files[output.0];
         let file = temporary.file().try_clone();
-        let file = file.with_context(|| format!("{target} cannot be written"))?;
+        let file = file.with_context(|| cannot_be_written(target))?;
         Ok(BufWriter::with_capacity(1 << 18, file))
     }
 
@@ -228,7 +228,7 @@ impl Outputs {
     pub(crate) fn write(&self, output: OutputIdx, bytes: &[u8]) -> Result<()> {
         let mut writer = self.writer(output)?;
         let written = writer.write_all(bytes).and_then(|()| writer.flush());
-        written.with_context(|| format!("{} cannot be written", self.target(output)))
+        written.with_context(|| cannot_be_written(self.target(output)))
     }
 
     /// The target of a file that was claimed.
@@ -257,7 +257,7 @@ impl Outputs {
     pub(crate) fn commit(mut self) -> Result<()> {
         for file in &self.files {
             file.copy_if_stream()
-                .with_context(|| format!("{} cannot be written", file.target))?;
+                .with_context(|| cannot_be_written(&file.target))?;
         }
         let mut held = registry::hold();
         let mut placed: Vec<Target> = Vec::new();
@@ -332,12 +332,12 @@ fn place(target: &Target) -> Result<Place> {
             // What a link leads to is replaced, and the link stays.
             let path = fs::canonicalize(path);
             Ok(Place::File(
-                path.with_context(|| format!("{target} cannot be written"))?,
+                path.with_context(|| cannot_be_written(target))?,
             ))
         }
         // The temporary name is shorter, so that only this would be found out at the end.
         Err(error) if error.kind() == io::ErrorKind::InvalidFilename => {
-            Err(error).with_context(|| format!("{target} cannot be written"))
+            Err(error).with_context(|| cannot_be_written(target))
         }
         Err(_) if path.file_name().is_none() => {
             Err(anyhow!("{:?} is not the name of a file", path.display()))
@@ -364,6 +364,11 @@ fn is_stdout_closed() -> bool {
     false
 }
 
+/// The error message for a target to which nothing can be written.
+pub(crate) fn cannot_be_written(target: &Target) -> String {
+    format!("{target} cannot be written")
+}
+
 fn exists(target: &Target) -> Error {
     let error = anyhow!("{target} exists already");
     error.hint("give another name, or --force to replace it")
@@ -383,7 +388,7 @@ fn not_placed(target: &Target, error: io::Error, placed: &[Target]) -> Error {
     let error = if error.kind() == io::ErrorKind::AlreadyExists {
         exists(target)
     } else {
-        Error::new(error).context(format!("{target} cannot be written"))
+        Error::new(error).context(cannot_be_written(target))
     };
     if placed.is_empty() {
         return error;

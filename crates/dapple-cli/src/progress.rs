@@ -116,7 +116,7 @@ impl Progress {
     }
 }
 
-/// What is said of the progress.
+/// A line about the progress.
 fn line(label: &str, done: u64, length: u64, is_json: bool) -> String {
     if is_json {
         return serde_json::json!({ "step": label, "done": done, "of": length }).to_string();

@@ -57,7 +57,7 @@ pub(super) fn color(text: &str) -> Option<LinearRgb> {
     }
 }
 
-/// What is said of a text that is neither a color nor a palette.
+/// The error message for a text that is neither a color nor a palette.
 fn unknown(text: &str) -> String {
     let palettes: Vec<_> = Palette::ALL.iter().map(|&palette| name(palette)).collect();
     let (text, palettes) = (text.trim(), palettes.join(", "));

@@ -282,7 +282,7 @@ impl Args {
         self.files.force
     }
 
-    /// The same bake in another size.
+    /// These options with another size, and with or without `--force`.
     pub(super) fn at(&self, size: Size, may_replace: bool) -> Self {
         let mut args = Self {
             size,
@@ -386,7 +386,7 @@ fn claim(args: &Args, files: &OutputArgs, recipe: &Recipe, job: &mut Job<'_>) ->
     Ok(Claimed { maps, preview })
 }
 
-/// What is left of several recipes where some cannot be baked.
+/// A run over several recipes, some of which may fail.
 struct Batch<'a> {
     n_recipes: usize,
     n_failed: usize,

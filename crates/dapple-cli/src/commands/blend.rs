@@ -7,7 +7,7 @@ mod mixing;
 use crate::args::{AlphaArgs, ImageArgs, Size};
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
-use crate::input::{self, Kind, Loaded};
+use crate::input::{self, Kind};
 use crate::job::{Context, Job};
 use crate::output::OutputIdx;
 use crate::progress::Progress;
@@ -128,15 +128,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     drop(progress);
     let is_deep = materials.iter().any(|material| material.is_deep);
     for (map, output) in maps.into_iter().zip(outputs) {
-        let blended = Loaded {
-            map,
-            // That of the first map.
-            alpha: alpha.take(),
-            is_deep,
-            // Of no meaning for what is written.
-            is_linear: false,
-        };
-        job.write_loaded(output, blended, &args.image)?;
+        // Alpha is that of the first map.
+        job.write_with_alpha(output, map, alpha.take().as_ref(), is_deep, &args.image)?;
     }
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)

@@ -52,7 +52,7 @@ pub(crate) struct Args {
     #[arg(long)]
     check: bool,
 
-    /// What is printed or written: text for people, or JSON for programs; by default by the ending of the output.
+    /// The format of the findings: text for people, or JSON for programs; by default by the ending of the output.
     #[arg(long, value_enum, value_name = "FORMAT", help_heading = "Output")]
     format: Option<Format>,
 

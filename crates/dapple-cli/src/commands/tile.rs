@@ -134,26 +134,14 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         let Some([output, sheet]) = source.outputs else {
             continue;
         };
-        let Loaded {
-            is_deep, is_linear, ..
-        } = source.loaded;
+        let is_deep = source.loaded.is_deep;
         if let Some(sheet) = sheet {
-            let twice = Loaded {
-                map: doubled(&map)?,
-                alpha: alpha.as_ref().map(twice).transpose()?,
-                is_deep,
-                is_linear,
-            };
-            job.write_loaded(sheet, twice, &args.image)?;
+            let alpha = alpha.as_ref().map(twice).transpose()?;
+            let map = doubled(&map)?;
+            job.write_with_alpha(sheet, map, alpha.as_ref(), is_deep, &args.image)?;
         }
         if let Some(output) = output {
-            let tile = Loaded {
-                map,
-                alpha,
-                is_deep,
-                is_linear,
-            };
-            job.write_loaded(output, tile, &args.image)?;
+            job.write_with_alpha(output, map, alpha.as_ref(), is_deep, &args.image)?;
         }
     }
     job.finish(args, report)?;

@@ -3,7 +3,6 @@
 use super::{Args, Input, STEPS, advise, shown};
 use crate::encode::Format;
 use crate::error::Exit;
-use crate::input::Loaded;
 use crate::job::{Context, Job};
 use crate::progress::Progress;
 use anyhow::Result;
@@ -37,26 +36,22 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     );
     let texture = texture.map_err(advise)?;
     drop(progress);
-    job.write_loaded(output, follow(&texture, &base)?, &args.image)?;
-    for (output, (_, map)) in map_outputs.into_iter().zip(maps) {
-        job.write_loaded(output, follow(&texture, &map)?, &args.image)?;
+    let examples = [&base].into_iter().chain(maps.iter().map(|(_, map)| map));
+    for (output, example) in [output].into_iter().chain(map_outputs).zip(examples) {
+        let map = follow(&texture, &example.map)?;
+        let alpha = example.alpha.as_ref().map(|alpha| texture.transfer(alpha));
+        let alpha = alpha.transpose()?;
+        job.write_with_alpha(output, map, alpha.as_ref(), example.is_deep, &args.image)?;
     }
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)
 }
 
 /// What a map of the example becomes.
-fn follow(texture: &PlaneTexture, example: &Loaded) -> Result<Loaded> {
-    let map = match &example.map {
+fn follow(texture: &PlaneTexture, example: &Map) -> Result<Map> {
+    Ok(match example {
         Map::Value(raster) => Map::Value(texture.transfer(raster)?),
         Map::Color(raster) => Map::Color(texture.transfer(raster)?),
         Map::Normal(raster) => Map::Normal(texture.transfer(raster)?),
-    };
-    let alpha = example.alpha.as_ref().map(|alpha| texture.transfer(alpha));
-    Ok(Loaded {
-        map,
-        alpha: alpha.transpose()?,
-        is_deep: example.is_deep,
-        is_linear: example.is_linear,
     })
 }
