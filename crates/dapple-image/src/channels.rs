@@ -112,7 +112,7 @@ impl ExrImage {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "png"))]
 mod tests {
     use crate::{
         Channels, ExrImage, ExrPlane, Image, PngImage, PngPixel, PngPixels, Transfer, decode_image,

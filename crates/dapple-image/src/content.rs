@@ -2,11 +2,14 @@
 //!
 //! Here alone values turn into codes and planes; the writers of whole images and of rows share it.
 
-use crate::{PngPixel, Transfer};
+use crate::PngPixel;
+#[cfg(feature = "png")]
+use crate::Transfer;
 use dapple_color::{Code, LinearRgb, LinearRgba, Normal};
 
 /// What the pixels of an image are, which decides how they are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Content {
     /// Data such as heights and masks. PNG: gray from 0 to 1, `round(value · max)`, linear, without a color chunk.
     /// OpenEXR: the plane `Y`, any number.
@@ -38,10 +41,13 @@ pub enum Depth {
 
 /// The format of a file and of its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Encoding {
     /// PNG with 8 or 16 bits.
+    #[cfg(feature = "png")]
     Png(Depth),
     /// OpenEXR with 32-bit floating point, in tiles.
+    #[cfg(feature = "exr")]
     Exr,
 }
 
@@ -57,6 +63,7 @@ impl Content {
         }
     }
 
+    #[cfg(feature = "png")]
     pub(crate) const fn transfer(self) -> Transfer {
         match self {
             Self::Color | Self::ColorAlpha => Transfer::Srgb,
@@ -75,6 +82,10 @@ impl Content {
 }
 
 /// A value of an image that can be written.
+#[cfg_attr(
+    not(feature = "png"),
+    expect(dead_code, reason = "codes are what PNG files hold")
+)]
 pub(crate) trait Pixel: Sync {
     /// The content that is made of such values.
     const CONTENT: Content;

@@ -4,21 +4,28 @@
 //! the crate `exr`. Colors are linear with the primaries of ITU-R BT.709, which OpenEXR assumes where a file says nothing,
 //! and, as OpenEXR has it, alpha is multiplied into them in the file.
 
+#[cfg(feature = "exr")]
 mod decode;
+#[cfg(feature = "exr")]
 mod encode;
+#[cfg(feature = "exr")]
+mod shortcut;
+#[cfg(feature = "exr")]
 mod tiles;
 
+#[cfg(feature = "exr")]
 pub use decode::decode_exr;
+#[cfg(feature = "exr")]
 pub use encode::{encode_exr, write_exr};
+#[cfg(feature = "exr")]
+pub use shortcut::{write_color_alpha_exr, write_color_exr, write_gray_exr};
+#[cfg(feature = "exr")]
 pub(crate) use tiles::TileStream;
 
 use crate::content::Pixel;
 use crate::{ImageError, ImageErrorKind};
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_raster::Raster;
-
-/// The bytes that every OpenEXR file begins with.
-pub(crate) const SIGNATURE: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// A channel of an OpenEXR file: a name and numbers.
 ///
@@ -170,5 +177,5 @@ fn straight(multiplied: [f32; 3], alpha: f32) -> LinearRgba {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "exr"))]
 mod tests;

@@ -1,12 +1,18 @@
 //! Images whose format is found out by their first bytes.
 
-use crate::{
-    ExrImage, ImageError, ImageErrorKind, Limits, PngImage, decode_exr, decode_jpeg, decode_png,
-    exr, file, jpeg, png,
-};
+use crate::{ExrImage, ImageError, ImageErrorKind, Limits, PngImage, file};
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_raster::Raster;
 use std::path::Path;
+
+/// The bytes that every PNG file begins with.
+pub(crate) const PNG_SIGNATURE: [u8; 8] = [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n'];
+
+/// The bytes that every JPEG file begins with.
+pub(crate) const JPEG_SIGNATURE: [u8; 3] = [0xff, 0xd8, 0xff];
+
+/// The bytes that every OpenEXR file begins with.
+pub(crate) const EXR_SIGNATURE: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// An image of one of the formats that are read.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,18 +30,54 @@ pub enum Image {
 ///
 /// # Errors
 ///
-/// [`ImageErrorKind::UnknownFormat`] if it is none that is known, else those of [`decode_png`], [`decode_jpeg`] and
-/// [`decode_exr`].
+/// [`ImageErrorKind::UnknownFormat`] if it is none that is known, [`ImageErrorKind::Unsupported`] if the feature of the
+/// crate that reads it is off, else those of `decode_png`, `decode_jpeg` and `decode_exr`.
 pub fn decode_image(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
-    if bytes.starts_with(&png::SIGNATURE) {
-        decode_png(bytes, limits).map(Image::Png)
-    } else if bytes.starts_with(&jpeg::SIGNATURE) {
-        decode_jpeg(bytes, limits).map(Image::Jpeg)
-    } else if bytes.starts_with(&exr::SIGNATURE) {
-        decode_exr(bytes, limits).map(Image::Exr)
+    if bytes.starts_with(&PNG_SIGNATURE) {
+        read_png(bytes, limits)
+    } else if bytes.starts_with(&JPEG_SIGNATURE) {
+        read_jpeg(bytes, limits)
+    } else if bytes.starts_with(&EXR_SIGNATURE) {
+        read_exr(bytes, limits)
     } else {
         Err(ImageError::new(ImageErrorKind::UnknownFormat))
     }
+}
+
+#[cfg(feature = "png")]
+fn read_png(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
+    crate::decode_png(bytes, limits).map(Image::Png)
+}
+
+#[cfg(not(feature = "png"))]
+fn read_png(_bytes: &[u8], _limits: &Limits) -> Result<Image, ImageError> {
+    Err(left_out("PNG without the feature `png`"))
+}
+
+#[cfg(feature = "jpeg")]
+fn read_jpeg(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
+    crate::decode_jpeg(bytes, limits).map(Image::Jpeg)
+}
+
+#[cfg(not(feature = "jpeg"))]
+fn read_jpeg(_bytes: &[u8], _limits: &Limits) -> Result<Image, ImageError> {
+    Err(left_out("JPEG without the feature `jpeg`"))
+}
+
+#[cfg(feature = "exr")]
+fn read_exr(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
+    crate::decode_exr(bytes, limits).map(Image::Exr)
+}
+
+#[cfg(not(feature = "exr"))]
+fn read_exr(_bytes: &[u8], _limits: &Limits) -> Result<Image, ImageError> {
+    Err(left_out("OpenEXR without the feature `exr`"))
+}
+
+/// The refusal of a format whose codec is not compiled in.
+#[cfg(not(all(feature = "png", feature = "jpeg", feature = "exr")))]
+fn left_out(feature: &'static str) -> ImageError {
+    ImageError::new(ImageErrorKind::Unsupported { feature })
 }
 
 /// Reads an image file, whose format is found out by its first bytes (the name does not matter).
@@ -120,4 +162,21 @@ pub(crate) fn transparent(needed: &'static str) -> ImageError {
         found: "partly transparent",
         needed,
     })
+}
+
+#[cfg(all(test, not(any(feature = "png", feature = "jpeg", feature = "exr"))))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_format_whose_codec_is_left_out_is_named() {
+        for (signature, format) in [
+            (PNG_SIGNATURE.as_slice(), "PNG without the feature `png`"),
+            (&JPEG_SIGNATURE, "JPEG without the feature `jpeg`"),
+            (&EXR_SIGNATURE, "OpenEXR without the feature `exr`"),
+        ] {
+            let error = decode_image(signature, &Limits::default()).unwrap_err();
+            assert!(error.to_string().starts_with(format), "{error}");
+        }
+    }
 }

@@ -10,6 +10,7 @@
 
 mod orientation;
 
+use crate::image::JPEG_SIGNATURE as SIGNATURE;
 use crate::{ImageError, ImageErrorKind, Limits, PngImage, PngPixels, Transfer};
 use orientation::Orientation;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -18,9 +19,6 @@ use zune_jpeg::errors::DecodeErrors;
 use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
-
-/// The bytes that every JPEG file begins with.
-pub(crate) const SIGNATURE: [u8; 3] = [0xff, 0xd8, 0xff];
 
 /// The second byte of the marker that a scan begins with.
 const START_OF_SCAN: u8 = 0xda;

@@ -24,9 +24,19 @@
 //! # Ok::<(), dapple_image::ImageError>(())
 //! ```
 //!
+//! Each format is a feature of its own (`png`, `exr`, `jpeg`, all on by default) and brings its codec; the others are then
+//! refused by name.
+//!
 //! What a file holds is said by [`Image::format`], [`Image::channels`], [`Image::bits`] and [`Image::size`].
 
 #![forbid(unsafe_code)]
+#![cfg_attr(
+    not(any(feature = "png", feature = "exr")),
+    expect(
+        dead_code,
+        reason = "where nothing is written, what writers share is left over"
+    )
+)]
 
 mod channels;
 mod content;
@@ -34,25 +44,33 @@ mod error;
 mod exr;
 mod file;
 mod image;
+#[cfg(feature = "jpeg")]
 mod jpeg;
 mod limits;
 mod png;
+#[cfg(any(feature = "png", feature = "exr"))]
 mod rows;
-mod shortcut;
 
-pub use self::exr::{ExrImage, ExrPlane, decode_exr, encode_exr, write_exr};
+pub use self::exr::{ExrImage, ExrPlane};
+#[cfg(feature = "exr")]
+pub use self::exr::{
+    decode_exr, encode_exr, write_color_alpha_exr, write_color_exr, write_exr, write_gray_exr,
+};
 pub use self::image::{Image, decode_image, read_image};
+#[cfg(feature = "jpeg")]
 pub use self::jpeg::decode_jpeg;
-pub use self::png::{PngImage, PngPixel, PngPixels, Transfer, decode_png, encode_png, write_png};
+pub use self::png::{PngImage, PngPixel, PngPixels, Transfer};
+#[cfg(feature = "png")]
+pub use self::png::{
+    decode_png, encode_png, write_color_alpha_png, write_color_png, write_gray_png,
+    write_normal_png, write_png,
+};
 pub use channels::Channels;
 pub use content::{Content, Depth, Encoding};
 pub use error::{ImageError, ImageErrorKind};
 pub use limits::Limits;
+#[cfg(any(feature = "png", feature = "exr"))]
 pub use rows::RowWriter;
-pub use shortcut::{
-    write_color_alpha_exr, write_color_alpha_png, write_color_exr, write_color_png, write_gray_exr,
-    write_gray_png, write_normal_png,
-};
 
-#[cfg(test)]
+#[cfg(all(test, feature = "png", feature = "exr"))]
 mod tests;

@@ -3,21 +3,31 @@
 //! The format is that of the W3C recommendation "Portable Network Graphics (PNG) Specification (Third Edition)", 2025,
 //! <https://www.w3.org/TR/png-3/>; the codec is the crate `png`.
 
+#[cfg(feature = "png")]
 mod decode;
+#[cfg(feature = "png")]
 mod encode;
+mod image;
 mod pixel;
+#[cfg(feature = "png")]
+mod shortcut;
+#[cfg(feature = "png")]
 mod stream;
 mod values;
 
-pub use decode::{PngImage, PngPixels, decode_png};
+#[cfg(feature = "png")]
+pub use decode::decode_png;
+#[cfg(feature = "png")]
 pub use encode::{encode_png, write_png};
+pub use image::{PngImage, PngPixels};
 pub use pixel::PngPixel;
+#[cfg(feature = "png")]
+pub use shortcut::{write_color_alpha_png, write_color_png, write_gray_png, write_normal_png};
+#[cfg(feature = "png")]
 pub(crate) use stream::PngStream;
 
-/// The bytes that every PNG file begins with.
-pub(crate) const SIGNATURE: [u8; 8] = [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n'];
-
 /// The `gAMA` of sRGB, 0.45455 times 100 000, as the specification has it.
+#[cfg(feature = "png")]
 const GAMMA_OF_SRGB: u32 = 45_455;
 
 /// What the numbers in an 8- or 16-bit file mean.
@@ -29,5 +39,5 @@ pub enum Transfer {
     Srgb,
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "png"))]
 mod tests;

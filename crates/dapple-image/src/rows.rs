@@ -1,9 +1,13 @@
 //! Writing an image by its rows, from the top down, however large it is.
 
+#[cfg(feature = "png")]
+use crate::Depth;
 use crate::content::Pixel;
+#[cfg(feature = "exr")]
 use crate::exr::TileStream;
+#[cfg(feature = "png")]
 use crate::png::PngStream;
-use crate::{Content, Depth, Encoding, ImageError, ImageErrorKind};
+use crate::{Content, Encoding, ImageError, ImageErrorKind};
 use core::fmt;
 use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_raster::RasterView;
@@ -48,8 +52,11 @@ pub struct RowWriter<W: Write + Seek> {
 
 /// The file of each encoding.
 enum File<W: Write + Seek> {
+    #[cfg(feature = "png")]
     Eight(Box<PngStream<W>>),
+    #[cfg(feature = "png")]
     Sixteen(Box<PngStream<W>>),
+    #[cfg(feature = "exr")]
     Exr(Box<TileStream<W>>),
 }
 
@@ -150,7 +157,9 @@ impl<W: Write + Seek> RowWriter<W> {
             }));
         }
         match self.file {
+            #[cfg(feature = "png")]
             File::Eight(stream) | File::Sixteen(stream) => stream.finish(),
+            #[cfg(feature = "exr")]
             File::Exr(stream) => stream.finish(),
         }
     }
@@ -162,8 +171,11 @@ impl<W: Write + Seek> RowWriter<W> {
         // Whoever returns early leaves it broken.
         self.is_broken = true;
         match &mut self.file {
+            #[cfg(feature = "png")]
             File::Eight(stream) => stream.write_rows(rows, T::eight)?,
+            #[cfg(feature = "png")]
             File::Sixteen(stream) => stream.write_rows(rows, T::sixteen)?,
+            #[cfg(feature = "exr")]
             File::Exr(stream) => stream.write_rows(rows, T::part)?,
         }
         self.is_broken = false;
@@ -201,14 +213,18 @@ impl<W: Write + Seek> RowWriter<W> {
 
 impl<W: Write + Seek> File<W> {
     fn new<T: Pixel>(sink: W, size: [u32; 2], encoding: Encoding) -> Result<Self, ImageError> {
-        let transfer = T::CONTENT.transfer();
         Ok(match encoding {
+            #[cfg(feature = "png")]
             Encoding::Png(Depth::Eight) => {
+                let transfer = T::CONTENT.transfer();
                 Self::Eight(PngStream::new::<T::Eight>(sink, size, transfer)?.into())
             }
+            #[cfg(feature = "png")]
             Encoding::Png(Depth::Sixteen) => {
+                let transfer = T::CONTENT.transfer();
                 Self::Sixteen(PngStream::new::<T::Sixteen>(sink, size, transfer)?.into())
             }
+            #[cfg(feature = "exr")]
             Encoding::Exr => Self::Exr(TileStream::new(sink, size, T::CONTENT.planes())?.into()),
         })
     }
@@ -225,5 +241,5 @@ impl<W: Write + Seek> fmt::Debug for RowWriter<W> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "png", feature = "exr"))]
 mod tests;

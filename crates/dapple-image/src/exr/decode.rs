@@ -5,6 +5,7 @@
 //! default), they are caught here and become [`ImageErrorKind::Damaged`].
 
 use super::{ExrImage, ExrPlane};
+use crate::image::EXR_SIGNATURE as SIGNATURE;
 use crate::{ImageError, ImageErrorKind, Limits};
 use dapple_raster::Raster;
 use exr::image::read::image::ReadLayers;
@@ -25,7 +26,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// rules or end too soon, [`ImageErrorKind::Unsupported`] for deep data and subsampled channels,
 /// [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit.
 pub fn decode_exr(bytes: &[u8], limits: &Limits) -> Result<ExrImage, ImageError> {
-    if !bytes.starts_with(&super::SIGNATURE) {
+    if !bytes.starts_with(&SIGNATURE) {
         return Err(ImageError::new(ImageErrorKind::UnknownFormat));
     }
     // Nothing outlives the call that a panic could leave half done.

@@ -1,6 +1,7 @@
 //! Round trips, limits and damage of OpenEXR files.
 
-use super::{ExrImage, ExrPlane, SIGNATURE, decode_exr, encode_exr};
+use super::{ExrImage, ExrPlane, decode_exr, encode_exr};
+use crate::image::EXR_SIGNATURE as SIGNATURE;
 use crate::{ImageErrorKind, Limits};
 use dapple_color::{LinearRgb, LinearRgba};
 use dapple_raster::Raster;

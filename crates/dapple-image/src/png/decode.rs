@@ -4,42 +4,12 @@
 //! [`PngPixels`]; of an animation the first picture is read. The size is held against the limits before memory for the
 //! pixels is asked for.
 
-use super::{PngPixel, Transfer};
+use super::{PngImage, PngPixel, PngPixels, Transfer};
+use crate::image::PNG_SIGNATURE as SIGNATURE;
 use crate::{ImageError, ImageErrorKind, Limits};
 use dapple_raster::Raster;
 use png::{BitDepth, ColorType, DecodingError};
 use std::io::Cursor;
-
-/// What a PNG file holds.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PngImage {
-    /// The pixels.
-    pub pixels: PngPixels,
-    /// [`Transfer::Srgb`] if the file says so (with the chunk `sRGB`, or a `gAMA` of 0.45455), else
-    /// [`Transfer::Data`], which for a file that says nothing may be color all the same.
-    pub transfer: Transfer,
-}
-
-/// Pixels of one of the kinds that PNG has; alpha comes last.
-#[derive(Clone, Debug, PartialEq)]
-pub enum PngPixels {
-    /// Gray, 8 bits.
-    Gray8(Raster<u8>),
-    /// Gray, 16 bits.
-    Gray16(Raster<u16>),
-    /// Gray and alpha, 8 bits.
-    GrayAlpha8(Raster<[u8; 2]>),
-    /// Gray and alpha, 16 bits.
-    GrayAlpha16(Raster<[u16; 2]>),
-    /// Red, green and blue, 8 bits.
-    Rgb8(Raster<[u8; 3]>),
-    /// Red, green and blue, 16 bits.
-    Rgb16(Raster<[u16; 3]>),
-    /// Red, green, blue and alpha, 8 bits.
-    Rgba8(Raster<[u8; 4]>),
-    /// Red, green, blue and alpha, 16 bits.
-    Rgba16(Raster<[u16; 4]>),
-}
 
 /// The image in the bytes of a PNG file.
 ///
@@ -48,7 +18,7 @@ pub enum PngPixels {
 /// [`ImageErrorKind::UnknownFormat`] if the bytes do not begin like PNG, [`ImageErrorKind::Damaged`] if they break its
 /// rules or end too soon, [`ImageErrorKind::TooManyPixels`] or [`ImageErrorKind::TooManyBytes`] past a limit.
 pub fn decode_png(bytes: &[u8], limits: &Limits) -> Result<PngImage, ImageError> {
-    if !bytes.starts_with(&super::SIGNATURE) {
+    if !bytes.starts_with(&SIGNATURE) {
         return Err(ImageError::new(ImageErrorKind::UnknownFormat));
     }
     let mut decoder = png::Decoder::new_with_options(Cursor::new(bytes), options());
@@ -164,21 +134,6 @@ impl PngPixels {
                 return Err(ImageError::new(ImageErrorKind::Unsupported { feature }));
             }
         })
-    }
-
-    /// Columns and rows.
-    #[must_use]
-    pub fn size(&self) -> [u32; 2] {
-        match self {
-            Self::Gray8(raster) => raster.size(),
-            Self::Gray16(raster) => raster.size(),
-            Self::GrayAlpha8(raster) => raster.size(),
-            Self::GrayAlpha16(raster) => raster.size(),
-            Self::Rgb8(raster) => raster.size(),
-            Self::Rgb16(raster) => raster.size(),
-            Self::Rgba8(raster) => raster.size(),
-            Self::Rgba16(raster) => raster.size(),
-        }
     }
 }
 

@@ -1,15 +1,17 @@
 //! The pixels that a PNG file can have.
 
-use png::{BitDepth, ColorType};
-
 /// A pixel of 8 or 16 bits per channel: gray, gray with alpha, red-green-blue, or that with alpha.
 ///
 /// It is implemented for `u8` and `u16` and for arrays of two, three and four of them. Alpha comes last and is not
 /// multiplied into the color.
 pub trait PngPixel: Copy + sealed::Sealed {
-    /// What the codec calls this kind of pixel.
+    /// Samples of a pixel: 1 to 4.
     #[doc(hidden)]
-    const FORMAT: (ColorType, BitDepth);
+    const CHANNELS: usize;
+
+    /// Bits of a sample: 8 or 16.
+    #[doc(hidden)]
+    const BITS: u32;
 
     /// Writes the samples as the file has them into bytes of their length.
     #[doc(hidden)]
@@ -21,9 +23,10 @@ pub trait PngPixel: Copy + sealed::Sealed {
 }
 
 macro_rules! png_pixel {
-    ($($channels:literal $color:ident),*) => {$(
+    ($($channels:literal),*) => {$(
         impl PngPixel for [u8; $channels] {
-            const FORMAT: (ColorType, BitDepth) = (ColorType::$color, BitDepth::Eight);
+            const CHANNELS: usize = $channels;
+            const BITS: u32 = u8::BITS;
 
             #[inline(always)]
             fn write_bytes(self, bytes: &mut [u8]) {
@@ -36,7 +39,8 @@ macro_rules! png_pixel {
         }
 
         impl PngPixel for [u16; $channels] {
-            const FORMAT: (ColorType, BitDepth) = (ColorType::$color, BitDepth::Sixteen);
+            const CHANNELS: usize = $channels;
+            const BITS: u32 = u16::BITS;
 
             #[inline(always)]
             fn write_bytes(self, bytes: &mut [u8]) {
@@ -57,10 +61,11 @@ macro_rules! png_pixel {
     )*};
 }
 
-png_pixel!(2 GrayscaleAlpha, 3 Rgb, 4 Rgba);
+png_pixel!(2, 3, 4);
 
 impl PngPixel for u8 {
-    const FORMAT: (ColorType, BitDepth) = (ColorType::Grayscale, BitDepth::Eight);
+    const CHANNELS: usize = 1;
+    const BITS: u32 = Self::BITS;
 
     #[inline(always)]
     fn write_bytes(self, bytes: &mut [u8]) {
@@ -73,7 +78,8 @@ impl PngPixel for u8 {
 }
 
 impl PngPixel for u16 {
-    const FORMAT: (ColorType, BitDepth) = (ColorType::Grayscale, BitDepth::Sixteen);
+    const CHANNELS: usize = 1;
+    const BITS: u32 = Self::BITS;
 
     #[inline(always)]
     fn write_bytes(self, bytes: &mut [u8]) {

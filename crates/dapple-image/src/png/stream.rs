@@ -14,7 +14,7 @@ use super::{GAMMA_OF_SRGB, PngPixel, Transfer};
 use crate::limits::check_side;
 use crate::{ImageError, ImageErrorKind};
 use dapple_raster::RasterView;
-use png::{BitDepth, DeflateCompression, EncodingError, StreamWriter};
+use png::{BitDepth, ColorType, DeflateCompression, EncodingError, StreamWriter};
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -137,15 +137,21 @@ fn codec<P: PngPixel>(
     [width, height]: [u32; 2],
     transfer: Transfer,
 ) -> Result<StreamWriter<'static, Pipe>, EncodingError> {
-    let (color, depth) = P::FORMAT;
+    let color = match P::CHANNELS {
+        1 => ColorType::Grayscale,
+        2 => ColorType::GrayscaleAlpha,
+        3 => ColorType::Rgb,
+        _ => ColorType::Rgba,
+    };
+    let (depth, level) = match P::BITS {
+        u8::BITS => (BitDepth::Eight, 3),
+        _ => (BitDepth::Sixteen, 1),
+    };
     let mut encoder = png::Encoder::new(pipe, width, height);
     encoder.set_color(color);
     encoder.set_depth(depth);
     encoder.set_filter(png::Filter::Adaptive);
-    encoder.set_deflate_compression(match depth {
-        BitDepth::Sixteen => DeflateCompression::Level(1),
-        _ => DeflateCompression::Level(3),
-    });
+    encoder.set_deflate_compression(DeflateCompression::Level(level));
     if transfer == Transfer::Srgb {
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
         encoder.set_source_gamma(png::ScaledFloat::from_scaled(GAMMA_OF_SRGB));

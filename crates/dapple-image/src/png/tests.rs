@@ -1,6 +1,7 @@
 //! PNG files against a naive writer, which stores the samples without compression, by the specification alone.
 
-use super::{PngImage, PngPixel, PngPixels, SIGNATURE, Transfer, decode_png, encode_png};
+use super::{PngImage, PngPixel, PngPixels, Transfer, decode_png, encode_png};
+use crate::image::PNG_SIGNATURE as SIGNATURE;
 use crate::{ImageErrorKind, Limits};
 use core::slice;
 use dapple_raster::Raster;

@@ -1,9 +1,7 @@
-//! From rasters of values to files in one call.
-//!
-//! Values below 0 and above 1 are clamped in PNG, and NaN becomes 0; OpenEXR keeps every number as it is.
+//! From rasters of values to PNG files in one call. Values below 0 and above 1 are clamped, and NaN becomes 0.
 
 use crate::content::Pixel;
-use crate::{Depth, Encoding, ExrPlane, ImageError, RowWriter, file, write_exr};
+use crate::{Depth, Encoding, ImageError, RowWriter, file};
 use dapple_color::{LinearRgb, LinearRgba, Normal};
 use dapple_raster::Raster;
 use std::io::Cursor;
@@ -59,39 +57,6 @@ pub fn write_normal_png(
     depth: Depth,
 ) -> Result<(), ImageError> {
     write(path.as_ref(), normals, depth)
-}
-
-/// Writes data as an OpenEXR file with the one plane `Y`.
-///
-/// # Errors
-///
-/// Those of [`write_exr`].
-pub fn write_gray_exr(path: impl AsRef<Path>, values: &Raster<f32>) -> Result<(), ImageError> {
-    write_exr(path, &[ExrPlane::new("Y", values.clone())])
-}
-
-/// Writes colors as an OpenEXR file with the planes `R`, `G` and `B`, linear.
-///
-/// # Errors
-///
-/// Those of [`write_exr`].
-pub fn write_color_exr(
-    path: impl AsRef<Path>,
-    colors: &Raster<LinearRgb>,
-) -> Result<(), ImageError> {
-    write_exr(path, &ExrPlane::from_colors(colors))
-}
-
-/// Writes colors with alpha as an OpenEXR file with the planes `R`, `G`, `B` and `A`, linear, alpha multiplied in.
-///
-/// # Errors
-///
-/// Those of [`write_exr`].
-pub fn write_color_alpha_exr(
-    path: impl AsRef<Path>,
-    colors: &Raster<LinearRgba>,
-) -> Result<(), ImageError> {
-    write_exr(path, &ExrPlane::from_colors_with_alpha(colors))
 }
 
 fn write<T: Pixel>(path: &Path, raster: &Raster<T>, depth: Depth) -> Result<(), ImageError> {

@@ -1,0 +1,40 @@
+//! From rasters of values to OpenEXR files in one call. Every number is kept as it is.
+
+use super::{ExrPlane, write_exr};
+use crate::ImageError;
+use dapple_color::{LinearRgb, LinearRgba};
+use dapple_raster::Raster;
+use std::path::Path;
+
+/// Writes data as an OpenEXR file with the one plane `Y`.
+///
+/// # Errors
+///
+/// Those of [`write_exr`].
+pub fn write_gray_exr(path: impl AsRef<Path>, values: &Raster<f32>) -> Result<(), ImageError> {
+    write_exr(path, &[ExrPlane::new("Y", values.clone())])
+}
+
+/// Writes colors as an OpenEXR file with the planes `R`, `G` and `B`, linear.
+///
+/// # Errors
+///
+/// Those of [`write_exr`].
+pub fn write_color_exr(
+    path: impl AsRef<Path>,
+    colors: &Raster<LinearRgb>,
+) -> Result<(), ImageError> {
+    write_exr(path, &ExrPlane::from_colors(colors))
+}
+
+/// Writes colors with alpha as an OpenEXR file with the planes `R`, `G`, `B` and `A`, linear, alpha multiplied in.
+///
+/// # Errors
+///
+/// Those of [`write_exr`].
+pub fn write_color_alpha_exr(
+    path: impl AsRef<Path>,
+    colors: &Raster<LinearRgba>,
+) -> Result<(), ImageError> {
+    write_exr(path, &ExrPlane::from_colors_with_alpha(colors))
+}
