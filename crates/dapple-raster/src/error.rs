@@ -47,6 +47,17 @@ pub enum RasterErrorKind {
         /// The size of the raster.
         bounds: [u32; 2],
     },
+    /// A number is outside of its range.
+    Range {
+        /// What the number is.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// The range it must lie in, as text.
+        range: &'static str,
+    },
+    /// One period was asked for of a field that does not repeat along both axes.
+    NoPeriod,
     /// A number that has to be finite (and, for the size of a pixel, not zero) is not.
     NotFinite {
         /// What the number is.
@@ -114,6 +125,12 @@ impl fmt::Display for RasterError {
                     "the rectangle of {w} × {h} pixels at ({x}, {y}) leaves the raster of {bw} × {bh}"
                 )
             }
+            RasterErrorKind::Range { what, value, range } => {
+                write!(f, "the {what} is {value}, but it must be {range}")
+            }
+            RasterErrorKind::NoPeriod => f.write_str(
+                "the field does not repeat along both axes, so that there is no tile of it",
+            ),
             RasterErrorKind::NotFinite { what, value } => {
                 write!(
                     f,

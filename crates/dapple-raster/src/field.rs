@@ -1,9 +1,25 @@
 //! The door that everything with a value at every position shares.
 
-use crate::{Raster, RasterError, RasterViewMut, Window};
+mod combinators;
+mod fractal;
+mod period;
+mod positions;
+mod values;
+
+pub use combinators::FieldExt;
+pub use fractal::{Fractal, FractalShape};
+pub use positions::{Frequency, Offset, Rotated, Warped};
+pub use values::{Mapped, Mixed, Pair, PairOperation};
+
+use crate::{Raster, RasterError, RasterErrorKind, RasterViewMut, Window};
+use core::fmt;
 use glam::DVec2;
+use std::sync::Arc;
 
 /// A scalar function of the plane that can also fill a window.
+///
+/// References, boxes and `Arc`s of fields are fields, and so are numbers (`f32`, the same everywhere) and closures in
+/// [`field_fn`]. Fields are composed with the methods of [`FieldExt`].
 ///
 /// The two doors give the same bits: `render` and `sample_many` equal `sample` at every position. An implementation
 /// overrides them when it is faster on many positions at once. At a position that is not finite the value is NaN.
@@ -59,6 +75,27 @@ pub trait Field: Send + Sync {
         Ok(())
     }
 
+    /// The distances after which the field repeats along x and y; `None` where it does not, or where that is not known,
+    /// and 0 where nothing changes along the axis.
+    fn period(&self) -> [Option<f64>; 2] {
+        [None; 2]
+    }
+
+    /// One period of the field from the origin, as a raster of `size` pixels that tiles exactly: 1 along an axis where
+    /// nothing changes.
+    ///
+    /// # Errors
+    ///
+    /// [`NoPeriod`](RasterErrorKind::NoPeriod) if the field does not repeat along both axes, otherwise those of
+    /// [`Window::new`].
+    fn tile_raster(&self, size: [u32; 2]) -> Result<Raster<f32>, RasterError> {
+        let extent = match self.period() {
+            [Some(x), Some(y)] => DVec2::new(x, y).map(|side| if side == 0.0 { 1.0 } else { side }),
+            _ => return Err(RasterError::new(RasterErrorKind::NoPeriod)),
+        };
+        self.to_raster(&Window::new(DVec2::ZERO, extent, size)?)
+    }
+
     /// The values at the pixel centers of a window, as a new raster.
     ///
     /// # Errors
@@ -72,11 +109,77 @@ pub trait Field: Send + Sync {
     }
 }
 
+macro_rules! forward_field {
+    ($($holder:ty),*) => {$(
+        impl<F: Field + ?Sized> Field for $holder {
+            fn sample(&self, position: DVec2) -> f32 {
+                (**self).sample(position)
+            }
+
+            fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+                (**self).sample_many(positions, values)
+            }
+
+            fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+                (**self).render(window, out)
+            }
+
+            fn period(&self) -> [Option<f64>; 2] {
+                (**self).period()
+            }
+        }
+    )*};
+}
+
+forward_field!(&F, Box<F>, Arc<F>);
+
+/// The number, everywhere.
+impl Field for f32 {
+    fn sample(&self, _position: DVec2) -> f32 {
+        *self
+    }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        [Some(0.0); 2]
+    }
+}
+
+/// A field from a function of the position.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_raster::{Field, field_fn, glam::DVec2};
+///
+/// let slope = field_fn(|position| position.x as f32);
+/// assert_eq!(slope.sample(DVec2::new(0.25, 7.0)), 0.25);
+/// ```
+pub const fn field_fn<F: Fn(DVec2) -> f32 + Send + Sync>(function: F) -> FieldFn<F> {
+    FieldFn(function)
+}
+
+/// The field that [`field_fn`] makes.
+#[derive(Clone, Copy)]
+pub struct FieldFn<F>(F);
+
+impl<F: Fn(DVec2) -> f32 + Send + Sync> Field for FieldFn<F> {
+    fn sample(&self, position: DVec2) -> f32 {
+        (self.0)(position)
+    }
+}
+
+impl<F> fmt::Debug for FieldFn<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("FieldFn")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::Field;
     use crate::{Raster, RasterErrorKind, Window};
     use glam::DVec2;
+    use std::sync::Arc;
 
     struct Slope;
 
@@ -96,6 +199,33 @@ mod tests {
         field.sample_many(&positions, &mut values).unwrap();
         assert_eq!(raster.pixels(), values);
         assert_eq!(values[7], field.sample(positions[7]));
+    }
+
+    #[test]
+    fn holders_of_a_field_give_its_values_and_its_period() {
+        struct Stripes;
+
+        impl Field for Stripes {
+            fn sample(&self, position: DVec2) -> f32 {
+                (position.x - position.x.floor()) as f32
+            }
+
+            fn period(&self) -> [Option<f64>; 2] {
+                [Some(1.0), Some(0.0)]
+            }
+        }
+
+        let boxed: Box<dyn Field> = Box::new(Stripes);
+        let shared: Arc<dyn Field> = Arc::new(Stripes);
+        let position = DVec2::new(2.25, 9.0);
+        for field in [&Stripes as &dyn Field, &boxed, &shared, &&Stripes] {
+            assert_eq!(field.sample(position), 0.25);
+            assert_eq!(field.period(), [Some(1.0), Some(0.0)]);
+            let tile = field.tile_raster([4, 1]).unwrap();
+            assert_eq!(tile.pixels(), [0.125, 0.375, 0.625, 0.875]);
+        }
+        let error = Slope.tile_raster([4, 4]).unwrap_err();
+        assert_eq!(error.kind(), &RasterErrorKind::NoPeriod, "no period");
     }
 
     #[test]

@@ -33,7 +33,10 @@ mod wrap;
 pub mod simd;
 
 pub use error::{RasterError, RasterErrorKind};
-pub use field::Field;
+pub use field::{
+    Field, FieldExt, FieldFn, Fractal, FractalShape, Frequency, Mapped, Mixed, Offset, Pair,
+    PairOperation, Rotated, Warped, field_fn,
+};
 pub use glam;
 pub use raster::Raster;
 pub use resample::Texel;

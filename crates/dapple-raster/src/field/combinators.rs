@@ -1,0 +1,208 @@
+//! The methods by which fields are composed.
+
+use super::{
+    Fractal, FractalShape, Frequency, Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Warped,
+};
+use crate::{Field, RasterError, RasterErrorKind};
+use glam::DVec2;
+
+/// Composition of fields: where a field is asked, what becomes of its values, and sums of it at several scales.
+///
+/// Every field has these methods. What they give keeps the promises of [`Field`], above all the same bits from all of
+/// its doors, and has the period that follows from those of its parts.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_raster::{Field, FieldExt, field_fn, glam::DVec2};
+///
+/// let waves = field_fn(|position| (position.x - position.x.floor()) as f32);
+/// let field = (&waves).frequency(8.0).remap([0.0, 1.0], [-1.0, 1.0])?.add(waves);
+/// assert_eq!(field.sample(DVec2::new(0.0625, 0.0)), 0.0625);
+/// # Ok::<(), dapple_raster::RasterError>(())
+/// ```
+pub trait FieldExt: Field + Sized {
+    /// This field at the position times `frequency`: so many times as many features along each axis.
+    ///
+    /// For one number use `DVec2::splat`, or [`frequency`](Self::frequency).
+    fn frequency_xy(self, frequency: DVec2) -> Frequency<Self> {
+        Frequency {
+            field: self,
+            frequency,
+        }
+    }
+
+    /// This field at the position times `frequency`: so many times as many features along both axes.
+    fn frequency(self, frequency: f64) -> Frequency<Self> {
+        self.frequency_xy(DVec2::splat(frequency))
+    }
+
+    /// This field at the position plus `offset`: its features move by `-offset`.
+    fn offset(self, offset: DVec2) -> Offset<Self> {
+        Offset {
+            field: self,
+            offset,
+        }
+    }
+
+    /// This field turned about the origin by an angle in radians, from x towards y: clockwise in a picture, whose rows
+    /// go down. It has no period.
+    fn rotate(self, angle: f64) -> Rotated<Self> {
+        let (sin, cos) = libm::sincos(angle);
+        Rotated {
+            field: self,
+            direction: DVec2::new(cos, sin),
+        }
+    }
+
+    /// This field at the position plus `amount · (x, y)`, where `x` and `y` are the values of two fields there: domain
+    /// warping. An amount of 1 moves a position by as many units of the plane as the values say.
+    #[doc(alias = "domain warping")]
+    fn warp<X: Field, Y: Field>(self, x: X, y: Y, amount: f64) -> Warped<Self, X, Y> {
+        Warped {
+            field: self,
+            x,
+            y,
+            amount,
+        }
+    }
+
+    /// A function of this field's values.
+    fn map<M: Fn(f32) -> f32 + Send + Sync>(self, function: M) -> Mapped<Self, M> {
+        Mapped {
+            field: self,
+            function,
+        }
+    }
+
+    /// This field's values stretched so that `from[0]` becomes `to[0]` and `from[1]` becomes `to[1]`. Nothing is cut off.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterErrorKind::Range`] if the length of `from` is 0 or not finite, or an end of `to` is not finite.
+    fn remap(
+        self,
+        from: [f32; 2],
+        to: [f32; 2],
+    ) -> Result<Mapped<Self, impl Fn(f32) -> f32 + Copy + Send + Sync>, RasterError> {
+        let length = from[1] - from[0];
+        for (what, value, holds, range) in [
+            (
+                "length of the range",
+                length,
+                length != 0.0,
+                "finite and not 0",
+            ),
+            ("end of the new range", to[0], true, "finite"),
+            ("end of the new range", to[1], true, "finite"),
+        ] {
+            if !(holds && value.is_finite()) {
+                let value = f64::from(value);
+                return Err(RasterError::new(RasterErrorKind::Range {
+                    what,
+                    value,
+                    range,
+                }));
+            }
+        }
+        Ok(self.map(move |value| to[0] + (to[1] - to[0]) * ((value - from[0]) / length)))
+    }
+
+    /// The sum of two fields.
+    fn add<B: Field>(self, other: B) -> Pair<Self, B> {
+        self.with(other, PairOperation::Add)
+    }
+
+    /// This field less another.
+    fn sub<B: Field>(self, other: B) -> Pair<Self, B> {
+        self.with(other, PairOperation::Subtract)
+    }
+
+    /// The product of two fields.
+    fn mul<B: Field>(self, other: B) -> Pair<Self, B> {
+        self.with(other, PairOperation::Multiply)
+    }
+
+    /// The smaller of the values of two fields.
+    fn min<B: Field>(self, other: B) -> Pair<Self, B> {
+        self.with(other, PairOperation::Minimum)
+    }
+
+    /// The larger of the values of two fields.
+    fn max<B: Field>(self, other: B) -> Pair<Self, B> {
+        self.with(other, PairOperation::Maximum)
+    }
+
+    /// Two fields joined value by value.
+    fn with<B: Field>(self, other: B, operation: PairOperation) -> Pair<Self, B> {
+        Pair {
+            first: self,
+            second: other,
+            operation,
+        }
+    }
+
+    /// A part of the way from this field to another: this where `by` is 0 or less, the other where it is 1 or more.
+    fn mix<B: Field, T: Field>(self, to: B, by: T) -> Mixed<Self, B, T> {
+        Mixed { from: self, to, by }
+    }
+
+    /// Fractional Brownian motion: `Σ gain^i · field(lacunarity^i · position)` for `i` below `octaves`.
+    ///
+    /// All octaves are this one field, and so agree at the origin; [`Fractal::new`] takes a field of its own for each. A
+    /// lacunarity of 2 and a gain of ½ are usual.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Fractal::new`].
+    #[doc(alias = "fBm")]
+    fn fbm(self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Fractal<Self>, RasterError>
+    where
+        Self: Clone,
+    {
+        repeat(self, octaves, gain, lacunarity, FractalShape::Sum)
+    }
+
+    /// Ridges where the values of this field, which should lie about 0, go through 0: as [`fbm`](Self::fbm), of
+    /// `1 - |value|`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Fractal::new`].
+    fn ridged(self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Fractal<Self>, RasterError>
+    where
+        Self: Clone,
+    {
+        repeat(self, octaves, gain, lacunarity, FractalShape::Ridged)
+    }
+
+    /// Round hills with creases where the values of this field, which should lie about 0, go through 0: as
+    /// [`fbm`](Self::fbm), of `|value|`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Fractal::new`].
+    #[doc(alias = "turbulence")]
+    fn billow(self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Fractal<Self>, RasterError>
+    where
+        Self: Clone,
+    {
+        repeat(self, octaves, gain, lacunarity, FractalShape::Billow)
+    }
+}
+
+impl<F: Field> FieldExt for F {}
+
+fn repeat<F: Field + Clone>(
+    field: F,
+    octaves: u32,
+    gain: f64,
+    lacunarity: f64,
+    shape: FractalShape,
+) -> Result<Fractal<F>, RasterError> {
+    let octaves = core::iter::repeat_n(field, octaves as usize);
+    Fractal::new(octaves, gain, lacunarity, shape)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,185 @@
+//! Every combinator beside its formula, by all doors of a field, and what it refuses.
+
+use super::FieldExt;
+use crate::{Field, Fractal, FractalShape, RasterErrorKind, Window, field_fn};
+use core::f64::consts::{FRAC_PI_2, TAU};
+use glam::DVec2;
+
+/// A field with a period of 2 along x and 3 along y, whose values are from -1 to 1.
+#[derive(Clone, Copy, Debug)]
+struct Waves;
+
+impl Field for Waves {
+    fn sample(&self, position: DVec2) -> f32 {
+        (libm::sin(position.x * TAU / 2.0) * libm::cos(position.y * TAU / 3.0)) as f32
+    }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        [Some(2.0), Some(3.0)]
+    }
+}
+
+fn slope(position: DVec2) -> f32 {
+    (0.5 * position.x - 0.25 * position.y) as f32
+}
+
+/// Looks at the values of all doors, on a window larger than a band, with odd positions.
+fn check(name: &str, field: &dyn Field, formula: impl Fn(DVec2) -> f32) {
+    let origin = DVec2::new(-1.3, 0.7);
+    let whole = Window::new(origin, DVec2::new(5.1, 3.3), [300, 250]).unwrap();
+    let window = whole.scaled(DVec2::new(0.9, 1.1)).unwrap();
+    let window = window.crop([7, -3], [290, 240]).unwrap();
+    let raster = field.to_raster(&window).unwrap();
+    let positions: Vec<DVec2> = (0..240)
+        .flat_map(|row| (0..290).map(move |column| window.position(column, row)))
+        .collect();
+    let mut many = vec![0.0; positions.len()];
+    field.sample_many(&positions, &mut many).unwrap();
+    for ((&position, &rendered), &many) in positions.iter().zip(raster.pixels()).zip(&many) {
+        let expected = formula(position).to_bits();
+        assert_eq!(field.sample(position).to_bits(), expected, "{name} sampled");
+        assert_eq!(rendered.to_bits(), expected, "{name} rendered");
+        assert_eq!(many.to_bits(), expected, "{name}, many samples");
+    }
+}
+
+#[test]
+fn combinators_are_their_formulas_bit_for_bit() {
+    let (waves, slopes) = (|p: DVec2| Waves.sample(p), field_fn(slope));
+    check("frequency", &Waves.frequency(1.7), |p| waves(p * 1.7));
+    let uneven = DVec2::new(2.0, -0.3);
+    check("frequencies", &Waves.frequency_xy(uneven), |p| {
+        waves(p * uneven)
+    });
+    check("offset", &Waves.offset(uneven), |p| waves(p + uneven));
+    check("warp", &Waves.warp(slopes, Waves, 0.2), |p| {
+        waves(p + 0.2 * DVec2::new(slope(p).into(), waves(p).into()))
+    });
+    check("map", &Waves.map(|v| v * v), |p| waves(p) * waves(p));
+    check("add", &Waves.add(slopes), |p| waves(p) + slope(p));
+    check("sub", &Waves.sub(slopes), |p| waves(p) - slope(p));
+    check("mul", &Waves.mul(slopes), |p| waves(p) * slope(p));
+    check("min", &Waves.min(slopes), |p| {
+        if slope(p) < waves(p) {
+            slope(p)
+        } else {
+            waves(p)
+        }
+    });
+    check("max", &Waves.max(slopes), |p| {
+        if slope(p) > waves(p) {
+            slope(p)
+        } else {
+            waves(p)
+        }
+    });
+    check("mix", &Waves.mix(0.25_f32, slopes), |p| {
+        waves(p) + (0.25 - waves(p)) * slope(p).clamp(0.0, 1.0)
+    });
+    let remapped = Waves.remap([-1.0, 1.0], [3.0, 4.0]).unwrap();
+    check("remap", &remapped, |p| {
+        3.0 + (4.0 - 3.0) * ((waves(p) - -1.0) / 2.0)
+    });
+}
+
+#[test]
+fn fractals_are_their_sums_bit_for_bit() {
+    let sum = |shape: fn(f32) -> f32| {
+        move |p: DVec2| {
+            let octave = |frequency: f64| shape(Waves.sample(p * frequency));
+            0.0 + octave(1.0) + 0.5 * octave(3.0) + 0.25 * octave(9.0)
+        }
+    };
+    check("fbm", &Waves.fbm(3, 0.5, 3.0).unwrap(), sum(|value| value));
+    check(
+        "ridged",
+        &Waves.ridged(3, 0.5, 3.0).unwrap(),
+        sum(|value| 1.0 - value.abs()),
+    );
+    check("billow", &Waves.billow(3, 0.5, 3.0).unwrap(), sum(f32::abs));
+    assert_eq!(Waves.fbm(3, -0.5, 3.0).unwrap().weight(), 1.75);
+}
+
+#[test]
+fn a_turn_moves_features_clockwise() {
+    let right = field_fn(|position| position.x as f32).rotate(FRAC_PI_2);
+    assert!(
+        (right.sample(DVec2::Y) - 1.0).abs() < 1e-7,
+        "x points down now; sincos is rounded"
+    );
+    let odd = Waves.rotate(0.3);
+    let (sin, cos) = libm::sincos(0.3);
+    check("rotate", &odd, |DVec2 { x, y }| {
+        Waves.sample(DVec2::new(x * cos + y * sin, y * cos - x * sin))
+    });
+}
+
+#[test]
+fn periods_follow_from_those_of_the_parts() {
+    let period = |field: &dyn Field| field.period();
+    assert_eq!(period(&Waves.frequency(4.0)), [Some(0.5), Some(0.75)]);
+    assert_eq!(
+        period(&Waves.frequency_xy(DVec2::new(0.0, -2.0))),
+        [Some(0.0), Some(1.5)]
+    );
+    assert_eq!(
+        period(&Waves.offset(DVec2::X).map(f32::abs)),
+        [Some(2.0), Some(3.0)]
+    );
+    assert_eq!(period(&Waves.add(1.0_f32)), [Some(2.0), Some(3.0)]);
+    assert_eq!(
+        period(&Waves.add(Waves.frequency(0.75))),
+        [Some(8.0), Some(12.0)]
+    );
+    assert_eq!(
+        period(&Waves.fbm(4, 0.5, 2.0).unwrap()),
+        [Some(2.0), Some(3.0)]
+    );
+    assert_eq!(
+        period(&Waves.warp(Waves, 0.0_f32, 0.1)),
+        [Some(2.0), Some(3.0)]
+    );
+    assert_eq!(period(&Waves.mix(Waves, field_fn(slope))), [None; 2]);
+    assert_eq!(period(&Waves.rotate(1.0)), [None; 2]);
+}
+
+#[test]
+fn a_tile_repeats_to_the_last_bit() {
+    let field = Waves.frequency(0.5).warp(0.0_f32, 0.0_f32, 1.0);
+    let tile = field.tile_raster([16, 24]).unwrap();
+    let twice = Window::new(DVec2::ZERO, DVec2::new(8.0, 12.0), [32, 48]).unwrap();
+    let twice = field.to_raster(&twice).unwrap();
+    // The sine of the test is not periodic to the last bit.
+    for row in 0..48 {
+        for column in 0..32 {
+            let [one, other] = [tile.row(row % 24), twice.row(row)];
+            let difference = one[column % 16] - other[column];
+            assert!(difference.abs() < 1e-6, "at {column}, {row}");
+        }
+    }
+}
+
+#[test]
+fn numbers_out_of_range_are_refused() {
+    let refused = |result: Result<Fractal<Waves>, crate::RasterError>| {
+        let error = result.unwrap_err();
+        assert!(
+            matches!(error.kind(), RasterErrorKind::Range { .. }),
+            "{error}"
+        );
+        error.to_string()
+    };
+    assert!(refused(Waves.fbm(0, 0.5, 2.0)).contains("number of octaves"));
+    assert!(
+        refused(Waves.fbm(u32::MAX, 0.5, 2.0)).contains("33"),
+        "all are not made first"
+    );
+    assert!(refused(Waves.ridged(3, 1.5, 2.0)).contains("gain is 1.5"));
+    assert!(refused(Waves.billow(3, f64::NAN, 2.0)).contains("gain"));
+    assert!(refused(Waves.fbm(3, 0.5, 0.5)).contains("lacunarity is 0.5"));
+    assert!(refused(Fractal::new([], 0.5, 2.0, FractalShape::Sum)).contains("octaves"));
+    for ends in [[1.0, 1.0], [0.0, f32::INFINITY], [f32::NAN, 0.0]] {
+        assert!(Waves.remap(ends, [0.0, 1.0]).is_err(), "from {ends:?}");
+    }
+    assert!(Waves.remap([0.0, 1.0], [0.0, f32::NAN]).is_err(), "to NaN");
+}

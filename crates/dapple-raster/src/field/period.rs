@@ -1,0 +1,42 @@
+//! Periods of what is made of several fields.
+
+/// How many times the longer of two periods may go before both end at the same place; past this they count as having
+/// no period in common.
+const MOST_REPEATS: u32 = 64;
+
+/// The distance after which two fields repeat together, along each axis: the least common multiple of their periods.
+pub(super) fn common(a: [Option<f64>; 2], b: [Option<f64>; 2]) -> [Option<f64>; 2] {
+    core::array::from_fn(|axis| common_multiple(a[axis]?, b[axis]?))
+}
+
+fn common_multiple(a: f64, b: f64) -> Option<f64> {
+    let (longer, shorter) = if a < b { (b, a) } else { (a, b) };
+    if shorter == 0.0 {
+        return Some(longer);
+    }
+    (1..=MOST_REPEATS)
+        .map(|repeats| longer * f64::from(repeats))
+        .find(|multiple| multiple % shorter == 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::common_multiple;
+
+    #[test]
+    fn periods_have_their_least_common_multiple() {
+        for (a, b, expected) in [
+            (1.0, 1.0, Some(1.0)),
+            (4.0, 1.0, Some(4.0)),
+            (4.0, 6.0, Some(12.0)),
+            (0.75, 0.5, Some(1.5)),
+            (0.0, 5.0, Some(5.0)),
+            (0.0, 0.0, Some(0.0)),
+            (1.0, core::f64::consts::SQRT_2, None),
+            (127.0, 128.0, None),
+        ] {
+            assert_eq!(common_multiple(a, b), expected, "{a} and {b}");
+            assert_eq!(common_multiple(b, a), expected, "{b} and {a}");
+        }
+    }
+}

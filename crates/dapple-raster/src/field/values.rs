@@ -1,0 +1,193 @@
+//! Fields that change or join the values of others.
+
+use super::period::common;
+use crate::{Field, RasterError, RasterViewMut, Window};
+use core::fmt;
+use glam::DVec2;
+
+/// How many values of a second field are worked out at a time.
+const BAND: usize = 1 << 16;
+
+/// A field whose values go through a function: see [`FieldExt::map`](super::FieldExt::map).
+#[derive(Clone, Copy)]
+pub struct Mapped<F, M> {
+    pub(super) field: F,
+    pub(super) function: M,
+}
+
+/// Two fields joined value by value: see [`FieldExt::add`](super::FieldExt::add) and its like.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<A, B> {
+    pub(super) first: A,
+    pub(super) second: B,
+    pub(super) operation: PairOperation,
+}
+
+/// What becomes of two values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum PairOperation {
+    /// Their sum.
+    Add,
+    /// The first less the second.
+    Subtract,
+    /// Their product.
+    Multiply,
+    /// The smaller; the first, where one is not a number.
+    Minimum,
+    /// The larger; the first, where one is not a number.
+    Maximum,
+}
+
+/// A part of the way from one field to another: see [`FieldExt::mix`](super::FieldExt::mix).
+#[derive(Clone, Copy, Debug)]
+pub struct Mixed<A, B, T> {
+    pub(super) from: A,
+    pub(super) to: B,
+    pub(super) by: T,
+}
+
+impl PairOperation {
+    /// The result for two values.
+    #[must_use]
+    #[inline]
+    pub fn apply(self, a: f32, b: f32) -> f32 {
+        match self {
+            Self::Add => a + b,
+            Self::Subtract => a - b,
+            Self::Multiply => a * b,
+            Self::Minimum if b < a => b,
+            Self::Maximum if b > a => b,
+            Self::Minimum | Self::Maximum => a,
+        }
+    }
+}
+
+impl<F, M> fmt::Debug for Mapped<F, M>
+where
+    F: fmt::Debug,
+{
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Mapped").field(&self.field).finish()
+    }
+}
+
+impl<F: Field, M: Fn(f32) -> f32 + Send + Sync> Field for Mapped<F, M> {
+    fn sample(&self, position: DVec2) -> f32 {
+        (self.function)(self.field.sample(position))
+    }
+
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        self.field.sample_many(positions, values)?;
+        for value in values {
+            *value = (self.function)(*value);
+        }
+        Ok(())
+    }
+
+    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        self.field.render(window, out.reborrow())?;
+        for value in out.rows_mut().flatten() {
+            *value = (self.function)(*value);
+        }
+        Ok(())
+    }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        self.field.period()
+    }
+}
+
+impl<A: Field, B: Field> Field for Pair<A, B> {
+    fn sample(&self, position: DVec2) -> f32 {
+        let (a, b) = (self.first.sample(position), self.second.sample(position));
+        self.operation.apply(a, b)
+    }
+
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        self.first.sample_many(positions, values)?;
+        let mut others = vec![0.0; positions.len()];
+        self.second.sample_many(positions, &mut others)?;
+        for (value, &other) in values.iter_mut().zip(&others) {
+            *value = self.operation.apply(*value, other);
+        }
+        Ok(())
+    }
+
+    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        self.first.render(window, out.reborrow())?;
+        join(&self.second, window, out, |value, other| {
+            *value = self.operation.apply(*value, other);
+        })
+    }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        common(self.first.period(), self.second.period())
+    }
+}
+
+impl<A: Field, B: Field, T: Field> Field for Mixed<A, B, T> {
+    fn sample(&self, position: DVec2) -> f32 {
+        let (from, to) = (self.from.sample(position), self.to.sample(position));
+        from + (to - from) * unit(self.by.sample(position))
+    }
+
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        RasterError::check_length(values.len(), positions.len())?;
+        let mut from = vec![0.0; positions.len()];
+        let mut to = vec![0.0; positions.len()];
+        self.from.sample_many(positions, &mut from)?;
+        self.to.sample_many(positions, &mut to)?;
+        self.by.sample_many(positions, values)?;
+        for ((value, from), to) in values.iter_mut().zip(from).zip(to) {
+            *value = from + (to - from) * unit(*value);
+        }
+        Ok(())
+    }
+
+    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        let from = self.from.to_raster(window)?;
+        let to = self.to.to_raster(window)?;
+        self.by.render(window, out.reborrow())?;
+        let ends = from.pixels().iter().zip(to.pixels());
+        for (value, (from, to)) in out.rows_mut().flatten().zip(ends) {
+            *value = from + (to - from) * unit(*value);
+        }
+        Ok(())
+    }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        common(
+            common(self.from.period(), self.to.period()),
+            self.by.period(),
+        )
+    }
+}
+
+fn unit(value: f32) -> f32 {
+    value.clamp(0.0, 1.0)
+}
+
+/// Renders a field band by band and gives each of its values to `change` with the one that is there.
+pub(super) fn join(
+    field: &impl Field,
+    window: &Window,
+    out: RasterViewMut<'_, f32>,
+    change: impl Fn(&mut f32, f32),
+) -> Result<(), RasterError> {
+    let width = window.size[0];
+    let height = (BAND / width as usize).clamp(1, window.size[1] as usize) as u32;
+    let mut memory = vec![0.0; width as usize * height as usize];
+    for (band, mut values) in (0_i64..).zip(out.bands(height)) {
+        let size = values.size();
+        let part = window.crop([0, band * i64::from(height)], size)?;
+        field.render(
+            &part,
+            RasterViewMut::new(&mut memory, width as usize, size)?,
+        )?;
+        for (value, &other) in values.rows_mut().flatten().zip(&memory) {
+            change(value, other);
+        }
+    }
+    Ok(())
+}
