@@ -5,7 +5,7 @@
 //! or a part of a case's or peer's name.
 //!
 //! How rows are measured is in `harness`, how peers are used at their best in `peers`, and what each group sets side by
-//! side in `pups`, `points`, `graph`, `worley`, `wavelet`, `tile`, `mesh`, `synth` and `recipe`. The peers are built only with the
+//! side in `pups`, `points`, `graph`, `worley`, `noise`, `wavelet`, `tile`, `mesh`, `synth` and `recipe`. The peers are built only with the
 //! feature `peers`, which `cargo xtask bench` turns on; without it the rows of ours alone run.
 
 #![forbid(unsafe_code)]
@@ -27,6 +27,8 @@ mod peers;
 
 mod graph;
 mod mesh;
+#[cfg(feature = "peers")]
+mod noise;
 mod points;
 mod pups;
 mod recipe;
@@ -46,7 +48,7 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask bench")]
 struct Arguments {
-    /// Groups (pups, points, graph, worley, wavelet, tile, mesh, synth, recipe), or parts of the names of cases or peers; all
+    /// Groups (pups, points, graph, worley, noise, wavelet, tile, mesh, synth, recipe), or parts of the names of cases or peers; all
     /// of them by default.
     filters: Vec<String>,
     /// Writes the rows as JSON to this file.
@@ -77,6 +79,8 @@ fn main() -> Result<ExitCode> {
     points::run(&mut bench)?;
     graph::run(&mut bench)?;
     worley::run(&mut bench)?;
+    #[cfg(feature = "peers")]
+    noise::run(&mut bench)?;
     wavelet::run(&mut bench)?;
     tile::run(&mut bench)?;
     mesh::run(&mut bench)?;

@@ -89,8 +89,8 @@ impl Case {
 }
 
 /// The groups, in the order of the table.
-pub(crate) const GROUPS: [&str; 9] = [
-    "pups", "points", "graph", "worley", "wavelet", "tile", "mesh", "synth", "recipe",
+pub(crate) const GROUPS: [&str; 10] = [
+    "pups", "points", "graph", "worley", "noise", "wavelet", "tile", "mesh", "synth", "recipe",
 ];
 
 /// The unit of a time, or of what else is compared.

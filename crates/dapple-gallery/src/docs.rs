@@ -16,6 +16,7 @@ mod color;
 mod front;
 mod graph;
 mod mesh;
+mod noise;
 mod picture;
 mod points;
 mod preview;
@@ -58,6 +59,7 @@ pub const DOCUMENTED: &[Documented] = &[
     front::DOCUMENTED,
     color::DOCUMENTED,
     points::DOCUMENTED,
+    noise::DOCUMENTED,
     wavelet::DOCUMENTED,
     mesh::DOCUMENTED,
     graph::DOCUMENTED,

@@ -73,6 +73,12 @@ impl Domain {
         self.size.x * self.size.y
     }
 
+    /// The distances after which the domain repeats: its sides, along the axes that wrap.
+    #[must_use]
+    pub fn period(&self) -> [Option<f64>; 2] {
+        [0, 1].map(|axis| self.wrap[axis].then_some(self.size[axis]))
+    }
+
     /// The corner with the largest coordinates.
     #[must_use]
     pub fn end(&self) -> DVec2 {

@@ -79,6 +79,10 @@ impl Field for Texture {
         render(&self.pups.net, window, &sink, out.rows_mut().collect());
         Ok(())
     }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        self.pups.domain().period()
+    }
 }
 
 impl<const N: usize> VectorTexture<N> {

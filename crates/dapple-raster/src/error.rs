@@ -84,6 +84,23 @@ impl RasterError {
         Err(Self::new(RasterErrorKind::Length { length, needed }))
     }
 
+    /// Refuses a number out of its range; for those who write a [`Field`](crate::Field).
+    ///
+    /// # Errors
+    ///
+    /// [`Range`](RasterErrorKind::Range) unless it `holds`.
+    pub fn check_range(
+        holds: bool,
+        what: &'static str,
+        value: f64,
+        range: &'static str,
+    ) -> Result<(), Self> {
+        if holds {
+            return Ok(());
+        }
+        Err(Self::new(RasterErrorKind::Range { what, value, range }))
+    }
+
     /// The limit that was broken.
     #[must_use]
     pub fn kind(&self) -> &RasterErrorKind {

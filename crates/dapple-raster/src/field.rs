@@ -8,6 +8,7 @@ mod values;
 
 pub use combinators::FieldExt;
 pub use fractal::{Fractal, FractalShape};
+pub use period::common_period;
 pub use positions::{Frequency, Offset, Rotated, Warped};
 pub use values::{Mapped, Mixed, Pair, PairOperation};
 

@@ -3,7 +3,7 @@
 //! A [`Raster`] owns its pixels; a [`RasterView`] borrows a rectangle of them, a [`RasterViewMut`] borrows it for
 //! writing. A [`Window`] says where pixels lie in the plane, so that part of a picture has, to the last bit, the
 //! positions that it has in the whole. A [`Field`] is anything that has a value at every position and can fill a
-//! window with them.
+//! window with them, and [`FieldExt`] composes fields.
 //!
 //! ```
 //! use dapple_raster::{Raster, Window};
@@ -35,7 +35,7 @@ pub mod simd;
 pub use error::{RasterError, RasterErrorKind};
 pub use field::{
     Field, FieldExt, FieldFn, Fractal, FractalShape, Frequency, Mapped, Mixed, Offset, Pair,
-    PairOperation, Rotated, Warped, field_fn,
+    PairOperation, Rotated, Warped, common_period, field_fn,
 };
 pub use glam;
 pub use raster::Raster;

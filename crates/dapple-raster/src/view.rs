@@ -184,6 +184,31 @@ impl<'a, T> RasterViewMut<'a, T> {
     }
 }
 
+impl<T: Send> RasterViewMut<'_, T> {
+    /// Gives every band of `height` rows (the last one of what remains) and the number of its first row to `fill`, on all
+    /// cores where the feature `rayon` is on.
+    ///
+    /// # Panics
+    ///
+    /// If `height` is zero.
+    pub fn for_each_band(
+        self,
+        height: u32,
+        fill: impl Fn(u32, RasterViewMut<'_, T>) + Send + Sync,
+    ) {
+        // There are at most `u32::MAX` rows, hence bands.
+        let bands = self.bands(height).enumerate();
+        let fill = |(band, view): (usize, RasterViewMut<'_, T>)| fill(band as u32 * height, view);
+        #[cfg(feature = "rayon")]
+        {
+            use rayon::prelude::*;
+            bands.collect::<Vec<_>>().into_par_iter().for_each(fill);
+        }
+        #[cfg(not(feature = "rayon"))]
+        bands.for_each(fill);
+    }
+}
+
 impl<T: Copy> RasterViewMut<'_, T> {
     /// Sets every pixel to `value`.
     pub fn fill(&mut self, value: T) {

@@ -31,6 +31,7 @@
 //! |---|---|---|
 //! | cells, cracks, scales, in 2-D to 4-D | [`worley`] | [`Worley2::new`](worley::Worley::new) |
 //! | noise and turbulence of control points, cows, giraffes | [`pups`] | [`noise`](pups::noise()), [`octaves`](pups::octaves()), [`space_giraffe`](pups::space_giraffe()) |
+//! | Perlin's gradient noise, in 2-D to 4-D, and fractal sums of it | [`noise`] | [`GradientNoise2`](noise::GradientNoise2) |
 //! | noise with one octave in each band; images halved and doubled | [`wavelet`] | [`WaveletNoise2`](wavelet::WaveletNoise2), [`SplineFilter`](wavelet::SplineFilter) |
 //! | a material with all its maps, from a text | [`recipe`] | [`Recipe::builtin`](recipe::Recipe::builtin), [`Bake`](recipe::Bake) |
 //! | an image that repeats; materials blended | [`tile`] | [`Seamless`](tile::Seamless), [`SeamReport`](tile::SeamReport), [`blend`](tile::blend()) |
@@ -50,9 +51,9 @@
 //! | word | here |
 //! |---|---|
 //! | Voronoi or cellular noise | [`worley`]: distances by [`Combination`](worley::Combination), a color for each cell by [`cell_values`](worley::Worley::cell_values) |
-//! | fBm, octaves, turbulence | [`Cellular::fractal`](worley::Cellular::fractal), [`pups::octaves`](pups::octaves()), the `octaves` of a recipe's nodes |
-//! | value or gradient noise | [`pups::noise`](pups::noise()), and [`wavelet::WaveletNoise2`] where nothing may alias |
-//! | domain warping | the `warp` node of a [`recipe`] |
+//! | fBm, ridged noise, octaves, turbulence | [`GradientNoise::fractal`](noise::GradientNoise::fractal), any field by [`FieldExt`](raster::FieldExt), [`Cellular::fractal`](worley::Cellular::fractal), [`pups::octaves`](pups::octaves()), the `octaves` of a recipe's nodes |
+//! | Perlin, simplex or gradient noise | [`noise::GradientNoise2`]; [`pups::noise`](pups::noise()) without the directions of a lattice, and [`wavelet::WaveletNoise2`] where nothing may alias |
+//! | domain warping | [`FieldExt::warp`](raster::FieldExt::warp), the `warp` node of a [`recipe`] |
 //! | a heightmap, or the normal map of one | any field through [`to_raster`](raster::Field::to_raster); [`color::normal_map`] |
 //! | tileable or seamless textures | generators repeat exactly with a `period`; [`tile::Seamless`] for images that somebody else made |
 //! | blue noise | [`points::poisson_disk`]: points that keep their distance |
@@ -128,6 +129,10 @@ pub use dapple_pups as pups;
 /// Worley's cells: F1 to F4 in 2-D, 3-D and 4-D.
 #[cfg(feature = "worley")]
 pub use dapple_worley as worley;
+
+/// Gradient noise: Perlin's, with exact periods.
+#[cfg(feature = "noise")]
+pub use dapple_noise as noise;
 
 /// Spline wavelets: rasters halved and doubled exactly, and wavelet noise.
 #[cfg(feature = "wavelet")]

@@ -7,6 +7,7 @@ use super::{Generator, PERIOD, UNIT};
 use anyhow::Result;
 use core::f64::consts::{PI, TAU};
 use dapple_hash::Seed;
+use dapple_noise::{GradientNoise2, GradientNoise4};
 use dapple_points::{Domain, poisson_disk};
 use dapple_pups::{
     CellsOptions, CellularNoiseOptions, ColorNoiseOptions, CowOptions, NoiseOptions, OctaveSource,
@@ -14,7 +15,7 @@ use dapple_pups::{
     octaves, space_giraffe, turbulence,
 };
 use dapple_raster::glam::{DVec2, DVec3, DVec4};
-use dapple_raster::{Field, Raster, Window};
+use dapple_raster::{Field, FieldExt, FractalShape, Raster, Window};
 use dapple_tile::SeamOptions;
 use dapple_wavelet::{WaveletNoise2, WaveletNoise3, wavelet_tile};
 use dapple_worley::{
@@ -66,6 +67,12 @@ pub(super) const GENERATORS: &[Generator] = &[
     Generator::new("color noise", ANYWHERE, red_of_color_noise),
     Generator::new("cow", ANYWHERE, pups_cow).twice_as_fine(),
     Generator::new("space giraffe", ANYWHERE, giraffe),
+    Generator::new("gradient noise", CELLS, gradient_noise),
+    Generator::new(
+        "ridged gradient noise in space and time",
+        CELLS,
+        ridged_noise,
+    ),
     Generator::new("wavelet noise", CELLS, wavelet_noise),
     Generator::new("wavelet noise in space", CELLS, wavelet_noise_in_space),
     Generator::new("wavelet tile", CELLS, tile_of_wavelets),
@@ -317,6 +324,23 @@ fn giraffe(seed: Seed, window: &Window) -> Result<Raster<f32>> {
         ..SpaceGiraffeOptions::default()
     };
     Ok(space_giraffe(&options, seed)?.to_raster(window)?)
+}
+
+// Gradient noise.
+
+fn gradient_noise(seed: Seed, window: &Window) -> Result<Raster<f32>> {
+    let noise = GradientNoise2::new(seed).with_period([Some(PERIOD); 2])?;
+    Ok(noise
+        .fractal(3, 0.5, 2.0, FractalShape::Sum)?
+        .to_raster(window)?)
+}
+
+fn ridged_noise(seed: Seed, window: &Window) -> Result<Raster<f32>> {
+    let noise = GradientNoise4::new(seed).with_period([Some(PERIOD), Some(PERIOD), None, None])?;
+    Ok(noise
+        .slice(0.375, 7.625)
+        .ridged(3, 0.5, 2.0)?
+        .to_raster(window)?)
 }
 
 // Wavelets.

@@ -165,6 +165,10 @@ impl Field for LabelTexture {
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         render_labels(&self.pups, window, out, |point| self.value(Some(point)))
     }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        self.pups.domain().period()
+    }
 }
 
 impl<const N: usize> VectorLabelTexture<N> {

@@ -1,6 +1,6 @@
 //! Sums of layers, each with an amplitude: octaves of noise (equation 5) and cells of several sizes (figure 10).
 
-use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
+use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window, common_period};
 use glam::DVec2;
 
 /// A weighted sum of fields whose values are between 0 and 1.
@@ -113,5 +113,10 @@ impl<F: Field> Field for Layers<F> {
             *sum = self.finish(*sum);
         }
         Ok(())
+    }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        let periods = self.layers.iter().map(Field::period);
+        periods.fold([Some(0.0); 2], common_period)
     }
 }

@@ -81,4 +81,9 @@ impl Field for Octave {
         }
         Ok(())
     }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        let scaled = |period: Option<f64>| Some(period? / self.scale);
+        self.texture.period().map(scaled)
+    }
 }

@@ -3,7 +3,7 @@
 use super::{
     Fractal, FractalShape, Frequency, Mapped, Mixed, Offset, Pair, PairOperation, Rotated, Warped,
 };
-use crate::{Field, RasterError, RasterErrorKind};
+use crate::{Field, RasterError};
 use glam::DVec2;
 
 /// Composition of fields: where a field is asked, what becomes of its values, and sums of it at several scales.
@@ -79,7 +79,7 @@ pub trait FieldExt: Field + Sized {
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Range`] if the length of `from` is 0 or not finite, or an end of `to` is not finite.
+    /// [`Range`](crate::RasterErrorKind::Range) if the length of `from` is 0 or not finite, or an end of `to` is not finite.
     fn remap(
         self,
         from: [f32; 2],
@@ -96,14 +96,7 @@ pub trait FieldExt: Field + Sized {
             ("end of the new range", to[0], true, "finite"),
             ("end of the new range", to[1], true, "finite"),
         ] {
-            if !(holds && value.is_finite()) {
-                let value = f64::from(value);
-                return Err(RasterError::new(RasterErrorKind::Range {
-                    what,
-                    value,
-                    range,
-                }));
-            }
+            RasterError::check_range(holds && value.is_finite(), what, value.into(), range)?;
         }
         Ok(self.map(move |value| to[0] + (to[1] - to[0]) * ((value - from[0]) / length)))
     }

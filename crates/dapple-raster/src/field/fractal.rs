@@ -3,9 +3,9 @@
 //! Fractional Brownian motion, ridged and billowed sums as in F. Kenton Musgrave's chapters of Ebert et al., "Texturing
 //! and Modeling: A Procedural Approach", 3rd edition, 2003.
 
-use super::period::common;
+use super::common_period;
 use super::values::join;
-use crate::{Field, Frequency, RasterError, RasterErrorKind, RasterViewMut, Window};
+use crate::{Field, Frequency, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
 /// The most octaves of a sum.
@@ -67,7 +67,7 @@ impl<F: Field> Fractal<F> {
     ///
     /// # Errors
     ///
-    /// [`RasterErrorKind::Range`] unless there are 1 to 32 octaves, the gain is from -1 to 1 and the lacunarity from 1 to
+    /// [`Range`](crate::RasterErrorKind::Range) unless there are 1 to 32 octaves, the gain is from -1 to 1 and the lacunarity from 1 to
     /// 16.
     pub fn new(
         octaves: impl IntoIterator<Item = F>,
@@ -75,9 +75,9 @@ impl<F: Field> Fractal<F> {
         lacunarity: f64,
         shape: FractalShape,
     ) -> Result<Self, RasterError> {
-        check((-1.0..=1.0).contains(&gain), "gain", gain, "from -1 to 1")?;
+        RasterError::check_range((-1.0..=1.0).contains(&gain), "gain", gain, "from -1 to 1")?;
         let holds = (1.0..=16.0).contains(&lacunarity);
-        check(holds, "lacunarity", lacunarity, "from 1 to 16")?;
+        RasterError::check_range(holds, "lacunarity", lacunarity, "from 1 to 16")?;
         let (mut frequency, mut weight) = (1.0, 1.0);
         let mut sum = Self {
             octaves: Vec::new(),
@@ -95,7 +95,7 @@ impl<F: Field> Fractal<F> {
         }
         let count = sum.octaves.len();
         let holds = (1..=MOST_OCTAVES).contains(&count);
-        check(holds, "number of octaves", count as f64, "from 1 to 32")?;
+        RasterError::check_range(holds, "number of octaves", count as f64, "from 1 to 32")?;
         Ok(sum)
     }
 
@@ -109,22 +109,6 @@ impl<F: Field> Fractal<F> {
     fn octaves(&self) -> impl Iterator<Item = (&Frequency<F>, f32)> {
         self.octaves.iter().zip(self.weights.iter().copied())
     }
-}
-
-fn check(
-    holds: bool,
-    what: &'static str,
-    value: f64,
-    range: &'static str,
-) -> Result<(), RasterError> {
-    if holds {
-        return Ok(());
-    }
-    Err(RasterError::new(RasterErrorKind::Range {
-        what,
-        value,
-        range,
-    }))
 }
 
 impl<F: Field> Field for Fractal<F> {
@@ -162,6 +146,6 @@ impl<F: Field> Field for Fractal<F> {
 
     fn period(&self) -> [Option<f64>; 2] {
         let periods = self.octaves.iter().map(Field::period);
-        periods.fold([Some(0.0); 2], common)
+        periods.fold([Some(0.0); 2], common_period)
     }
 }

@@ -4,8 +4,10 @@
 /// no period in common.
 const MOST_REPEATS: u32 = 64;
 
-/// The distance after which two fields repeat together, along each axis: the least common multiple of their periods.
-pub(super) fn common(a: [Option<f64>; 2], b: [Option<f64>; 2]) -> [Option<f64>; 2] {
+/// The distance after which two fields repeat together along each axis: the least common multiple of their
+/// [periods](crate::Field::period), if it is at most 64 times the longer one. For those who write a field of fields.
+#[must_use]
+pub fn common_period(a: [Option<f64>; 2], b: [Option<f64>; 2]) -> [Option<f64>; 2] {
     core::array::from_fn(|axis| common_multiple(a[axis]?, b[axis]?))
 }
 

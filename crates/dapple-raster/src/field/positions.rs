@@ -1,6 +1,6 @@
 //! Fields that ask another field elsewhere.
 
-use super::period::common;
+use super::common_period;
 use crate::{Field, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
@@ -156,9 +156,9 @@ impl<F: Field, X: Field, Y: Field> Field for Warped<F, X, Y> {
     }
 
     fn period(&self) -> [Option<f64>; 2] {
-        common(
+        common_period(
             self.field.period(),
-            common(self.x.period(), self.y.period()),
+            common_period(self.x.period(), self.y.period()),
         )
     }
 }

@@ -1,6 +1,6 @@
 //! Fields that change or join the values of others.
 
-use super::period::common;
+use super::common_period;
 use crate::{Field, RasterError, RasterViewMut, Window};
 use core::fmt;
 use glam::DVec2;
@@ -87,8 +87,10 @@ impl<F: Field, M: Fn(f32) -> f32 + Send + Sync> Field for Mapped<F, M> {
 
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         self.field.render(window, out.reborrow())?;
-        for value in out.rows_mut().flatten() {
-            *value = (self.function)(*value);
+        for values in out.rows_mut() {
+            for value in values {
+                *value = (self.function)(*value);
+            }
         }
         Ok(())
     }
@@ -122,7 +124,7 @@ impl<A: Field, B: Field> Field for Pair<A, B> {
     }
 
     fn period(&self) -> [Option<f64>; 2] {
-        common(self.first.period(), self.second.period())
+        common_period(self.first.period(), self.second.period())
     }
 }
 
@@ -149,16 +151,18 @@ impl<A: Field, B: Field, T: Field> Field for Mixed<A, B, T> {
         let from = self.from.to_raster(window)?;
         let to = self.to.to_raster(window)?;
         self.by.render(window, out.reborrow())?;
-        let ends = from.pixels().iter().zip(to.pixels());
-        for (value, (from, to)) in out.rows_mut().flatten().zip(ends) {
-            *value = from + (to - from) * unit(*value);
+        let (from, to) = (from.view(), to.view());
+        for (values, (from, to)) in out.rows_mut().zip(from.rows().zip(to.rows())) {
+            for ((value, from), to) in values.iter_mut().zip(from).zip(to) {
+                *value = from + (to - from) * unit(*value);
+            }
         }
         Ok(())
     }
 
     fn period(&self) -> [Option<f64>; 2] {
-        common(
-            common(self.from.period(), self.to.period()),
+        common_period(
+            common_period(self.from.period(), self.to.period()),
             self.by.period(),
         )
     }
@@ -185,8 +189,11 @@ pub(super) fn join(
             &part,
             RasterViewMut::new(&mut memory, width as usize, size)?,
         )?;
-        for (value, &other) in values.rows_mut().flatten().zip(&memory) {
-            change(value, other);
+        // One loop for each row: a flat one would not become vector instructions.
+        for (values, others) in values.rows_mut().zip(memory.chunks_exact(width as usize)) {
+            for (value, &other) in values.iter_mut().zip(others) {
+                change(value, other);
+            }
         }
     }
     Ok(())

@@ -40,6 +40,10 @@ impl Field for WaveletNoise<2> {
         let bands: Vec<_> = self.bands.iter().map(|band| (band, &self.tile)).collect();
         render(&bands, self.periods, window, out)
     }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        self.size().map(|cells| Some(f64::from(cells)))
+    }
 }
 
 impl WaveletNoise<3> {

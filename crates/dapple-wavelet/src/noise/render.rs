@@ -20,22 +20,11 @@ pub(super) fn render<const N: usize>(
 ) -> Result<(), RasterError> {
     window.check_size(out.size())?;
     let picture = Picture::new(bands, periods, window);
-    let fill = |(index, mut strip): (usize, RasterViewMut<'_, f32>)| {
-        // There are at most `u32::MAX` rows.
-        let first = index as u32 * ROWS;
-        for (row, values) in (first..).zip(strip.rows_mut()) {
+    out.for_each_band(ROWS, |first, mut band| {
+        for (row, values) in (first..).zip(band.rows_mut()) {
             picture.fill_row(row, values);
         }
-    };
-    let strips = out.bands(ROWS).enumerate();
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        let strips: Vec<_> = strips.collect();
-        strips.into_par_iter().for_each(fill);
-    }
-    #[cfg(not(feature = "rayon"))]
-    strips.for_each(fill);
+    });
     Ok(())
 }
 

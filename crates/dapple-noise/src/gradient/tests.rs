@@ -1,0 +1,321 @@
+//! The noise beside its formula as a sum over all corners, its bounds, periods, doors and pinned values.
+
+use super::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4, fade};
+use crate::gradients::all;
+use dapple_hash::{Seed, hash1};
+use dapple_raster::simd::for_every_level;
+use dapple_raster::{Field, FractalShape, RasterErrorKind, Window};
+use fearless_simd::Level;
+use glam::DVec2;
+use proptest::prelude::*;
+
+const SEED: Seed = Seed(7);
+
+/// The sum over the 2^N corners of the product of the blends along all axes and of the gradient's plane, in `f64`.
+fn oracle<const N: usize>(noise: &GradientNoise<N>, position: [f64; N]) -> f64 {
+    let blend = |t: f64| t * t * t * (10.0 + t * (6.0 * t - 15.0));
+    let mut sum = 0.0;
+    for corner in 0..1 << N {
+        let far: [i64; N] = core::array::from_fn(|axis| corner >> axis & 1);
+        let cell: [i64; N] = core::array::from_fn(|axis| position[axis].floor() as i64 + far[axis]);
+        let gradient = noise.line(Level::baseline(), cell, &cell[..1])[0];
+        let (mut weight, mut plane) = (1.0, 0.0);
+        for axis in 0..N {
+            let t = position[axis] - position[axis].floor();
+            let to_far = blend(t);
+            weight *= if far[axis] == 1 { to_far } else { 1.0 - to_far };
+            plane += f64::from(gradient[axis]) * (position[axis] - cell[axis] as f64);
+        }
+        sum += weight * plane;
+    }
+    sum
+}
+
+/// Positions that look random, within 50 cells of the origin.
+fn positions<const N: usize>(count: u32) -> impl Iterator<Item = [f64; N]> {
+    (0..count).map(|index| {
+        core::array::from_fn(|axis| {
+            let bits = hash1(Seed(9), [i64::from(index)], axis as u32) >> 11;
+            bits as f64 / (1_u64 << 53) as f64 * 100.0 - 50.0
+        })
+    })
+}
+
+#[test]
+fn values_are_the_sum_over_all_corners() {
+    fn check<const N: usize>(noise: &GradientNoise<N>) {
+        for position in positions(2000) {
+            let difference = f64::from(noise.sample(position)) - oracle(noise, position);
+            // A dozen roundings of numbers up to 3.
+            assert!(difference.abs() < 2e-6, "{difference} at {position:?}");
+        }
+    }
+    check(&GradientNoise2::new(SEED));
+    check(&GradientNoise3::new(SEED));
+    check(&GradientNoise4::new(SEED));
+    check(
+        &GradientNoise2::new(SEED)
+            .with_period([Some(3), None])
+            .unwrap(),
+    );
+}
+
+/// The largest value that any gradients make at an offset in a cell.
+fn supremum<const N: usize>(offset: [f64; N]) -> f64 {
+    (0..1 << N)
+        .map(|corner: usize| {
+            let (mut weight, mut to_corner) = (1.0, [0.0; N]);
+            for axis in 0..N {
+                let far = corner >> axis & 1;
+                let to_far = f64::from(fade(offset[axis] as f32));
+                weight *= if far == 1 { to_far } else { 1.0 - to_far };
+                to_corner[axis] = offset[axis] - far as f64;
+            }
+            let plane = |gradient: [f32; N]| {
+                let parts = gradient.into_iter().zip(to_corner);
+                parts.map(|(part, t)| f64::from(part) * t).sum::<f64>()
+            };
+            weight * all().into_iter().map(plane).fold(f64::MIN, f64::max)
+        })
+        .sum()
+}
+
+/// The largest value of any noise: the best of a grid over half a cell (the rest is its mirror image), then of ever finer
+/// grids around it.
+fn largest<const N: usize>() -> f64 {
+    let steps: i32 = [0, 0, 40, 20, 10][N];
+    let (mut center, mut reach) = ([0.25; N], 0.25);
+    let mut best = 0.0;
+    for _ in 0..12 {
+        let mut found = center;
+        for place in 0..(steps + 1).pow(N as u32) {
+            let offset: [f64; N] = core::array::from_fn(|axis| {
+                let step = place / (steps + 1).pow(axis as u32) % (steps + 1);
+                center[axis] + reach * f64::from(2 * step - steps) / f64::from(steps)
+            });
+            let value = supremum(offset);
+            if value > best {
+                (best, found) = (value, offset);
+            }
+        }
+        center = found;
+        reach *= 0.3;
+    }
+    best
+}
+
+#[test]
+fn bounds_are_the_largest_values_that_gradients_can_make() {
+    for (largest, bound) in [
+        (largest::<2>(), GradientNoise2::BOUND),
+        (largest::<3>(), GradientNoise3::BOUND),
+        (largest::<4>(), GradientNoise4::BOUND),
+    ] {
+        let bound = f64::from(bound);
+        // The search ends within a millionth of the largest, and the bounds are rounded up to the fourth digit.
+        assert!(largest <= bound + 1e-6, "{largest} is past {bound}");
+        assert!(largest > bound - 1e-3, "{largest} is far from {bound}");
+    }
+}
+
+#[test]
+fn mean_and_variance_are_the_stated_ones() {
+    fn moments<const N: usize>(noise: &GradientNoise<N>) -> [f64; 2] {
+        let values: Vec<f64> = positions(100_000)
+            .map(|at| noise.sample(at).into())
+            .collect();
+        let mean = values.iter().sum::<f64>() / 1e5;
+        [
+            mean,
+            values
+                .iter()
+                .map(|value| (value - mean) * (value - mean))
+                .sum::<f64>()
+                / 1e5,
+        ]
+    }
+    for (axes, [mean, variance], stated) in [
+        (2, moments(&GradientNoise2::new(SEED)), 0.0931),
+        (3, moments(&GradientNoise3::new(SEED)), 0.0729),
+        (4, moments(&GradientNoise4::new(SEED)), 0.0857),
+    ] {
+        // Ten standard errors: some 10,000 cells have been seen.
+        assert!(mean.abs() < 0.03, "the mean of {axes} axes is {mean}");
+        assert!(
+            (variance / stated - 1.0).abs() < 0.05,
+            "the variance of {axes} axes is {variance}"
+        );
+    }
+}
+
+#[test]
+fn every_corner_of_the_lattice_is_zero() {
+    let noise = GradientNoise3::new(SEED);
+    for corner in positions::<3>(100) {
+        assert_eq!(noise.sample(corner.map(f64::round)), 0.0, "at {corner:?}");
+    }
+}
+
+#[test]
+fn a_window_has_the_values_of_its_positions_bit_for_bit() {
+    let plane = GradientNoise2::new(SEED)
+        .with_period([Some(5), None])
+        .unwrap();
+    let fields: [&dyn Field; 4] = [
+        &plane,
+        &GradientNoise3::new(SEED).slice(0.3),
+        &GradientNoise4::new(SEED).slice(-2.75, 1e6 + 0.1),
+        &plane.fractal(3, 0.5, 2.0, FractalShape::Billow).unwrap(),
+    ];
+    for extent in [[1.3, 0.7], [-40.0, 90.0], [700.0, 1e9]] {
+        let origin = DVec2::new(-3.3, 1e7 + 0.2);
+        let whole = Window::new(origin, extent.into(), [90, 70]).unwrap();
+        let window = whole.crop([-5, 3], [85, 67]).unwrap();
+        for field in fields {
+            let raster = field.to_raster(&window).unwrap();
+            for (row, values) in (0..).zip(raster.view().rows()) {
+                for (column, value) in (0..).zip(values) {
+                    let sampled = field.sample(window.position(column, row));
+                    assert_eq!(value.to_bits(), sampled.to_bits(), "at {column}, {row}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_simd_level_finds_the_same_gradients() {
+    let noise = GradientNoise3::new(SEED)
+        .with_period([Some(7), None, None])
+        .unwrap();
+    let columns: Vec<i64> = (-20..50).chain([i64::MIN, i64::MAX]).collect();
+    let at = [0, i64::MIN, 3];
+    let expected: Vec<[f32; 3]> = (columns.iter())
+        .map(|&column| super::chosen(noise.hash(at), noise.repeated(column, 0)))
+        .collect();
+    for_every_level(|level| assert_eq!(noise.line(level, at, &columns), expected, "{level:?}"));
+}
+
+#[test]
+fn a_tile_repeats_exactly_along_each_axis_that_was_asked_for() {
+    let noise = GradientNoise4::new(SEED).with_period([Some(3), None, Some(1), Some(70_000)]);
+    let noise = noise.unwrap();
+    for position in positions::<4>(500) {
+        // On a grid of 2^-20, where sums are exact.
+        let position = position.map(|x| (x * 1_048_576.0).round() / 1_048_576.0);
+        let value = noise.sample(position);
+        for (axis, period) in [(0, -3.0), (2, 1.0), (3, 140_000.0)] {
+            let mut repeat = position;
+            repeat[axis] += period;
+            assert_eq!(noise.sample(repeat), value, "axis {axis} at {position:?}");
+        }
+        let mut other = position;
+        other[1] += 3.0;
+        assert_ne!(noise.sample(other), value, "axis 1 at {position:?}");
+    }
+    assert_eq!(noise.slice(0.0, 0.0).period(), [Some(3.0), None]);
+}
+
+#[test]
+fn octaves_differ_and_keep_the_period() {
+    let noise = GradientNoise2::new(SEED)
+        .with_period([Some(3), Some(5)])
+        .unwrap();
+    let sum = noise.fractal(4, 0.5, 2.0, FractalShape::Sum).unwrap();
+    assert_eq!(sum.period(), [Some(3.0), Some(5.0)]);
+    assert_ne!(sum.sample(DVec2::new(1.25, 2.5)), 0.0);
+    assert_ne!(
+        noise.octaves(2, 2.0).unwrap()[0].seed,
+        SEED,
+        "the first, too, is a child"
+    );
+    let position = DVec2::new(1.25, 2.5);
+    assert_eq!(
+        sum.sample(position),
+        sum.sample(position + DVec2::new(3.0, -5.0))
+    );
+}
+
+#[test]
+fn numbers_out_of_range_are_refused() {
+    let noise = GradientNoise2::new(SEED);
+    let tiled = noise.with_period([Some(1 << 30), None]).unwrap();
+    for (error, part) in [
+        (
+            noise.with_period([None, Some(0)]).unwrap_err(),
+            "period is 0",
+        ),
+        (
+            noise.fractal(0, 0.5, 2.0, FractalShape::Sum).unwrap_err(),
+            "octaves is 0",
+        ),
+        (
+            noise.fractal(33, 0.5, 2.0, FractalShape::Sum).unwrap_err(),
+            "octaves is 33",
+        ),
+        (
+            noise
+                .fractal(3, 0.5, f64::NAN, FractalShape::Sum)
+                .unwrap_err(),
+            "lacunarity",
+        ),
+        (
+            tiled.fractal(2, 0.5, 1.5, FractalShape::Sum).unwrap_err(),
+            "whole number",
+        ),
+        (
+            tiled.fractal(4, 0.5, 2.0, FractalShape::Sum).unwrap_err(),
+            "below 2^32",
+        ),
+    ] {
+        let is_range = matches!(error.kind(), RasterErrorKind::Range { .. });
+        assert!(is_range && error.to_string().contains(part), "{error}");
+    }
+}
+
+#[test]
+fn positions_that_are_not_finite_have_one_value() {
+    let noise = GradientNoise2::new(SEED);
+    let nan = f32::NAN.to_bits();
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert_eq!(noise.sample([bad, 0.5]).to_bits(), nan, "{bad} along x");
+        assert_eq!(noise.sample([0.5, bad]).to_bits(), nan, "{bad} along y");
+    }
+    // Columns go from finite to infinite.
+    let window = Window::new(DVec2::ZERO, DVec2::splat(1e308), [4, 4]).unwrap();
+    let window = window.crop([0, 0], [20, 20]).unwrap();
+    let raster = noise.to_raster(&window).unwrap();
+    for (index, value) in (0..).zip(raster.pixels()) {
+        let sampled = noise.sample(window.position(index % 20, index / 20));
+        assert_eq!(value.to_bits(), sampled.to_bits(), "pixel {index}");
+    }
+    assert_eq!(raster.row(0)[19].to_bits(), nan, "past the largest number");
+}
+
+#[test]
+fn value_stability_gradient_noise() {
+    let values = [
+        GradientNoise2::new(SEED).sample([0.25, 0.5]),
+        GradientNoise2::new(SEED).sample([-1e9 + 0.25, 3.7]),
+        GradientNoise3::new(SEED).sample([0.25, 0.5, 0.75]),
+        GradientNoise4::new(SEED).sample([0.25, 0.5, 0.75, 0.3]),
+    ];
+    assert_eq!(
+        values,
+        [-0.543_341_9, -0.348_946_33, -0.267_920_97, -0.096_259_91]
+    );
+}
+
+proptest! {
+    #[test]
+    fn values_stay_within_the_bounds(seed: u64, position: [f64; 4]) {
+        let [x, y, z, w] = position;
+        let finite = position.iter().all(|part| part.is_finite());
+        let plane = GradientNoise2::new(Seed(seed)).sample([x, y]);
+        let space = GradientNoise3::new(Seed(seed)).sample([x, y, z]);
+        let time = GradientNoise4::new(Seed(seed)).sample([x, y, z, w]);
+        prop_assert!(!finite || plane.abs() <= GradientNoise2::BOUND);
+        prop_assert!(!finite || space.abs() <= GradientNoise3::BOUND);
+        prop_assert!(!finite || time.abs() <= GradientNoise4::BOUND);
+    }
+}

@@ -1,0 +1,27 @@
+//! Gradient noise: smooth noise with features of one size, in two to four dimensions.
+//!
+//! [`GradientNoise`] is Perlin's, improved: the noise that most programs mean by "Perlin noise". It repeats exactly where
+//! it is asked to, is the same on every machine, and draws windows at a fraction of a nanosecond per pixel. It is a
+//! [`Field`](dapple_raster::Field), so that all of [`FieldExt`](dapple_raster::FieldExt) composes it.
+//!
+//! ```
+//! use dapple_noise::{GradientNoise2, hash::Seed, raster::{Field, FractalShape}};
+//!
+//! // Eight features along each side of a tile, with five octaves.
+//! let noise = GradientNoise2::new(Seed(7)).with_period([Some(8), Some(8)])?;
+//! let tile = noise.fractal(5, 0.5, 2.0, FractalShape::Sum)?.tile_raster([256, 256])?;
+//! assert_eq!(tile.size(), [256, 256]);
+//! # Ok::<(), dapple_noise::raster::RasterError>(())
+//! ```
+
+#![forbid(unsafe_code)]
+
+mod gradient;
+mod gradients;
+mod lines;
+mod slice;
+
+pub use dapple_hash as hash;
+pub use dapple_raster as raster;
+pub use gradient::{GradientNoise, GradientNoise2, GradientNoise3, GradientNoise4};
+pub use slice::Slice;

@@ -1,0 +1,194 @@
+//! Windows of noise, row by row.
+//!
+//! The pixels of a row share all coordinates but the first, so that a column of corners is blended along the other axes
+//! once for the row; then each pixel lies between two columns. Every corner is hashed once for a band of rows.
+
+use crate::GradientNoise;
+use crate::gradient::{Column, Place, corner, corners, fade};
+use dapple_raster::{RasterError, RasterViewMut, Window, simd};
+use std::mem;
+use std::ops::Range;
+
+/// How many rows of pixels a thread takes at once.
+const ROWS: u32 = 32;
+
+/// Cells with fewer pixels than this in a row are not worth a loop of their own.
+const SHORT_RUN: usize = 6;
+
+/// A plane through the noise, with what the columns of a window share.
+pub(crate) struct Lines<'a, const N: usize, const REST: usize> {
+    noise: &'a GradientNoise<N>,
+    window: &'a Window,
+    /// The coordinates along the axes past the second.
+    rest: [Place; REST],
+    /// The first coordinates of the corners.
+    columns: Vec<i64>,
+    /// Pixels that lie in the same column of cells, one after the other.
+    runs: Vec<Run>,
+    /// Where each pixel lies in its cell.
+    offsets: Vec<f32>,
+    fades: Vec<f32>,
+}
+
+struct Run {
+    cell: i64,
+    /// Whether the first coordinates of the pixels are finite.
+    is_finite: bool,
+    /// The columns of corners on the left and on the right.
+    sides: [usize; 2],
+    pixels: Range<usize>,
+}
+
+/// The corners around a row of cells, and memory for a row of pixels.
+struct Corners<const N: usize> {
+    /// The coordinates of the cells; the first says nothing.
+    cell: [i64; N],
+    /// The lines of corners, in the order of [`corner`].
+    lines: Vec<Line<N>>,
+    /// The columns blended for a row of pixels.
+    columns: Vec<Column>,
+}
+
+/// The gradients along a line of the lattice.
+struct Line<const N: usize> {
+    /// The coordinates of the corners; the first says nothing.
+    at: [i64; N],
+    gradients: Vec<[f32; N]>,
+}
+
+impl<'a, const N: usize, const REST: usize> Lines<'a, N, REST> {
+    pub(crate) fn new(noise: &'a GradientNoise<N>, window: &'a Window, rest: [f64; REST]) -> Self {
+        let mut columns = Vec::new();
+        let mut runs: Vec<Run> = Vec::new();
+        let mut offsets = Vec::new();
+        for column in 0..window.size[0] {
+            let place = Place::of(window.column_x(column));
+            match runs.last_mut() {
+                Some(run) if run.holds(place) => run.pixels.end += 1,
+                last => {
+                    let run = Run::new(place, last.as_deref(), &mut columns, offsets.len());
+                    runs.push(run);
+                }
+            }
+            offsets.push(place.offset);
+        }
+        Self {
+            noise,
+            window,
+            rest: rest.map(Place::of),
+            columns,
+            runs,
+            fades: offsets.iter().map(|&offset| fade(offset)).collect(),
+            offsets,
+        }
+    }
+
+    /// Fills memory of the window's size, on all cores where the feature `rayon` is on.
+    pub(crate) fn render(&self, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        self.window.check_size(out.size())?;
+        out.for_each_band(ROWS, |first, mut band| {
+            let mut corners = Corners {
+                cell: [0; N],
+                lines: Vec::new(),
+                columns: Vec::new(),
+            };
+            for (row, values) in (first..).zip(band.rows_mut()) {
+                self.fill_row(row, values, &mut corners);
+            }
+        });
+        Ok(())
+    }
+
+    fn fill_row(&self, row: u32, values: &mut [f32], corners: &mut Corners<N>) {
+        let mut places = [Place::of(self.window.row_y(row)); N];
+        places[2..].copy_from_slice(&self.rest);
+        if places.iter().any(|place| !place.offset.is_finite()) {
+            values.fill(f32::NAN);
+            return;
+        }
+        corners.move_to(places.map(|place| place.cell), &self.columns, self.noise);
+        corners.blend(&places.map(|place| place.offset), self.columns.len());
+        let is_short = values.len() < SHORT_RUN * self.runs.len();
+        for run in &self.runs {
+            let pixels = run.pixels.clone();
+            let sides = run.sides.map(|side| corners.columns[side]);
+            let (offsets, fades) = (&self.offsets[pixels.clone()], &self.fades[pixels.clone()]);
+            if !run.is_finite {
+                values[pixels].fill(f32::NAN);
+            } else if is_short {
+                // A loop that is not unrolled.
+                let mut values = values[pixels].iter_mut();
+                let mut places = offsets.iter().zip(fades);
+                while let (Some(value), Some((&t, &by))) = (values.next(), places.next()) {
+                    *value = Column::between(sides, t, by);
+                }
+            } else {
+                for ((value, &t), &by) in values[pixels].iter_mut().zip(offsets).zip(fades) {
+                    *value = Column::between(sides, t, by);
+                }
+            }
+        }
+    }
+}
+
+impl Run {
+    /// A run that begins at a pixel; columns of corners that the run before it does not share are added to `columns`.
+    fn new(place: Place, before: Option<&Self>, columns: &mut Vec<i64>, pixel: usize) -> Self {
+        let cell = place.cell;
+        let mut add = |column| {
+            columns.push(column);
+            columns.len() - 1
+        };
+        let sides = match before {
+            Some(before) if before.cell.wrapping_add(1) == cell => {
+                [before.sides[1], add(cell.wrapping_add(1))]
+            }
+            Some(before) if before.cell.wrapping_sub(1) == cell => [add(cell), before.sides[0]],
+            _ => [add(cell), add(cell.wrapping_add(1))],
+        };
+        Self {
+            cell,
+            is_finite: place.offset.is_finite(),
+            sides,
+            pixels: pixel..pixel + 1,
+        }
+    }
+
+    fn holds(&self, place: Place) -> bool {
+        self.cell == place.cell && self.is_finite == place.offset.is_finite()
+    }
+}
+
+impl<const N: usize> Corners<N> {
+    /// Has the corners around the cells in the row of `cell`; lines that are there already are kept.
+    fn move_to(&mut self, mut cell: [i64; N], columns: &[i64], noise: &GradientNoise<N>) {
+        cell[0] = 0;
+        if self.cell == cell && !self.lines.is_empty() {
+            return;
+        }
+        let mut before = mem::take(&mut self.lines);
+        self.cell = cell;
+        let level = simd::level();
+        self.lines = (0..corners(N))
+            .map(|index| {
+                let at = corner(cell, index);
+                match before.iter().position(|line| line.at == at) {
+                    Some(known) => before.swap_remove(known),
+                    None => Line {
+                        at,
+                        gradients: noise.line(level, at, columns),
+                    },
+                }
+            })
+            .collect();
+    }
+
+    /// Blends the columns for a row of pixels, whose offsets in the cells these are; the first says nothing.
+    fn blend(&mut self, offsets: &[f32; N], count: usize) {
+        self.columns.clear();
+        self.columns.extend(
+            (0..count)
+                .map(|column| Column::blend(|line| self.lines[line].gradients[column], offsets)),
+        );
+    }
+}
