@@ -15,97 +15,97 @@ pub struct ImageError {
     source: Option<Box<dyn Error + Send + Sync>>,
 }
 
-/// What went wrong.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum ImageErrorKind {
-    /// The operating system refused to read or write; the source says why.
-    Io,
-    /// The bytes begin like no format that is read, or not like the one that was asked for.
-    UnknownFormat,
-    /// The bytes break the rules of their format, or end too soon.
-    Damaged {
-        /// The format that they seemed to have.
-        format: &'static str,
-    },
-    /// The file uses a feature of its format that is not read.
-    Unsupported {
-        /// What is not read.
-        feature: &'static str,
-    },
-    /// The image has no pixel.
-    Empty {
-        /// Columns and rows.
-        size: [u64; 2],
-    },
-    /// The image has more pixels than the limit.
-    TooManyPixels {
-        /// Columns and rows.
-        size: [u64; 2],
-        /// The limit.
-        limit: u64,
-    },
-    /// The image takes more memory than the limit, in bytes.
-    TooManyBytes {
-        /// How many it takes, as far as that is known.
-        bytes: u64,
-        /// The limit.
-        limit: u64,
-    },
-    /// The image has a side that the format has no room for.
-    TooLarge {
-        /// The format.
-        format: &'static str,
-        /// Columns and rows.
-        size: [u32; 2],
-        /// The longest side, in pixels.
-        limit: u32,
-    },
-    /// Rows of the wrong width were to be written.
-    RowWidth {
-        /// The width of the rows, in pixels.
-        width: u32,
-        /// The width of the image.
-        needed: u32,
-    },
-    /// More rows were to be written than the image has.
-    TooManyRows {
-        /// How many there would be.
-        rows: u64,
-        /// How many the image has.
-        needed: u32,
-    },
-    /// The image was to be finished before all of its rows were written.
-    MissingRows {
-        /// How many there are.
-        rows: u32,
-        /// How many the image has.
-        needed: u32,
-    },
-    /// The image has other channels than what was asked for.
-    Channels {
-        /// The channels of the image.
-        found: &'static str,
-        /// The channels that were asked for.
-        needed: &'static str,
-    },
-    /// The file has no plane of this name.
-    MissingPlane {
-        /// The name.
-        name: String,
-    },
-    /// The names of the planes to be written are empty, too long, or not different.
-    PlaneName {
-        /// The first name that is wrong.
-        name: String,
-    },
-    /// Two planes of one image have different sizes.
-    SizeMismatch {
-        /// The size of the plane, in pixels.
-        size: [u32; 2],
-        /// The size of the planes before it.
-        needed: [u32; 2],
-    },
+dapple_raster::error_kind! {
+    /// What went wrong.
+    ImageErrorKind {
+        /// The operating system refused to read or write; the source says why.
+        Io => "the file cannot be read or written";
+        /// The bytes begin like no format that is read, or not like the one that was asked for.
+        UnknownFormat => "the bytes are of no format that is known here";
+        /// The bytes break the rules of their format, or end too soon.
+        Damaged {
+            /// The format that they seemed to have.
+            format: &'static str,
+        } => "the {format} data is damaged";
+        /// The file uses a feature of its format that is not read.
+        Unsupported {
+            /// What is not read.
+            feature: &'static str,
+        } => "{feature} is not supported";
+        /// The image has no pixel.
+        Empty {
+            /// Columns and rows.
+            size: [u64; 2],
+        } => "an image of {} × {} pixels is empty", size[0], size[1];
+        /// The image has more pixels than the limit.
+        TooManyPixels {
+            /// Columns and rows.
+            size: [u64; 2],
+            /// The limit.
+            limit: u64,
+        } => "an image of {} × {} pixels is larger than the limit of {limit} pixels", size[0], size[1];
+        /// The image takes more memory than the limit, in bytes.
+        TooManyBytes {
+            /// How many it takes, as far as that is known.
+            bytes: u64,
+            /// The limit.
+            limit: u64,
+        } => "the image takes {bytes} bytes or more, but the limit is {limit}";
+        /// The image has a side that the format has no room for.
+        TooLarge {
+            /// The format.
+            format: &'static str,
+            /// Columns and rows.
+            size: [u32; 2],
+            /// The longest side, in pixels.
+            limit: u32,
+        } => "an image of {} × {} pixels does not fit into {format}: the limit is {limit} a side", size[0], size[1];
+        /// Rows of the wrong width were to be written.
+        RowWidth {
+            /// The width of the rows, in pixels.
+            width: u32,
+            /// The width of the image.
+            needed: u32,
+        } => "the rows have {width} pixels, but the image has {needed} columns";
+        /// More rows were to be written than the image has.
+        TooManyRows {
+            /// How many there would be.
+            rows: u64,
+            /// How many the image has.
+            needed: u32,
+        } => "there are {rows} rows to write, but the image has {needed}";
+        /// The image was to be finished before all of its rows were written.
+        MissingRows {
+            /// How many there are.
+            rows: u32,
+            /// How many the image has.
+            needed: u32,
+        } => "only {rows} rows of {needed} are written";
+        /// The image has other channels than what was asked for.
+        Channels {
+            /// The channels of the image.
+            found: &'static str,
+            /// The channels that were asked for.
+            needed: &'static str,
+        } => "the image is {found}, but {needed} is needed";
+        /// The file has no plane of this name.
+        MissingPlane {
+            /// The name.
+            name: String,
+        } => "there is no plane named {name:?}";
+        /// The names of the planes to be written are empty, too long, or not different.
+        PlaneName {
+            /// The first name that is wrong.
+            name: String,
+        } => "the plane name {name:?} is empty, longer than 255 bytes, or used twice";
+        /// Two planes of one image have different sizes.
+        SizeMismatch {
+            /// The size of the plane, in pixels.
+            size: [u32; 2],
+            /// The size of the planes before it.
+            needed: [u32; 2],
+        } => "the plane has {} × {} pixels, but the planes before it have {} × {}", size[0], size[1], needed[0], needed[1];
+    }
 }
 
 impl ImageError {
@@ -159,67 +159,6 @@ impl fmt::Display for ImageError {
         match &self.source {
             Some(source) => write!(f, ": {source}"),
             None => Ok(()),
-        }
-    }
-}
-
-impl fmt::Display for ImageErrorKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Io => f.write_str("the file cannot be read or written"),
-            Self::UnknownFormat => f.write_str("the bytes are of no format that is known here"),
-            Self::Damaged { format } => write!(f, "the {format} data is damaged"),
-            Self::Unsupported { feature } => write!(f, "{feature} is not supported"),
-            Self::Empty { size: [w, h] } => write!(f, "an image of {w} × {h} pixels is empty"),
-            Self::TooManyPixels {
-                size: [w, h],
-                limit,
-            } => write!(
-                f,
-                "an image of {w} × {h} pixels is larger than the limit of {limit} pixels"
-            ),
-            Self::TooManyBytes { bytes, limit } => write!(
-                f,
-                "the image takes {bytes} bytes or more, but the limit is {limit}"
-            ),
-            Self::TooLarge {
-                format,
-                size: [w, h],
-                limit,
-            } => write!(
-                f,
-                "an image of {w} × {h} pixels does not fit into {format}: the limit is {limit} a side"
-            ),
-            Self::RowWidth { width, needed } => {
-                write!(
-                    f,
-                    "the rows have {width} pixels, but the image has {needed} columns"
-                )
-            }
-            Self::TooManyRows { rows, needed } => {
-                write!(
-                    f,
-                    "there are {rows} rows to write, but the image has {needed}"
-                )
-            }
-            Self::MissingRows { rows, needed } => {
-                write!(f, "only {rows} rows of {needed} are written")
-            }
-            Self::Channels { found, needed } => {
-                write!(f, "the image is {found}, but {needed} is needed")
-            }
-            Self::MissingPlane { name } => write!(f, "there is no plane named {name:?}"),
-            Self::PlaneName { name } => write!(
-                f,
-                "the plane name {name:?} is empty, longer than 255 bytes, or used twice"
-            ),
-            Self::SizeMismatch {
-                size: [w, h],
-                needed: [nw, nh],
-            } => write!(
-                f,
-                "the plane has {w} × {h} pixels, but the planes before it have {nw} × {nh}"
-            ),
         }
     }
 }

@@ -20,6 +20,7 @@
 #![forbid(unsafe_code)]
 
 mod error;
+mod error_macro;
 mod field;
 mod raster;
 mod resample;
