@@ -19,10 +19,6 @@ pub use dapple_raster as raster;
 pub use error::{Place, RecipeError, RecipeErrorKind};
 pub use input::Input;
 pub use node::*;
-pub use operation::{
-    coordinate, distance, levels, maximum, minimum, mix, mix_colors, multiply_colors, power,
-    quotient, wave,
-};
 pub use plan::{Images, NodeColors, NodeField, Picture, Plan, PlanLimits, Values, Whole};
 pub use recipe::{Material, Recipe, SCHEMA};
 pub use text::MAX_TEXT;

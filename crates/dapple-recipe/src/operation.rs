@@ -1,4 +1,4 @@
-//! What is done at each position on its own, and the same as plain functions.
+//! Operations on the values at a single position.
 
 use crate::plan::{Layers, Values, blend_values};
 use crate::{Levels, LevelsCurve, Power, RecipeError, Wave, Waveform};
@@ -34,8 +34,7 @@ pub(crate) enum Operation {
 }
 
 /// A range stretched to another: `from[0]` becomes `to[0]`, `from[1]` becomes `to[1]`.
-#[must_use]
-pub fn levels(value: f32, from: [f32; 2], to: [f32; 2], curve: LevelsCurve) -> f32 {
+pub(crate) fn levels(value: f32, from: [f32; 2], to: [f32; 2], curve: LevelsCurve) -> f32 {
     let t = (value - from[0]) / (from[1] - from[0]);
     let t = match curve {
         LevelsCurve::Unclamped => t,
@@ -49,15 +48,13 @@ pub fn levels(value: f32, from: [f32; 2], to: [f32; 2], curve: LevelsCurve) -> f
 }
 
 /// How far along a direction a position is: `(position − center) · along`.
-#[must_use]
-pub fn coordinate(position: DVec2, center: DVec2, along: DVec2) -> f32 {
+pub(crate) fn coordinate(position: DVec2, center: DVec2, along: DVec2) -> f32 {
     let offset = position - center;
     (offset.x * along.x + offset.y * along.y) as f32
 }
 
 /// How far from a center, or from the nearest of its repeats along the axes that wrap, a position is.
-#[must_use]
-pub fn distance(position: DVec2, center: DVec2, extent: DVec2, wrap: [bool; 2]) -> f32 {
+pub(crate) fn distance(position: DVec2, center: DVec2, extent: DVec2, wrap: [bool; 2]) -> f32 {
     let mut offset = position - center;
     for axis in 0..2 {
         if wrap[axis] {
@@ -68,26 +65,22 @@ pub fn distance(position: DVec2, center: DVec2, extent: DVec2, wrap: [bool; 2]) 
 }
 
 /// The smaller of two numbers; the first, where one is not a number.
-#[must_use]
-pub fn minimum(a: f32, b: f32) -> f32 {
+pub(crate) fn minimum(a: f32, b: f32) -> f32 {
     if b < a { b } else { a }
 }
 
 /// The larger of two numbers; the first, where one is not a number.
-#[must_use]
-pub fn maximum(a: f32, b: f32) -> f32 {
+pub(crate) fn maximum(a: f32, b: f32) -> f32 {
     if b > a { b } else { a }
 }
 
 /// The product of two colors, part by part.
-#[must_use]
-pub fn multiply_colors(a: LinearRgb, b: LinearRgb) -> LinearRgb {
+pub(crate) fn multiply_colors(a: LinearRgb, b: LinearRgb) -> LinearRgb {
     LinearRgb::new(a.r * b.r, a.g * b.g, a.b * b.b)
 }
 
 /// A wave of a number, from 0 to 1: see [`Wave`].
-#[must_use]
-pub fn wave(value: f32, frequency: f64, phase: f64, form: Waveform) -> f32 {
+pub(crate) fn wave(value: f32, frequency: f64, phase: f64, form: Waveform) -> f32 {
     let t = f64::from(value) * frequency + phase;
     let t = t - t.floor();
     let wave = match form {
@@ -102,27 +95,23 @@ pub fn wave(value: f32, frequency: f64, phase: f64, form: Waveform) -> f32 {
 }
 
 /// A number to a power; below 0 it counts as 0.
-#[must_use]
-pub fn power(value: f32, exponent: f32) -> f32 {
+pub(crate) fn power(value: f32, exponent: f32) -> f32 {
     let positive = if value < 0.0 { 0.0 } else { value };
     libm::powf(positive, exponent)
 }
 
 /// A part of the way from one number to another, cut off at both.
-#[must_use]
-pub fn mix(from: f32, to: f32, by: f32) -> f32 {
+pub(crate) fn mix(from: f32, to: f32, by: f32) -> f32 {
     from + (to - from) * by.clamp(0.0, 1.0)
 }
 
 /// A part of the way from one color to another, cut off at both.
-#[must_use]
-pub fn mix_colors(from: LinearRgb, to: LinearRgb, by: f32) -> LinearRgb {
+pub(crate) fn mix_colors(from: LinearRgb, to: LinearRgb, by: f32) -> LinearRgb {
     from.lerp(to, by.clamp(0.0, 1.0))
 }
 
 /// The quotient of two numbers; 0 where the second is 0.
-#[must_use]
-pub fn quotient(dividend: f32, divisor: f32) -> f32 {
+pub(crate) fn quotient(dividend: f32, divisor: f32) -> f32 {
     if divisor == 0.0 {
         0.0
     } else {

@@ -15,8 +15,7 @@ mod work;
 
 pub(crate) use evaluate::Known;
 pub use fields::{NodeColors, NodeField};
-pub(crate) use generate::Generator;
-pub(crate) use order::{order, unknown};
+pub(crate) use order::order;
 pub(crate) use step::Layers;
 pub use whole::Whole;
 pub(crate) use whole::blend_values;

@@ -18,8 +18,8 @@ Examples:
   dapple recipe flagstone -o flagstone.json
 
 A built-in recipe is printed as it was written, with its comments; change it and give the
-file to `dapple bake`. With --rust it becomes Rust code that needs the crate `dapple` and gives
-the same numbers.";
+file to `dapple bake`. With --rust it becomes a Rust program that holds it as text and bakes it
+with the crate `dapple`.";
 
 /// List the built-in recipes; print a recipe as TOML, JSON or Rust; check one of your own.
 #[derive(clap::Args, Debug, Serialize)]
@@ -33,7 +33,7 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "recipe")]
     list: bool,
 
-    /// Print Rust code that makes the material.
+    /// Print a Rust program that bakes the recipe.
     #[arg(long, conflicts_with = "to")]
     rust: bool,
 
