@@ -13,12 +13,12 @@ use std::ffi::OsString;
 /// What options that there are not are called here: the subcommands, the option, and what to type.
 const ELSEWHERE: [(&[&str], &str, &str); 9] = [
     (
-        &["worley", "wavelet"],
+        &["worley", "noise", "wavelet"],
         "--frequency",
         "--cells N, the number of cells across the picture",
     ),
     (
-        &["worley", "wavelet"],
+        &["worley", "noise", "wavelet"],
         "--scale",
         "--cells N, the number of cells across the picture",
     ),
@@ -49,7 +49,7 @@ const ELSEWHERE: [(&[&str], &str, &str); 9] = [
     ),
     (&["bake"], "--normal", "--normal-y opengl or directx"),
     (
-        &["worley", "pups", "wavelet", "tile", "info"],
+        &["worley", "pups", "noise", "wavelet", "tile", "info"],
         "--axes",
         "--wrap",
     ),

@@ -6,6 +6,7 @@ mod blend_map;
 mod completions;
 mod info;
 mod man;
+mod noise;
 mod points;
 mod pups;
 mod recipe;
@@ -28,6 +29,7 @@ pub(crate) enum Command {
     Recipe(Box<recipe::Args>),
     Worley(Box<worley::Args>),
     Pups(Box<pups::Args>),
+    Noise(Box<noise::Args>),
     Wavelet(Box<wavelet::Args>),
     Tile(Box<tile::Args>),
     Blend(Box<blend::Args>),
@@ -51,6 +53,7 @@ pub(crate) fn run(command: &Command, context: &Context) -> Result<Exit> {
         Command::Recipe(args) => recipe::run(args, context),
         Command::Worley(args) => worley::run(args, context),
         Command::Pups(args) => pups::run(args, context),
+        Command::Noise(args) => noise::run(args, context),
         Command::Wavelet(args) => wavelet::run(args, context),
         Command::Tile(args) => tile::run(args, context),
         Command::Blend(args) => blend::run(args, context),

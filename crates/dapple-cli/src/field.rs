@@ -245,6 +245,20 @@ pub(crate) fn extent_of(size: Size, shorter: f64) -> [f64; 2] {
     [side(width), side(height)]
 }
 
+/// Refuses numbers of cells along the sides that cannot repeat where they have to; `option` is what to choose others with.
+pub(crate) fn check_whole_cells(cells: [f64; 2], repeats: [bool; 2], option: &str) -> Result<()> {
+    for (cells, repeats) in cells.into_iter().zip(repeats) {
+        if repeats && cells.fract() != 0.0 {
+            let message = format!("{cells} cells along a side cannot repeat");
+            let hint = format!(
+                "take a whole number of cells along each side with {option}, or --wrap none"
+            );
+            return Err(usage(message).hint(hint));
+        }
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::{RangeArg, extent_of, frames};

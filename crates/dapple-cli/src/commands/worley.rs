@@ -1,8 +1,8 @@
 //! `dapple worley`: Worley's cellular basis.
 
 use crate::args::{Extent, ImageArgs, Numbers};
-use crate::error::{Exit, Hint, usage};
-use crate::field::{Field, FieldArgs, draw, extent_of};
+use crate::error::{Exit, Hint};
+use crate::field::{Field, FieldArgs, check_whole_cells, draw, extent_of};
 use crate::job::Context;
 use crate::words::{Word, nearest, with_underscores};
 use anyhow::Result;
@@ -156,14 +156,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         Some(period) => period.0,
         None => extent_of(args.field.size, args.cells),
     };
-    let cells = extent.iter().zip(args.field.wrap.flags());
-    if let Some((cells, _)) = cells
-        .clone()
-        .find(|(cells, repeats)| *repeats && cells.fract() != 0.0)
-    {
-        return Err(usage(format!("{cells} cells along a side cannot repeat"))
-            .hint("take a whole number of cells along each side with --period, or --wrap none"));
-    }
+    check_whole_cells(extent, args.field.wrap.flags(), "--period")?;
     let field = Field {
         command: "worley",
         range: args.range(&node).wrong_value()?,

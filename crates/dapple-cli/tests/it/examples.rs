@@ -5,12 +5,13 @@
 use crate::support::{Folder, assert_done, stdout};
 use std::fs;
 
-const SUBCOMMANDS: [&str; 14] = [
+const SUBCOMMANDS: [&str; 15] = [
     "bake",
     "watch",
     "recipe",
     "worley",
     "pups",
+    "noise",
     "wavelet",
     "tile",
     "blend",
@@ -71,6 +72,7 @@ fn examples_of_bake_and_recipe_run() {
 fn examples_of_fields_run() {
     run_examples(&["worley"]);
     run_examples(&["pups"]);
+    run_examples(&["noise"]);
     run_examples(&["wavelet"]);
 }
 

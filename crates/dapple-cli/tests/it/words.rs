@@ -32,10 +32,11 @@ const SAME: [[&str; 2]; 9] = [
 ];
 
 /// Runs of every subcommand with a file or a folder, and the files that they write to a folder.
-const NAMED: [(&str, &[&str]); 11] = [
+const NAMED: [(&str, &[&str]); 12] = [
     ("worley", &["worley.png"]),
     ("worley --frames 2", &["worley_001.png", "worley_002.png"]),
     ("pups cow --format exr", &["pups.exr"]),
+    ("noise --octaves 3 --json", &["noise.json", "noise.png"]),
     ("wavelet --cells 8 --recipe", &["wavelet.toml"]),
     ("recipe flagstone --rust", &["flagstone.rs"]),
     ("bake flagstone --maps ao", &["flagstone_ao.png"]),
@@ -50,7 +51,7 @@ const NAMED: [(&str, &[&str]); 11] = [
 ];
 
 fn small(line: &str) -> Vec<&str> {
-    let is_drawn = ["worley", "pups", "wavelet", "bake"]
+    let is_drawn = ["worley", "pups", "noise", "wavelet", "bake"]
         .iter()
         .any(|name| line.starts_with(name));
     let size: &[&str] = if is_drawn { &["--size", "16"] } else { &[] };

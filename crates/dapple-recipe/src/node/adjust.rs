@@ -28,6 +28,7 @@ fn unit() -> [f32; 2] {
 /// What lies between the ends of a range. All but the first stay at its ends outside of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum LevelsCurve {
     /// A line that goes on past the ends.
     Unclamped,
@@ -73,6 +74,7 @@ fn one() -> f64 {
 /// The form of a wave.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Waveform {
     /// `½ + ½ sin 2πt`.
     #[default]

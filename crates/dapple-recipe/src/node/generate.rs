@@ -75,6 +75,7 @@ pub enum NodeSeed {
 ///
 /// In a file: `"f1"`, `"f2_minus_f1"` and so on, `"cell_value"`, `"edge_distance"`, or the four coefficients of F1 to F4.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum WorleyValue {
     /// A combination of distances.
     Combination(Combination),
@@ -213,8 +214,8 @@ impl Default for WaveletNode {
 pub struct Fractal {
     /// What an octave is; PUPs by default.
     pub basis: FractalBasis,
-    /// About how many bumps there are per unit of the plane in the first octave; 8 by default. For wavelets, these are
-    /// their cells.
+    /// About how many bumps there are per unit of the plane in the first octave; 8 by default. For gradients and
+    /// wavelets, these are their cells.
     pub frequency: f64,
     /// How many octaves, 1 to 16, each twice as fine as the one before; 4 by default.
     pub octaves: u32,
@@ -246,6 +247,9 @@ pub enum FractalBasis {
     /// Random values at Poisson-disk points, interpolated; the sum over its largest possible value.
     #[default]
     Pups,
+    /// Perlin's gradient noise; the sum is `½ + sum / 6σ`, with `σ` its standard deviation, cut off at 0 and 1.
+    #[serde(alias = "perlin")]
+    Gradient,
     /// Wavelet noise; the sum is `½ + sum / 6σ`, with `σ` its standard deviation, cut off at 0 and 1.
     Wavelet,
 }

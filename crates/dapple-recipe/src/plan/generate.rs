@@ -10,9 +10,10 @@ use crate::{
     RecipeErrorKind, WaveletNode, WorleyNode, WorleyValue,
 };
 use dapple_hash::Seed;
+use dapple_noise::GradientNoise2;
 use dapple_points::Domain;
 use dapple_pups::{OctavesOptions, Spacing, octaves};
-use dapple_raster::{Field, RasterError, RasterViewMut, Window, Wrap};
+use dapple_raster::{Field, FieldExt, FractalShape, Frequency, Wrap, field_fn};
 use dapple_wavelet::WaveletNoise2;
 use dapple_worley::{Axes, Metric, Space, Worley, Worley2, Worley4};
 use glam::DVec2;
@@ -85,10 +86,7 @@ impl Generator<'_> {
                 moving_field(node, worley, [z, self.time * f64::from(cells)])?
             }
         };
-        Ok(Arc::new(Scaled {
-            field,
-            frequency: node.frequency.0.into(),
-        }))
+        Ok(Arc::new(field.frequency_xy(node.frequency.0.into())))
     }
 
     /// The cells of the tile along each axis that repeats.
@@ -124,11 +122,9 @@ impl Generator<'_> {
         name: &str,
         node: &WaveletNode,
     ) -> Result<Arc<dyn Field>, RecipeError> {
-        self.wavelet_noise(
-            self.seed(name, node.seed.as_ref()),
-            node.frequency,
-            &node.weights,
-        )
+        let seed = self.seed(name, node.seed.as_ref());
+        let noise = self.wavelet_noise(seed, node.frequency, &node.weights)?;
+        Ok(Arc::new(noise))
     }
 
     fn wavelet_noise(
@@ -136,13 +132,10 @@ impl Generator<'_> {
         seed: Seed,
         frequency: f64,
         weights: &[f32],
-    ) -> Result<Arc<dyn Field>, RecipeError> {
+    ) -> Result<Frequency<WaveletNoise2>, RecipeError> {
         let noise =
             WaveletNoise2::of_size(self.wavelet_cells(frequency)?, seed)?.with_weights(weights)?;
-        Ok(Arc::new(Scaled {
-            field: Arc::new(noise),
-            frequency: DVec2::splat(frequency),
-        }))
+        Ok(noise.frequency(frequency))
     }
 
     /// The cells of the tile of wavelet noise along each axis.
@@ -184,8 +177,16 @@ impl Generator<'_> {
                 octaves(&self.fractal_options(node), seed)?.normalized(),
             )),
             FractalBasis::Wavelet => {
-                let noise = self.wavelet_noise(seed, frequency, &Self::fractal_weights(node))?;
-                Ok(Arc::new(AboutHalf(noise)))
+                let weights = Self::fractal_weights(node, 1.0);
+                let noise = self.wavelet_noise(seed, frequency, &weights)?;
+                Ok(Arc::new(noise.map(about_half)))
+            }
+            FractalBasis::Gradient => {
+                let noise = GradientNoise2::new(seed).with_period(self.periods([frequency; 2])?)?;
+                let octaves = noise.fractal(count, node.gain, 2.0, FractalShape::Sum)?;
+                let scale = Self::fractal_weights(node, GradientNoise2::VARIANCE.into())[0];
+                let noise = octaves.frequency(frequency);
+                Ok(Arc::new(noise.map(move |sum| about_half(scale * sum))))
             }
         }
     }
@@ -201,13 +202,13 @@ impl Generator<'_> {
         }
     }
 
-    /// The weights of the bands of wavelet noise, for a sixth of the standard deviation of their sum.
-    pub(crate) fn fractal_weights(node: &Fractal) -> Vec<f32> {
+    /// The weights of octaves of noise with a variance, for a sum with a standard deviation of a sixth.
+    fn fractal_weights(node: &Fractal, variance: f64) -> Vec<f32> {
         let weights = core::iter::successors(Some(1.0), |weight| Some(weight * node.gain));
         let weights: Vec<f64> = weights.take(node.octaves as usize).collect();
         let deviation = weights
             .iter()
-            .map(|weight| weight * weight)
+            .map(|weight| weight * weight * variance)
             .sum::<f64>()
             .sqrt();
         weights
@@ -220,22 +221,24 @@ impl Generator<'_> {
         for number in node.center.into_iter().chain(node.along) {
             RecipeError::check(number.is_finite(), "part of a coordinate", number, "finite")?;
         }
-        Ok(Arc::new(Along {
-            center: node.center.into(),
-            along: node.along.into(),
-        }))
+        let (center, along) = (node.center.into(), node.along.into());
+        let value = move |position| coordinate(position, center, along);
+        Ok(Arc::new(field_fn(value)))
     }
 
     pub(super) fn distance(&self, node: &Distance) -> Result<Arc<dyn Field>, RecipeError> {
         for number in node.center {
             RecipeError::check(number.is_finite(), "center", number, "finite")?;
         }
-        Ok(Arc::new(From {
-            center: node.center.into(),
-            extent: self.extent(),
-            wrap: self.recipe.wrap,
-        }))
+        let (center, extent, wrap) = (node.center.into(), self.extent(), self.recipe.wrap);
+        let value = move |position| distance(position, center, extent, wrap);
+        Ok(Arc::new(field_fn(value)))
     }
+}
+
+/// Half more than a value, cut off at 0 and 1.
+fn about_half(value: f32) -> f32 {
+    (0.5 + value).clamp(0.0, 1.0)
 }
 
 /// A cellular basis with the metric and the scatter of a node.
@@ -279,7 +282,11 @@ fn moving_field(
     let worley = basis(node, worley)?;
     let combination = match node.value {
         WorleyValue::Combination(combination) => combination,
-        WorleyValue::CellValue => return Ok(slice(place, move |at| cell_value(&worley, at))),
+        WorleyValue::CellValue => {
+            let [z, w] = place;
+            let value = move |at: DVec2| cell_value(&worley, [at.x, at.y, z, w]);
+            return Ok(Arc::new(field_fn(value)));
+        }
         WorleyValue::EdgeDistance => return Ok(Arc::new(worley.edge_distances().slice(place))),
     };
     let cellular = worley.combine(combination);
@@ -300,13 +307,6 @@ fn cell_value(worley: &Worley4, at: [f64; 4]) -> f32 {
     }
 }
 
-fn slice(
-    place: [f64; 2],
-    value: impl Fn([f64; 4]) -> f32 + Send + Sync + 'static,
-) -> Arc<dyn Field> {
-    Arc::new(Slice { place, value })
-}
-
 /// Refuses what only combinations of distances have.
 fn check_single(node: &WorleyNode, metric: bool) -> Result<(), RecipeError> {
     let rule = if node.octaves.is_some() || node.range.is_some() {
@@ -317,103 +317,4 @@ fn check_single(node: &WorleyNode, metric: bool) -> Result<(), RecipeError> {
         return Ok(());
     };
     Err(RecipeError::new(RecipeErrorKind::Conflict { rule }))
-}
-
-/// A function of space and time, over the plane at one depth and one time.
-struct Slice<F> {
-    place: [f64; 2],
-    value: F,
-}
-
-impl<F: Fn([f64; 4]) -> f32 + Send + Sync> Field for Slice<F> {
-    fn sample(&self, position: DVec2) -> f32 {
-        (self.value)([position.x, position.y, self.place[0], self.place[1]])
-    }
-}
-
-/// A field that is asked at the position times a frequency.
-struct Scaled {
-    field: Arc<dyn Field>,
-    frequency: DVec2,
-}
-
-impl Field for Scaled {
-    fn sample(&self, position: DVec2) -> f32 {
-        self.field.sample(position * self.frequency)
-    }
-
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
-        let scaled: Vec<_> = positions
-            .iter()
-            .map(|&position| position * self.frequency)
-            .collect();
-        self.field.sample_many(&scaled, values)
-    }
-
-    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        if let Some(scaled) = window.scaled(self.frequency) {
-            return self.field.render(&scaled, out);
-        }
-        window.check_size(out.size())?;
-        for (row, values) in (0..).zip(out.rows_mut()) {
-            let y = window.row_y(row);
-            let positions: Vec<_> = (0..window.size[0])
-                .map(|column| DVec2::new(window.column_x(column), y))
-                .collect();
-            self.sample_many(&positions, values)?;
-        }
-        Ok(())
-    }
-}
-
-/// A field plus ½, cut off at 0 and 1.
-struct AboutHalf(Arc<dyn Field>);
-
-impl Field for AboutHalf {
-    fn sample(&self, position: DVec2) -> f32 {
-        (0.5 + self.0.sample(position)).clamp(0.0, 1.0)
-    }
-
-    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
-        self.0.sample_many(positions, values)?;
-        values
-            .iter_mut()
-            .for_each(|value| *value = (0.5 + *value).clamp(0.0, 1.0));
-        Ok(())
-    }
-
-    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
-        self.0.render(window, out.reborrow())?;
-        for values in out.rows_mut() {
-            values
-                .iter_mut()
-                .for_each(|value| *value = (0.5 + *value).clamp(0.0, 1.0));
-        }
-        Ok(())
-    }
-}
-
-/// How far along a direction a position is.
-struct Along {
-    center: DVec2,
-    along: DVec2,
-}
-
-impl Field for Along {
-    fn sample(&self, position: DVec2) -> f32 {
-        coordinate(position, self.center, self.along)
-    }
-}
-
-/// How far from a center, or its nearest repeat, a position is.
-struct From {
-    center: DVec2,
-    extent: DVec2,
-    wrap: [bool; 2],
-}
-
-impl Field for From {
-    fn sample(&self, position: DVec2) -> f32 {
-        distance(position, self.center, self.extent, self.wrap)
-    }
 }

@@ -1,0 +1,82 @@
+//! `dapple noise`: gradient noise.
+
+use crate::args::ImageArgs;
+use crate::error::Exit;
+use crate::field::{Field, FieldArgs, check_whole_cells, draw, extent_of};
+use crate::job::Context;
+use anyhow::Result;
+use dapple::recipe::{Fractal, FractalBasis, Images, Node};
+use serde::Serialize;
+
+const EXAMPLES: &str = "\
+Examples:
+  dapple noise -o noise.png
+  dapple noise --cells 4 --octaves 6 --size 1024 --format png16 -o height.png
+  dapple noise --octaves 5 --gain 0.6 --ramp lagoon -o clouds.png
+  dapple noise --cells 6 --size 640x480 -o wide.png
+
+Values are from 0 to 1, about one half. The same noise is the node `noise` of recipes with the
+basis `gradient`; domain warps and ridges are made of it there.";
+
+/// Draw Perlin's gradient noise: smooth bumps of one size, or fractal sums of them (fBm).
+#[derive(clap::Args, Debug, Serialize)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Cells across the shorter side of the picture, in the coarsest octave. Along each axis on which it repeats there must
+    /// be a whole number.
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 8.0,
+        help_heading = "Texture"
+    )]
+    cells: f64,
+
+    /// How many octaves, each twice as fine as the one before, from 1 to 16.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16), help_heading = "Texture")]
+    octaves: u32,
+
+    /// How high an octave is beside the one before, above 0 and at most 1.
+    #[arg(
+        long,
+        alias = "persistence",
+        value_name = "PART",
+        default_value_t = 0.5,
+        help_heading = "Texture"
+    )]
+    gain: f64,
+
+    #[command(flatten)]
+    field: FieldArgs,
+
+    #[command(flatten)]
+    #[serde(skip)]
+    image: ImageArgs,
+}
+
+/// Draws the noise.
+///
+/// # Errors
+///
+/// Options that exclude each other or are out of range, or a file that cannot be written.
+pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    let node = Fractal {
+        basis: FractalBasis::Gradient,
+        frequency: 1.0,
+        octaves: args.octaves,
+        gain: args.gain,
+        seed: None,
+    };
+    let extent = extent_of(args.field.size, args.cells);
+    check_whole_cells(extent, args.field.wrap.flags(), "--cells")?;
+    let field = Field {
+        command: "noise",
+        node: Node::Noise(node),
+        is_color: false,
+        extent,
+        range: [0.0, 1.0],
+        frames: None,
+        images: Images::new(),
+    };
+    draw(&field, &args.field, &args.image, args, context)
+}
