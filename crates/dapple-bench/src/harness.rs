@@ -85,7 +85,7 @@ pub(crate) struct Done {
 }
 
 impl Done {
-    /// The same number on both sides.
+    /// One number for both sides.
     pub(crate) const fn both(n: usize) -> Self {
         Self { ours: n, theirs: n }
     }
@@ -169,7 +169,7 @@ impl Bench {
         self.keep(case.row(ours, theirs));
     }
 
-    /// As [`measured`](Self::measured), with a note that was not known before.
+    /// Adds a row, as [`measured`](Self::measured) does, with a note that was not known before.
     pub(crate) fn measured_with(&mut self, case: &Case, ours: f64, theirs: f64, note: String) {
         let mut row = case.row(ours, theirs);
         row.note = note;

@@ -24,7 +24,7 @@ pub(crate) fn poisson_disk(n_points: u32) -> Result<PointSet> {
     poisson_disk_from(SEED, n_points)
 }
 
-/// The same from a seed.
+/// A Poisson-disk set from a seed.
 pub(crate) fn poisson_disk_from(seed: Seed, n_points: u32) -> Result<PointSet> {
     Ok(dapple_points::poisson_disk(
         UNIT_TORUS,

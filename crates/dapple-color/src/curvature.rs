@@ -111,7 +111,7 @@ pub fn curvature(
     curvature_of_part(height, height.size(), options)
 }
 
-/// As [`curvature`] for a part of a raster of `whole` pixels, whose extent is that of the options.
+/// Curvature, as by [`curvature`], of a part of a raster of `whole` pixels, whose extent is that of the options.
 ///
 /// Every pixel that is further from the edges of the part than the [halo](CurvatureOptions::halo) of the whole has the
 /// bits that it has in the whole.

@@ -130,7 +130,7 @@ pub fn normal_map(
     normal_map_of_part(height, height.size(), options)
 }
 
-/// As [`normal_map`] for a part of a raster of `whole` pixels, whose extent is that of the options.
+/// Normals, as by [`normal_map`], of a part of a raster of `whole` pixels, whose extent is that of the options.
 ///
 /// Every pixel that is further from the edges of the part than a pixel has the bits that it has in the whole.
 ///

@@ -138,7 +138,7 @@ pub fn ambient_occlusion(
     ambient_occlusion_of_part(height, height.size(), options)
 }
 
-/// As [`ambient_occlusion`] for a part of a raster of `whole` pixels, whose extent is that of the options.
+/// Occlusion, as by [`ambient_occlusion`], of a part of a raster of `whole` pixels, whose extent is that of the options.
 ///
 /// Every pixel that is further from the edges of the part than the [halo](OcclusionOptions::halo) of the whole has the
 /// bits that it has in the whole.

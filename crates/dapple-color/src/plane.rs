@@ -54,7 +54,7 @@ pub(crate) fn check_radius(
     Ok(())
 }
 
-/// As [`Wrap::index`], and quick where nothing has to be brought back.
+/// The index within the line, as by [`Wrap::index`], and quick where nothing has to be brought back.
 #[inline(always)]
 pub(crate) fn index(wrap: Wrap, index: i64, length: u32) -> usize {
     if (0..i64::from(length)).contains(&index) {

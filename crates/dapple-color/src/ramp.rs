@@ -45,6 +45,7 @@ pub enum Interpolation {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[non_exhaustive]
 pub enum Outside {
     /// The color of the nearest stop.
     #[default]

@@ -14,7 +14,7 @@ pub struct CellHashes<S: Simd> {
 }
 
 impl<S: Simd> CellHashes<S> {
-    /// The same hash in every lane: where a row of cells begins.
+    /// One hash in every lane: where a row of cells begins.
     #[inline(always)]
     pub fn splat(simd: S, hash: CellHash) -> Self {
         let [a, b] = hash.state;

@@ -125,13 +125,13 @@ impl ImageError {
         Self::new(ImageErrorKind::Damaged { format }).because(source)
     }
 
-    /// The same with what a file or a codec said.
+    /// Adds what a file or a codec said.
     pub(crate) fn because(mut self, source: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         self.source = Some(source.into());
         self
     }
 
-    /// The same with the file that was read or written.
+    /// Adds the file that was read or written.
     pub(crate) fn at(mut self, path: &Path) -> Self {
         self.path = Some(path.to_owned());
         self

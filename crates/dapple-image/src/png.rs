@@ -32,6 +32,7 @@ const GAMMA_OF_SRGB: u32 = 45_455;
 
 /// What the numbers in an 8- or 16-bit file mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Transfer {
     /// Values as they are: heights, masks, normals. The file says nothing about color.
     Data,

@@ -37,7 +37,7 @@ impl Adjacency {
         across
     }
 
-    /// As [`new`](Self::new), but two faces are also neighbors if they go through their edge in the same direction.
+    /// Neighbors across edges, where two faces are also neighbors if they go through their edge in the same direction.
     pub(crate) fn of_any_winding(n_faces: usize, edges: &[SortedEdge]) -> Self {
         let mut across = Self::alone(n_faces);
         for group in edges.chunk_by(|a, b| a.ends == b.ends) {
@@ -48,7 +48,7 @@ impl Adjacency {
         across
     }
 
-    /// As [`of_any_winding`](Self::of_any_winding), but as many faces as possible are neighbors at every edge, two by two,
+    /// Neighbors across edges of any winding, where as many faces as possible are neighbors at every edge, two by two,
     /// first those that go through it in opposite directions.
     pub(crate) fn paired(n_faces: usize, edges: &[SortedEdge]) -> Self {
         let mut across = Self::alone(n_faces);
@@ -80,7 +80,7 @@ impl Adjacency {
         self.set(b, Some(a));
     }
 
-    /// The same edge seen from the face on its other side, or nothing at a border.
+    /// The edge as the face on its other side sees it; `None` at a border.
     ///
     /// # Panics
     ///

@@ -13,7 +13,7 @@ use glam::DVec3;
 /// assert_eq!(red.add_scaled([0.0, 1.0, 0.0], 0.5), [1.0, 0.5, 0.0]);
 /// ```
 pub trait Blend: Copy + Send + Sync {
-    /// Nothing.
+    /// The zero of the vector space.
     const ZERO: Self;
 
     /// This and a part of another one.

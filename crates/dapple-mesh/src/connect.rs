@@ -69,7 +69,7 @@ impl Connected {
         }))
     }
 
-    /// As [`new`](Self::new), for columns and a grid that fit.
+    /// The connections of sites whose columns and grid are known to fit.
     pub(crate) fn among(sites: &Oriented<'_>) -> Self {
         Stars::new(sites).union()
     }

@@ -298,7 +298,7 @@ impl SiteGrid {
         }
     }
 
-    /// As [`visit`](Self::visit), for a ball that meets more bricks than there are.
+    /// Visits the sites within a ball that meets more bricks than there are.
     fn visit_all(&self, low: [u32; 3], high: [u32; 3], mut visit: impl FnMut(SiteIdx)) {
         let mask = (1 << BITS) - 1;
         for (brick, &key) in (0..).zip(&self.bricks) {

@@ -80,7 +80,7 @@ impl Hierarchy {
         Ok(finer)
     }
 
-    /// As [`upsample`](Self::upsample), into a column that there is.
+    /// Interpolates, as [`upsample`](Self::upsample) does, into a column that there is.
     ///
     /// Where interpolation finds no value, as on a small piece of the surface that has no site of the coarser level,
     /// that of the nearest site anywhere is taken.

@@ -97,7 +97,7 @@ impl Domain {
         inside(0) && inside(1)
     }
 
-    /// The same place with its coordinates brought into the domain along the wrapped axes.
+    /// A position with its coordinates brought into the domain along the wrapped axes.
     ///
     /// A position that lies in the domain comes back unchanged, to the last bit.
     #[must_use]

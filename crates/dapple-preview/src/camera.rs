@@ -42,13 +42,13 @@ impl Camera {
         }
     }
 
-    /// The same camera turned so that another direction is up.
+    /// Turns the camera so that another direction is up.
     #[must_use]
     pub fn with_up(self, up: DVec3) -> Self {
         Self { up, ..self }
     }
 
-    /// The same camera with another vertical field of view, in radians.
+    /// Replaces the vertical field of view, in radians.
     #[must_use]
     pub fn with_fov(self, vertical_fov: f64) -> Self {
         Self {

@@ -99,7 +99,7 @@ impl Light {
         }
     }
 
-    /// The same light with other shadows.
+    /// Replaces the shadows of the light.
     #[must_use]
     pub fn with_shadows(self, shadows: Shadows) -> Self {
         Self { shadows, ..self }

@@ -51,7 +51,7 @@ pub enum Mirror {
     /// None.
     #[default]
     None,
-    /// The same part, from 0 to 1, at every angle.
+    /// One part, from 0 to 1, at every angle.
     Constant(f32),
     /// This part, from 0 to 1, seen straight, and more at a slant, up to 1, after Schlick. Water has 0.02.
     Fresnel(f32),
@@ -71,13 +71,13 @@ impl Material {
         }
     }
 
-    /// The same with another gradient of the height over the surface.
+    /// Replaces the gradient of the height over the surface.
     #[must_use]
     pub fn with_bump(self, bump: DVec3) -> Self {
         Self { bump, ..self }
     }
 
-    /// The same with highlights.
+    /// Adds highlights.
     #[must_use]
     pub fn with_specular(self, specular: f32, shininess: f32) -> Self {
         Self {
@@ -87,13 +87,13 @@ impl Material {
         }
     }
 
-    /// The same with a mirror.
+    /// Adds a mirror.
     #[must_use]
     pub fn with_mirror(self, mirror: Mirror) -> Self {
         Self { mirror, ..self }
     }
 
-    /// The same with light of its own.
+    /// Adds light of its own.
     #[must_use]
     pub fn with_emission(self, emission: LinearRgb) -> Self {
         Self { emission, ..self }

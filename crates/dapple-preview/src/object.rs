@@ -45,20 +45,20 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// The same object with its origin elsewhere in the world.
+    /// Puts the origin of the object elsewhere in the world.
     #[must_use]
     pub fn at(mut self, translation: DVec3) -> Self {
         self.transform.translation = translation;
         self
     }
 
-    /// The same object with another way from its space to the world.
+    /// Replaces the way from the space of the object to the world.
     #[must_use]
     pub fn with_transform(self, transform: Transform) -> Self {
         Self { transform, ..self }
     }
 
-    /// The same object cut open; for spheres and tori.
+    /// Cuts the object open; for spheres and tori.
     #[must_use]
     pub fn with_cut(self, cut: Cut) -> Self {
         let cut = Some(cut);

@@ -79,13 +79,13 @@ impl<'a> Scene<'a> {
         self
     }
 
-    /// The same scene with other light from everywhere.
+    /// Replaces the light that comes from everywhere.
     #[must_use]
     pub fn with_ambient(self, ambient: LinearRgb) -> Self {
         Self { ambient, ..self }
     }
 
-    /// The same scene with another environment.
+    /// Replaces the environment.
     #[must_use]
     pub fn with_environment(self, environment: Environment<'a>) -> Self {
         Self {
@@ -94,7 +94,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The same scene with another number of reflections.
+    /// Replaces the number of reflections.
     #[must_use]
     pub fn with_bounces(self, bounces: u32) -> Self {
         Self { bounces, ..self }

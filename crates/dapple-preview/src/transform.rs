@@ -42,13 +42,13 @@ impl Transform {
         }
     }
 
-    /// The same with another rotation.
+    /// Replaces the rotation.
     #[must_use]
     pub fn with_rotation(self, rotation: DQuat) -> Self {
         Self { rotation, ..self }
     }
 
-    /// The same with another scale.
+    /// Replaces the scale.
     #[must_use]
     pub fn with_scale(self, scale: f64) -> Self {
         Self { scale, ..self }

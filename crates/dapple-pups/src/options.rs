@@ -75,7 +75,7 @@ impl Orientation {
         }
     }
 
-    /// The same orientations with another strength.
+    /// Replaces the strength of the orientations.
     #[must_use]
     pub fn with_strength(self, strength: f64) -> Self {
         Self { strength, ..self }

@@ -31,7 +31,7 @@ pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: Vec<&m
     render_at(simd::level(), net, window, sink, rows);
 }
 
-/// As [`render`], at a given SIMD level.
+/// Renders, as [`render`] does, at a given SIMD level.
 pub(crate) fn render_at<K: Sink>(
     level: Level,
     net: &Net,

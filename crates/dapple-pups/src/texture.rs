@@ -145,7 +145,7 @@ impl<const N: usize> VectorTexture<N> {
 #[derive(Clone, Debug)]
 struct Values<const N: usize> {
     by_point: Vec<[f32; N]>,
-    /// The same in the order of the records of the [`Bins`]; made when the first position is asked for.
+    /// The values in the order of the records of the [`Bins`]; made when the first position is asked for.
     by_record: OnceLock<Vec<[f32; N]>>,
 }
 

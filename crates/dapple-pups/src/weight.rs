@@ -33,6 +33,7 @@ use core::ops::{Add, Mul, Sub};
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[non_exhaustive]
 pub enum AxialWeight {
     /// Equation 1, `(1 − p)² (1 + 2p)`: the texture has a continuous gradient.
     #[default]

@@ -209,7 +209,7 @@ impl<T: Copy> Raster<T> {
 }
 
 impl<T: Sync> Raster<T> {
-    /// As [`map`](Self::map), on all cores where the feature `rayon` is on.
+    /// Maps every pixel as [`map`](Self::map) does, on all cores where the feature `rayon` is on.
     #[must_use]
     pub fn par_map<U: Send>(&self, change: impl Fn(&T) -> U + Sync) -> Raster<U> {
         #[cfg(feature = "rayon")]

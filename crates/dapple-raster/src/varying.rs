@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// As data it is a number, where it is constant, or `{ ramp = … }` and `{ geometric_ramp = … }` with the fields of [`Ramp`].
 #[derive(Clone)]
 pub enum Varying {
-    /// The same everywhere.
+    /// One number everywhere.
     Constant(f64),
     /// A linear ramp.
     Ramp(Ramp),

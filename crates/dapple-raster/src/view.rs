@@ -136,7 +136,7 @@ impl<'a, T> RasterViewMut<'a, T> {
         rows.map(move |row| &mut row[..width])
     }
 
-    /// The same pixels, borrowed for a shorter time.
+    /// Borrows the pixels for a shorter time.
     #[must_use]
     pub fn reborrow(&mut self) -> RasterViewMut<'_, T> {
         RasterViewMut {

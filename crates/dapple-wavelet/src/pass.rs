@@ -24,7 +24,7 @@ pub(crate) fn filter_lines(filter: &LineFilter, values: &[f32]) -> Vec<f32> {
     result
 }
 
-/// As [`filter_lines`], at a SIMD level, into memory for the result. What `batch` holds does not matter.
+/// Filters lines, as [`filter_lines`] does, at a SIMD level, into memory for the result. What `batch` holds does not matter.
 pub(crate) fn filter_lines_into(
     level: Level,
     filter: &LineFilter,

@@ -43,7 +43,7 @@ impl SplineFilter {
         Ok(coarse)
     }
 
-    /// As [`down`](Self::down), into a raster of half the size, with memory that was used before: for one raster after
+    /// Halves a raster, as [`down`](Self::down) does, into one of half the size, with memory that was used before: for one raster after
     /// another, and for large ones, where new memory costs more time than the filter.
     ///
     /// # Errors
@@ -94,7 +94,7 @@ impl SplineFilter {
         Ok(fine)
     }
 
-    /// As [`up`](Self::up), into a raster of the size that is wanted.
+    /// Doubles a raster, as [`up`](Self::up) does, into one of the size that is wanted.
     ///
     /// # Errors
     ///

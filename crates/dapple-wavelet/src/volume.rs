@@ -34,7 +34,7 @@ impl SplineFilter {
         Ok(filter_lines(&z, &along_y))
     }
 
-    /// The same function on `fine_size` values.
+    /// Doubles a volume: its function on `fine_size` values.
     ///
     /// # Errors
     ///

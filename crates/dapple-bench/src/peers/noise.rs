@@ -38,7 +38,7 @@ pub(crate) fn simdnoise_f1_minus_f2([width, height]: [usize; 2], frequency: f32)
         .generate()
 }
 
-/// The same in space.
+/// The second cellular noise of `simdnoise` in space.
 pub(crate) fn simdnoise_f1_minus_f2_in_space(
     [width, height, depth]: [usize; 3],
     frequency: f32,
@@ -75,7 +75,7 @@ pub(crate) fn noise_functions_f1_2(positions: &[[f32; 2]], values: &mut [f32]) {
     }
 }
 
-/// The same in space.
+/// Fills the distances to the nearest feature points of positions in space, mapped from [0, 1] to [−1, 1].
 pub(crate) fn noise_functions_f1_3(positions: &[[f32; 3]], values: &mut [f32]) {
     let noise = CellDistance::default();
     for (value, &position) in values.iter_mut().zip(positions) {

@@ -80,7 +80,7 @@ fn gray_alpha<C: Code>(&[code, alpha]: &[C; 2]) -> LinearRgba {
     }
 }
 
-/// The same raster if its last channel is at the maximum everywhere.
+/// Refuses a raster whose last channel, alpha, is not at its maximum everywhere.
 fn opaque<'a, C: Code, const CHANNELS: usize>(
     raster: &'a Raster<[C; CHANNELS]>,
     needed: &'static str,

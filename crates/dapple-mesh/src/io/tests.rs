@@ -22,7 +22,7 @@ fn model() -> Model {
     model
 }
 
-/// The same with a normal for each corner, which differ at every edge.
+/// A cube with a normal for each corner, which differ at every edge.
 fn creased() -> Model {
     let mut model = model();
     model.normals = None;

@@ -98,7 +98,7 @@ pub enum Orientations {
     None,
     /// Independent random ones: [`random_orientations`].
     Random,
-    /// The same one for all.
+    /// One orientation for all points.
     Same(DVec3),
     /// Away from a center, in units of the domain: [`outward_orientations`].
     AwayFrom(DVec2),

@@ -129,7 +129,7 @@ impl LabelTexture {
         Ok(raster)
     }
 
-    /// The same labels with other values.
+    /// Replaces the values of the labels.
     ///
     /// # Errors
     ///
@@ -138,7 +138,7 @@ impl LabelTexture {
         Self::new(self.pups, self.labels, values)
     }
 
-    /// The same labels with a vector, such as a color, for each.
+    /// Gives each label a vector, such as a color, in place of its value.
     ///
     /// # Errors
     ///

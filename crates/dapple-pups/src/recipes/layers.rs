@@ -52,7 +52,7 @@ impl<F> Layers<F> {
         self.maximum
     }
 
-    /// The same sum divided by its maximum, with values in `[0, 1]`: the mapping for display.
+    /// Divides the sum by its maximum, which gives values in `[0, 1]`: the mapping for display.
     #[must_use]
     pub fn normalized(self) -> Self {
         let maximum = self.maximum;
@@ -64,7 +64,7 @@ impl<F> Layers<F> {
         }
     }
 
-    /// The same amplitudes over other layers.
+    /// Changes the layers and keeps their amplitudes.
     pub(crate) fn map<G>(self, change: impl FnMut(F) -> G) -> Layers<G> {
         Layers {
             layers: self.layers.into_iter().map(change).collect(),

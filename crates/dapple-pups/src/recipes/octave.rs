@@ -33,7 +33,7 @@ impl Octave {
         }
     }
 
-    /// The same octave, folded or not.
+    /// Says whether the octave is folded.
     #[must_use]
     pub fn with_folding(self, folding: Folding) -> Self {
         Self { folding, ..self }

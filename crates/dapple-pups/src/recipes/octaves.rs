@@ -128,7 +128,7 @@ pub fn turbulence(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>
 }
 
 impl Layers<Octave> {
-    /// The same octaves, each of them folded.
+    /// Folds each octave.
     #[must_use]
     pub fn folded(self) -> Self {
         self.map(|octave| octave.with_folding(Folding::Folded))

@@ -63,6 +63,7 @@ pub struct SpaceGiraffeOptions {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[non_exhaustive]
 pub enum Spots {
     /// Radii that vary smoothly around a spot: it is in one piece, and no two spots ever merge.
     #[default]

@@ -40,7 +40,7 @@ pub enum Spacing {
 }
 
 impl From<f64> for Spacing {
-    /// The same smallest distance everywhere, in units of the domain.
+    /// One smallest distance everywhere, in units of the domain.
     fn from(distance: f64) -> Self {
         Self::Distance(distance.into())
     }
@@ -110,7 +110,7 @@ impl Spacing {
         })
     }
 
-    /// The same spacing with all distances divided by `factor`: `factor²` times as many points.
+    /// The spacing with all distances divided by `factor`: `factor²` times as many points.
     #[must_use]
     pub fn finer(&self, factor: f64) -> Self {
         match self {

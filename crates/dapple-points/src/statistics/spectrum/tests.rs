@@ -7,7 +7,7 @@ use core::{f64::consts::TAU, slice};
 use dapple_hash::{Seed, hash1, unit_f64};
 use glam::DVec2;
 
-/// The same by the formula, one frequency at a time: ring means and variances.
+/// Rings of the spectrum by the formula, one frequency at a time: ring means and variances.
 fn naive_rings(sets: &[PointSet], options: &SpectrumOptions) -> Vec<(u32, f64, f64)> {
     let size = sets[0].domain().size;
     let n_points: f64 = sets.iter().map(|set| set.len() as f64).sum();
