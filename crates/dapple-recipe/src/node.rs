@@ -1,10 +1,12 @@
 //! The nodes of a recipe: generators, and what is done with what others made.
 
 mod adjust;
+mod alpha;
 mod combine;
 mod generate;
 
 pub use adjust::{Levels, LevelsCurve, Power, ProfileOf, Wave, Waveform};
+pub use alpha::ImageAlpha;
 pub use combine::{BlendMapOf, Blended, BlendedLayer, Mix, Ramped, Tiled, Warp};
 pub use generate::{
     Cells, ControlPoint, ControlPoints, Coordinate, Distance, Fractal, FractalBasis, Frequency,
@@ -114,6 +116,17 @@ impl Node {
             Self::Image(image) => Some(&image.file),
             Self::Pups(PupsNode::Reference(node)) => Some(&node.file),
             Self::Pups(PupsNode::IteratedReference(node)) => Some(&node.file),
+            _ => None,
+        }
+    }
+
+    /// What becomes of the alpha of that file, where the node says so.
+    #[must_use]
+    pub fn image_alpha(&self) -> Option<ImageAlpha> {
+        match self {
+            Self::Image(image) => image.alpha,
+            Self::Pups(PupsNode::Reference(node)) => node.alpha,
+            Self::Pups(PupsNode::IteratedReference(node)) => node.alpha,
             _ => None,
         }
     }

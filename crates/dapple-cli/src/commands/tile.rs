@@ -166,9 +166,9 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     for (path, kind) in inputs {
         let outputs = outputs.next();
         let loaded = input::map_with_alpha(path, kind, args.region, args.alpha.alpha)?;
-        let first = sources.first().map(|source| &source.loaded.map);
-        let first = first.map_or(loaded.map.size(), Map::size);
-        input::check_size(path, loaded.map.size(), first)
+        let size = loaded.map.size();
+        let first = sources.first().map(|source| source.loaded.map.size());
+        input::check_size(path, size, paths[0], first.unwrap_or(size))
             .hint("maps that are cut together have one size")?;
         sources.push(Source {
             name: input::name(path),

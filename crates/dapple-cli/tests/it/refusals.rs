@@ -95,10 +95,22 @@ const LIMITS: [(&str, &str); 18] = [
 ];
 
 /// Command lines whose files do not go together, and what the answer holds.
-const UNLIKE: [(&str, &str); 2] = [
-    ("tile photo.png checker.png -o out/", "size"),
-    ("blend photo.png checker.png -o out.png", "--size"),
+const UNLIKE: [(&str, &str); 5] = [
+    ("tile photo.png checker.png -o out/", CHECKER),
+    ("blend photo.png checker.png -o out.png", CHECKER),
+    ("blend photo.png checker.png -o out.png", "hint: --size"),
+    (
+        "blend photo.png grass.png,weight=checker.png -o out.png",
+        CHECKER,
+    ),
+    (
+        "synth photo.png --map cover=checker.png --size 16 -o out.png",
+        CHECKER,
+    ),
 ];
+
+/// Both names and sizes.
+const CHECKER: &str = "checker.png has 32 × 32 pixels, but photo.png has 64 × 64";
 
 /// Command lines that clap refuses, and what the answer holds.
 const SLIPS: [(&str, &str); 10] = [
@@ -227,7 +239,7 @@ fn values_that_a_library_refuses_are_wrong_usage_and_named_as_typed() {
         );
     }
     for (line, part) in UNLIKE {
-        assert_refused(&folder.run(&words(line)), 1, part, line);
+        assert_refused(&folder.run(&words(line)), 2, part, line);
     }
 }
 
