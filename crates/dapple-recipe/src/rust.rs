@@ -38,7 +38,15 @@ impl Recipe {
 
 /// Whether a node has a value at a single position, without an image.
 fn is_local(node: &Node) -> bool {
-    let is_whole = matches!(node, Node::Tile(_) | Node::BlendMap(_) | Node::Blend(_));
+    let is_whole = matches!(
+        node,
+        Node::Tile(_)
+            | Node::Disturb(_)
+            | Node::MatchBorders(_)
+            | Node::CornerTiles(_)
+            | Node::BlendMap(_)
+            | Node::Blend(_)
+    );
     node.image_file().is_none() && !is_whole
 }
 

@@ -5,7 +5,7 @@
 use crate::support::{Folder, assert_done, stdout};
 use std::fs;
 
-const SUBCOMMANDS: [&str; 14] = [
+const SUBCOMMANDS: [&str; 15] = [
     "bake",
     "watch",
     "recipe",
@@ -13,6 +13,7 @@ const SUBCOMMANDS: [&str; 14] = [
     "pups",
     "wavelet",
     "tile",
+    "copies",
     "blend",
     "blend-map",
     "synth",
@@ -77,6 +78,11 @@ fn examples_of_fields_run() {
 #[test]
 fn examples_of_tile_run() {
     run_examples(&["tile"]);
+}
+
+#[test]
+fn examples_of_copies_run() {
+    run_examples(&["copies"]);
 }
 
 #[test]

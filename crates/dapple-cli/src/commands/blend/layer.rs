@@ -95,6 +95,11 @@ impl LayerArg {
         &self.path
     }
 
+    /// Whether it has a weight.
+    pub(in crate::commands) fn has_weight(&self) -> bool {
+        self.weight.is_some()
+    }
+
     /// Whether it has a height.
     pub(in crate::commands) fn has_height(&self) -> bool {
         self.maps.iter().any(|(name, _)| name == HEIGHT)
