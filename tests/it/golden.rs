@@ -206,8 +206,12 @@ fn tile_corner_tiles() -> anyhow::Result<Vec<u8>> {
         let window = Window::new(DVec2::ZERO, DVec2::splat(cells.into()), [32; 2])?;
         Ok::<_, anyhow::Error>(cracks.to_raster(&window)?)
     };
-    let tiles = CornerTiles::new(&[cracks(2)?, cracks(4)?])?;
-    gray(&tiles.render(Seed(1), [0, 0], [SIZE; 2])?)
+    let sources = [cracks(2)?, cracks(4)?].map(|source| vec![Map::Value(source)]);
+    let maps = CornerTiles::new(&sources)?.render(Seed(1), [0, 0], [SIZE; 2])?;
+    let [Map::Value(map)] = maps.as_slice() else {
+        anyhow::bail!("numbers became something else");
+    };
+    gray(map)
 }
 
 /// Black and white by a tile of noise: from left to right more of it is white.

@@ -7,7 +7,7 @@ use dapple::recipe::{Bake, BakeOptions, Images, MapKind, Plan, Recipe};
 use std::path::Path;
 
 #[rustfmt::skip]
-#[expect(dead_code, unreachable_pub, clippy::missing_errors_doc, reason = "it is a program of its own")]
+#[expect(dead_code, unreachable_pub, reason = "it is a program of its own")]
 mod flagstone;
 
 #[test]

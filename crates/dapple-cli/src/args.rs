@@ -6,7 +6,7 @@ mod ramp;
 mod region;
 mod size;
 
-pub(crate) use alpha::{Alpha, AlphaArgs};
+pub(crate) use alpha::{Alpha, AlphaArgs, image_alpha};
 pub(crate) use numbers::Numbers;
 pub(crate) use ramp::RampArg;
 pub(crate) use region::Region;

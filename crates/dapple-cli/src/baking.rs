@@ -10,7 +10,7 @@ use crate::words::with_dashes;
 use anyhow::{Context as _, Error, Result};
 use dapple::image::{Content, RowWriter};
 use dapple::recipe::{
-    Bake, Images, MapKind, MapRows, Picture, Recipe, RecipeError, RecipeErrorKind,
+    Bake, ImageAlpha, Images, MapKind, MapRows, Picture, Recipe, RecipeError, RecipeErrorKind,
 };
 use dapple::tile::{Map, repeat};
 use rayon::prelude::*;
@@ -77,8 +77,10 @@ pub(crate) fn is_json(path: &Path) -> bool {
 /// If one is not there, or cannot be read.
 pub(crate) fn read_images(recipe: &Recipe, folder: &Path) -> Result<Images> {
     let mut images = Images::new();
+    let hint = "give its node alpha = \"drop\" or alpha = \"over:#rrggbb\"";
     for file in recipe.image_files() {
-        images.insert(file.to_owned(), read_picture(&folder.join(file))?);
+        let picture = read_picture(&folder.join(file), recipe.image_alpha(file)?, hint)?;
+        images.insert(file.to_owned(), picture);
     }
     Ok(images)
 }
@@ -87,9 +89,10 @@ pub(crate) fn read_images(recipe: &Recipe, folder: &Path) -> Result<Images> {
 ///
 /// # Errors
 ///
-/// If it is not there, or cannot be read.
-pub(crate) fn read_picture(path: &Path) -> Result<Picture> {
-    Ok(match input::map(path, input::Kind::ByChannels, None)?.map {
+/// If it is not there, or cannot be read; with the hint, if it is partly transparent and nothing is said of that.
+pub(crate) fn read_picture(path: &Path, alpha: Option<ImageAlpha>, hint: &str) -> Result<Picture> {
+    let loaded = input::map(path, input::Kind::ByChannels, None, alpha, hint)?;
+    Ok(match loaded.map {
         Map::Value(values) => Picture::Numbers(Arc::new(values)),
         Map::Color(colors) => Picture::Colors(Arc::new(colors)),
         Map::Normal(normals) => Picture::Numbers(Arc::new(normals.map(|normal| normal.z))),

@@ -4,6 +4,7 @@ mod bake;
 mod blend;
 mod blend_map;
 mod completions;
+mod copies;
 mod info;
 mod man;
 mod noise;
@@ -32,6 +33,7 @@ pub(crate) enum Command {
     Noise(Box<noise::Args>),
     Wavelet(Box<wavelet::Args>),
     Tile(Box<tile::Args>),
+    Copies(Box<copies::Args>),
     Blend(Box<blend::Args>),
     BlendMap(Box<blend_map::Args>),
     Synth(Box<synth::Args>),
@@ -56,6 +58,7 @@ pub(crate) fn run(command: &Command, context: &Context) -> Result<Exit> {
         Command::Noise(args) => noise::run(args, context),
         Command::Wavelet(args) => wavelet::run(args, context),
         Command::Tile(args) => tile::run(args, context),
+        Command::Copies(args) => copies::run(args, context),
         Command::Blend(args) => blend::run(args, context),
         Command::BlendMap(args) => blend_map::run(args, context),
         Command::Synth(args) => synth::run(args, context),

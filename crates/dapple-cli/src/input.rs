@@ -6,7 +6,7 @@
 )]
 
 use crate::args::{Alpha, Region};
-use crate::error::Hint;
+use crate::error::{Hint, usage};
 use anyhow::{Context, Error, Result, anyhow};
 use dapple::color::{Code, LinearRgb, LinearRgba, Normal};
 use dapple::image::{
@@ -14,6 +14,7 @@ use dapple::image::{
 };
 use dapple::mesh::{MeshErrorKind, Model, io::read_model};
 use dapple::raster::Raster;
+use dapple::recipe::ImageAlpha;
 use dapple::tile::Map;
 use std::fs;
 use std::io::{self, Read};
@@ -80,22 +81,43 @@ pub(crate) fn image(path: &Path) -> Result<Image> {
     read_image(path, &limits).map_err(advise)
 }
 
-/// Reads an image as a map, or a part of it.
+/// What to do about an image with alpha, where an option says what becomes of it.
+pub(crate) const ALPHA_HINT: &str = "add --alpha drop or --alpha over:COLOR";
+
+/// Reads an image as a map that has no alpha, or a part of it.
 ///
 /// # Errors
 ///
-/// As [`image`]; and if its channels cannot be meant so, some pixels are transparent, or the part is not inside of it.
-pub(crate) fn map(path: &Path, kind: Kind, region: Option<Region>) -> Result<Loaded> {
-    let image = image(path)?;
-    let map = opaque(&image, kind).with_context(|| name(path))?;
-    part(path, &image, region, map, None)
+/// As [`image`]; and if its channels cannot be meant so, or the part is not inside of it; with the hint, if some pixels are
+/// transparent and it is not said what becomes of that.
+pub(crate) fn map(
+    path: &Path,
+    kind: Kind,
+    region: Option<Region>,
+    alpha: Option<ImageAlpha>,
+    hint: &str,
+) -> Result<Loaded> {
+    let loaded = map_with_alpha(
+        path,
+        kind,
+        region,
+        alpha.map_or(Alpha::Keep, Alpha::Without),
+    )?;
+    if loaded.alpha.is_some() {
+        let message = format!(
+            "{} is partly transparent, and alpha means nothing here",
+            name(path)
+        );
+        return Err(usage(message).hint(hint));
+    }
+    Ok(loaded)
 }
 
 /// Reads an image as a map, or a part of it, and does with its alpha what was asked for.
 ///
 /// # Errors
 ///
-/// As [`map`], but for what is transparent. Normals have no alpha.
+/// As [`image`]; and if its channels cannot be meant so, or the part is not inside of it. Normals have no alpha.
 pub(crate) fn map_with_alpha(
     path: &Path,
     kind: Kind,
@@ -117,9 +139,13 @@ pub(crate) fn map_with_alpha(
         return part(path, &image, region, map, None);
     };
     let map = match (alpha, values_beside_alpha(&image)) {
-        (Alpha::Drop, Some(values)) if kind == Kind::ByChannels => Map::Value(values),
-        (Alpha::Keep | Alpha::Drop, _) => Map::Color(pixels.map(|pixel| pixel.color)),
-        (Alpha::Over(below), _) => {
+        (Alpha::Without(ImageAlpha::Drop), Some(values)) if kind == Kind::ByChannels => {
+            Map::Value(values)
+        }
+        (Alpha::Keep | Alpha::Without(ImageAlpha::Drop), _) => {
+            Map::Color(pixels.map(|pixel| pixel.color))
+        }
+        (Alpha::Without(ImageAlpha::Over(below)), _) => {
             Map::Color(pixels.map(|pixel| pixel.color * pixel.alpha + below * (1.0 - pixel.alpha)))
         }
     };
@@ -180,20 +206,26 @@ fn part(
     })
 }
 
-/// Refuses an image that has not the size of the first one.
+/// Refuses an image that has not the size of another.
 ///
 /// # Errors
 ///
-/// If it has another.
-pub(crate) fn check_size(path: &Path, size: [u32; 2], first: [u32; 2]) -> Result<()> {
-    if size == first {
+/// If it has another, with both names and sizes.
+pub(crate) fn check_size(
+    path: &Path,
+    size: [u32; 2],
+    first: &Path,
+    first_size: [u32; 2],
+) -> Result<()> {
+    if size == first_size {
         return Ok(());
     }
-    let ([w, h], [first_w, first_h]) = (size, first);
-    Err(anyhow!(
-        "{} has {w} × {h} pixels, but the first image has {first_w} × {first_h}",
-        name(path)
-    ))
+    let ([w, h], [first_w, first_h]) = (size, first_size);
+    Err(usage(format!(
+        "{} has {w} × {h} pixels, but {} has {first_w} × {first_h}",
+        name(path),
+        name(first)
+    )))
 }
 
 /// What an input is called in messages.
@@ -298,9 +330,6 @@ fn advise(error: ImageError) -> Error {
     let hint = match error.kind() {
         ImageErrorKind::UnknownFormat => {
             Some("PNG, JPEG and OpenEXR images are read; convert it first")
-        }
-        ImageErrorKind::Channels { found, .. } if found.contains("transparent") => {
-            Some("lay it over a background first: alpha is not kept")
         }
         ImageErrorKind::MissingPlane { .. } => {
             Some("the planes of an EXR image are R, G and B, or a single one")

@@ -1,11 +1,15 @@
 //! The nodes of a recipe: generators, and what is done with what others made.
 
 mod adjust;
+mod alpha;
 mod combine;
 mod generate;
 
 pub use adjust::{Levels, LevelsCurve, Power, ProfileOf, Wave, Waveform};
-pub use combine::{BlendMapOf, Blended, BlendedLayer, Mix, Ramped, Tiled, Warp};
+pub use alpha::ImageAlpha;
+pub use combine::{
+    BlendMapOf, Blended, BlendedLayer, CornerTilesOf, Disturbed, Framed, Mix, Ramped, Tiled, Warp,
+};
 pub use generate::{
     Cells, ControlPoint, ControlPoints, Coordinate, Distance, Fractal, FractalBasis, Frequency,
     ImageNode, Motion, NodeSeed, PupsNode, Referenced, WaveletNode, WorleyNode, WorleyValue,
@@ -18,8 +22,8 @@ use serde::{Deserialize, Serialize};
 /// A node of a recipe: a table with one entry, whose name is the kind.
 ///
 /// Most nodes make a number at every position. Those that make a color are `ramp`, `color`, `image` of a color image,
-/// and `pups = { color_noise = … }`; `add`, `multiply`, `mix`, `tile`, `warp` and `blend` make a color where they are given
-/// one, and take a number beside it as a gray.
+/// and `pups = { color_noise = … }`; `add`, `multiply`, `mix`, `tile`, `disturb`, `match_borders`, `corner_tiles`, `warp` and `blend` make a
+/// color where they are given one, and take a number beside it as a gray.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -71,6 +75,12 @@ pub enum Node {
     Ramp(Ramped),
     /// Made to repeat.
     Tile(Tiled),
+    /// Copies of a texture that differ inside.
+    Disturb(Disturbed),
+    /// A texture with the borders of another.
+    MatchBorders(Framed),
+    /// Pieces of several textures, in random order.
+    CornerTiles(CornerTilesOf),
     /// A map that says where another texture shows first.
     BlendMap(BlendMapOf),
     /// Layers blended by weights.
@@ -78,7 +88,7 @@ pub enum Node {
 }
 
 /// The names of the kinds, as they are in files.
-pub const KINDS: [&str; 25] = [
+pub const KINDS: [&str; 28] = [
     "worley",
     "pups",
     "wavelet",
@@ -102,6 +112,9 @@ pub const KINDS: [&str; 25] = [
     "warp",
     "ramp",
     "tile",
+    "disturb",
+    "match_borders",
+    "corner_tiles",
     "blend_map",
     "blend",
 ];
@@ -114,6 +127,17 @@ impl Node {
             Self::Image(image) => Some(&image.file),
             Self::Pups(PupsNode::Reference(node)) => Some(&node.file),
             Self::Pups(PupsNode::IteratedReference(node)) => Some(&node.file),
+            _ => None,
+        }
+    }
+
+    /// What becomes of the alpha of that file, where the node says so.
+    #[must_use]
+    pub fn image_alpha(&self) -> Option<ImageAlpha> {
+        match self {
+            Self::Image(image) => image.alpha,
+            Self::Pups(PupsNode::Reference(node)) => node.alpha,
+            Self::Pups(PupsNode::IteratedReference(node)) => node.alpha,
             _ => None,
         }
     }
@@ -144,6 +168,9 @@ impl Node {
             Self::Warp(node) => vec![&node.input, &node.x, &node.y],
             Self::Ramp(node) => vec![&node.input],
             Self::Tile(node) => vec![&node.input],
+            Self::Disturb(node) => vec![&node.input],
+            Self::MatchBorders(node) => vec![&node.input, &node.border],
+            Self::CornerTiles(node) => node.inputs.iter().collect(),
             Self::BlendMap(node) => vec![&node.input],
             Self::Blend(node) => node.inputs(),
         }

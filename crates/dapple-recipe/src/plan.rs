@@ -21,7 +21,7 @@ pub use whole::Whole;
 pub(crate) use whole::blend_values;
 pub use work::PlanLimits;
 
-use crate::{Input, Material, Recipe, RecipeError, RecipeErrorKind};
+use crate::{ImageAlpha, Input, Material, Node, Recipe, RecipeError, RecipeErrorKind};
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
@@ -100,6 +100,22 @@ impl Recipe {
             }
         }
         files
+    }
+
+    /// What becomes of the alpha of an image that the recipe names, where a node says so.
+    ///
+    /// # Errors
+    ///
+    /// [`Conflict`](RecipeErrorKind::Conflict), if two nodes say different things of one file.
+    pub fn image_alpha(&self, file: &str) -> Result<Option<ImageAlpha>, RecipeError> {
+        let of_file = |node: &&Node| node.image_file() == Some(file);
+        let mut alphas = self.nodes.values().filter(of_file).map(Node::image_alpha);
+        let first = alphas.next().flatten();
+        if alphas.any(|alpha| alpha != first) {
+            let rule = "nodes that name one image say the same of its `alpha`";
+            return Err(RecipeError::new(RecipeErrorKind::Conflict { rule }));
+        }
+        Ok(first)
     }
 }
 

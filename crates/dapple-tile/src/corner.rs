@@ -5,24 +5,28 @@
 //! and tiles fit where the colors of the corners that meet agree, along edges as well as across corners. With C colors
 //! there are C⁴ tiles, and a plane of randomly colored corners has exactly one tile for every place.
 //!
-//! Departure: the authors assemble a tile from pieces of an exemplar with a graph cut. Here each color is a source, a tile
-//! that repeats by itself, and near a corner its source is seen. In between the sources are mixed by quintic ramps of the
-//! place, so that along an edge only the colors of its two ends count: two tiles fit as exactly as the sources repeat, and
-//! the weights are twice continuously differentiable all over the plane. The mix keeps the variance (see
-//! [`Crossfade`](crate::Crossfade)) of sources that have nothing to do with each other; like sources get too much of it.
+//! Each color is a source, a material that repeats by itself, and near a corner its source is seen. As with the authors,
+//! pieces meet along cuts where they are most alike, and everything else is copied.
 //!
-//! A material's maps are done one channel at a time: the weights depend on the place and on the colors alone.
+//! Departure: instead of one cut through a graph there are three through rows or columns (see `cut.rs`). Sources a and b
+//! beside each other are cut from top to bottom, by a cut that closes and is the same in all tiles that have them there.
+//! Then the upper pair is cut from the lower pair, from left to right. Where that cut begins depends on the two colors on
+//! the left alone, and where it ends on those on the right, so that it goes on in the tile beside.
 
-use crate::crossfade::smooth_ramp;
+use crate::cut::{Band, Cut, Ends, mix, scales};
 use crate::map::check_planes;
-use crate::{TileError, TileErrorKind};
+use crate::piece::pieces;
+use crate::{Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::{Raster, Wrap};
 
 /// The most sources, hence colors.
 const MOST_SOURCES: usize = 4;
 
-/// A set of corner tiles, made from 2 to 4 sources that repeat by themselves.
+/// The share of a side that cuts may take, if no other is given.
+const WIDTH: f64 = 0.5;
+
+/// A set of corner tiles, made from 2 to 4 materials that repeat by themselves.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/corner-tiles.md"))]
 ///
@@ -30,31 +34,45 @@ const MOST_SOURCES: usize = 4;
 ///
 /// ```
 /// use dapple_hash::Seed;
-/// use dapple_tile::{CornerTiles, raster::Raster};
+/// use dapple_tile::{CornerTiles, Map, raster::Raster};
 ///
 /// let source = |step: u32| Raster::from_fn([32, 32], |x, y| ((x * step + y) % 32) as f32);
-/// let tiles = CornerTiles::new(&[source(1)?, source(3)?])?;
+/// let tiles = CornerTiles::new(&[vec![Map::Value(source(1)?)], vec![Map::Value(source(3)?)]])?;
 /// assert_eq!(tiles.all()?.len(), 16);
-/// let map = tiles.render(Seed(7), [0, 0], [100, 80])?;
-/// assert_eq!(map.size(), [100, 80]);
+/// let maps = tiles.render(Seed(7), [0, 0], [100, 80])?;
+/// assert_eq!(maps[0].size(), [100, 80]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CornerTiles {
-    sources: Vec<Raster<f32>>,
-    means: Vec<f64>,
-    /// The weight of the corners on the right for each column, and of the lower ones for each row.
-    ramps: [Vec<f64>; 2],
+    /// For each source the planes of its maps.
+    sources: Vec<Vec<Raster<f32>>>,
+    /// A pixel of each map of the first source, for its kind.
+    kinds: Vec<Map>,
+    period: [Option<u32>; 2],
+    cuts: Cuts,
+}
+
+/// The cuts of a set of C colors.
+#[derive(Clone, Debug, PartialEq)]
+struct Cuts {
+    /// Between color a on the left and b on the right, at index a + b C.
+    beside: Vec<Cut>,
+    /// Between the upper and the lower pair, at the index of the tile; from left to right.
+    across: Vec<Cut>,
 }
 
 impl CornerTiles {
-    /// The tiles of 2 to 4 sources of one size, with sources mixed over half of a side.
+    /// The tiles of 2 to 4 sources, each the maps of a material, of one size. Cuts may take half of a side.
+    ///
+    /// While the cuts are looked for, C² copies of a source are in memory.
     ///
     /// # Errors
     ///
-    /// [`TileErrorKind::Count`] for fewer or more sources, [`TileErrorKind::Raster`] if they differ in size,
+    /// [`TileErrorKind::Count`] for fewer or more sources, for sources without maps, or more or fewer than the first has,
+    /// [`TileErrorKind::KindMismatch`] if their maps are of other kinds, [`TileErrorKind::Raster`] if they differ in size,
     /// [`TileErrorKind::NotFinite`] for a pixel that is NaN or infinite.
-    pub fn new(sources: &[Raster<f32>]) -> Result<Self, TileError> {
+    pub fn new(sources: &[Vec<Map>]) -> Result<Self, TileError> {
         let count = sources.len();
         if !(2..=MOST_SOURCES).contains(&count) {
             return Err(TileError::new(TileErrorKind::Count {
@@ -63,37 +81,52 @@ impl CornerTiles {
                 needed: "2 to 4",
             }));
         }
-        let size = check_planes(sources)?;
-        let means = sources.iter().map(|source| source.statistics().mean);
+        let planes = Map::planes_of_all(sources)?;
+        let kind = |map: &Map| {
+            let pixels = map
+                .planes()
+                .into_iter()
+                .map(|plane| plane.crop([0, 0], [1, 1]));
+            map.with_planes(pixels.collect::<Result<_, _>>()?)
+        };
         Ok(Self {
-            sources: sources.to_vec(),
-            means: means.collect(),
-            ramps: size.map(|side| ramp(side, 0.5)),
+            kinds: sources[0].iter().map(kind).collect::<Result<_, _>>()?,
+            cuts: Cuts::new(&planes, WIDTH)?,
+            sources: planes,
+            period: [None; 2],
         })
     }
 
-    /// The same tiles with sources mixed over another share of a side, above 0 and at most 1. The less, the
-    /// harder the edge between two sources.
+    /// The same sources with cuts that may take another share of the shorter side, above 0 and at most 1. The more, the less
+    /// the pieces are squares.
     ///
     /// # Errors
     ///
     /// [`TileErrorKind::Range`] for another width.
     pub fn with_width(self, width: f64) -> Result<Self, TileError> {
         let holds = width > 0.0 && width <= 1.0;
-        TileError::check(
-            holds,
-            "width of the transition",
-            width,
-            "above 0, at most 1",
-        )?;
-        let ramps = self.size().map(|side| ramp(side, width));
-        Ok(Self { ramps, ..self })
+        TileError::check(holds, "width of the cuts", width, "above 0, at most 1")?;
+        let cuts = Cuts::new(&self.sources, width)?;
+        Ok(Self { cuts, ..self })
+    }
+
+    /// The same tiles, with corners that repeat after so many tiles along each axis, x first: a map of whole periods repeats.
+    /// By default they do not.
+    ///
+    /// # Errors
+    ///
+    /// [`TileErrorKind::Range`] for a period of 0.
+    pub fn with_period(self, period: [Option<u32>; 2]) -> Result<Self, TileError> {
+        for tiles in period.into_iter().flatten() {
+            TileError::check(tiles > 0, "period in tiles", tiles.into(), "at least 1")?;
+        }
+        Ok(Self { period, ..self })
     }
 
     /// Columns and rows of a tile.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
-        self.sources[0].size()
+        self.sources[0][0].size()
     }
 
     /// The tile with these colors at its corners: top left, top right, bottom left, bottom right.
@@ -101,18 +134,21 @@ impl CornerTiles {
     /// # Errors
     ///
     /// [`TileErrorKind::Range`] for a color that is not the index of a source.
-    pub fn tile(&self, colors: [u8; 4]) -> Result<Raster<f32>, TileError> {
+    pub fn tile(&self, colors: [u8; 4]) -> Result<Vec<Map>, TileError> {
         for color in colors {
             let holds = usize::from(color) < self.sources.len();
             TileError::check(holds, "corner color", color.into(), "the index of a source")?;
         }
-        let columns = 0..self.size()[0] as usize;
-        let tile = Raster::from_rows(self.size(), |row| {
-            let mut values = Vec::with_capacity(columns.len());
-            self.mix_row(colors, row, columns.clone(), &mut values);
-            values
-        })?;
-        Ok(tile)
+        let [width, height] = self.size();
+        let mut planes = Vec::new();
+        for plane in 0..self.sources[0].len() {
+            planes.push(Raster::from_rows([width, height], |row| {
+                let mut values = Vec::with_capacity(width as usize);
+                self.join_row(colors, plane, row, 0..width, &mut values);
+                values
+            })?);
+        }
+        Map::all_with_planes(&self.kinds, planes)
     }
 
     /// All C⁴ tiles. The one with corner colors `[a, b, c, d]`, in the order of [`tile`](Self::tile), is at index
@@ -121,17 +157,13 @@ impl CornerTiles {
     /// # Errors
     ///
     /// None that [`new`](Self::new) lets pass.
-    pub fn all(&self) -> Result<Vec<Raster<f32>>, TileError> {
+    pub fn all(&self) -> Result<Vec<Vec<Map>>, TileError> {
         let n_colors = self.sources.len();
-        (0..n_colors.pow(4))
-            .map(|index| {
-                let color = |place: u32| (index / n_colors.pow(place) % n_colors) as u8;
-                self.tile([color(0), color(1), color(2), color(3)])
-            })
-            .collect()
+        let tiles = (0..n_colors.pow(4)).map(|index| self.tile(colors_of(index, n_colors)));
+        tiles.collect()
     }
 
-    /// A map of `size` pixels from pixel `first` of the plane, whose corners have random colors; on all cores where the
+    /// Maps of `size` pixels from pixel `first` of the plane, whose corners have random colors; on all cores where the
     /// feature `rayon` is on.
     ///
     /// A window is the crop of the whole. Tile `[0, 0]` begins in pixel `[0, 0]` of the plane. Past the largest `i64` the
@@ -145,105 +177,139 @@ impl CornerTiles {
         seed: Seed,
         first: [i64; 2],
         size: [u32; 2],
-    ) -> Result<Raster<f32>, TileError> {
+    ) -> Result<Vec<Map>, TileError> {
         let seed = seed.child("corner", 0);
-        let map = Raster::from_rows(size, |row| {
-            let y = first[1].wrapping_add(row.into());
-            let above = y.div_euclid(self.size()[1].into());
-            let hashes = [above, above.wrapping_add(1)].map(|row| CellHash::new(seed, [row]));
-            let row = Wrap::Repeat.index(y, self.size()[1]);
-            self.render_row(hashes, row, first[0], size[0] as usize)
-        })?;
-        Ok(map)
-    }
-
-    /// The pixels of a row of the map, tile by tile.
-    fn render_row(&self, hashes: [CellHash; 2], row: u32, first: i64, width: usize) -> Vec<f32> {
-        let side = i64::from(self.size()[0]);
-        let mut values = Vec::with_capacity(width);
-        while values.len() < width {
-            let x = first.wrapping_add(values.len() as i64);
-            let left = x.div_euclid(side);
-            let from = x.rem_euclid(side) as usize;
-            let to = (side as usize).min(from + width - values.len());
-            let [nw, sw] = hashes.map(|hash| self.color(hash.axis(left)));
-            let [ne, se] = hashes.map(|hash| self.color(hash.axis(left.wrapping_add(1))));
-            self.mix_row([nw, ne, sw, se], row, from..to, &mut values);
+        let columns = pieces(first[0], size[0], self.size()[0]);
+        let mut planes = Vec::new();
+        for plane in 0..self.sources[0].len() {
+            planes.push(Raster::from_rows(size, |row| {
+                let y = first[1].wrapping_add(row.into());
+                let above = y.div_euclid(self.size()[1].into());
+                let row = Wrap::Repeat.index(y, self.size()[1]);
+                let mut values = Vec::with_capacity(size[0] as usize);
+                for piece in &columns {
+                    let colors = self.colors(seed, [piece.copy, above]);
+                    let pixels = piece.from..piece.from + piece.count;
+                    self.join_row(colors, plane, row, pixels, &mut values);
+                }
+                values
+            })?);
         }
-        values
+        Map::all_with_planes(&self.kinds, planes)
     }
 
-    /// The color of a corner.
-    fn color(&self, corner: CellHash) -> u8 {
+    /// The colors at the corners of a tile of the plane.
+    fn colors(&self, seed: Seed, tile: [i64; 2]) -> [u8; 4] {
+        let [left, above] = tile;
+        let [right, below] = tile.map(|at| at.wrapping_add(1));
+        [[left, above], [right, above], [left, below], [right, below]]
+            .map(|corner| self.color(seed, corner))
+    }
+
+    fn color(&self, seed: Seed, corner: [i64; 2]) -> u8 {
+        let [x, y] = [0, 1].map(|axis| match self.period[axis] {
+            Some(period) => corner[axis].rem_euclid(period.into()),
+            None => corner[axis],
+        });
+        let bits = CellHash::new(seed, [y]).axis(x).at(0);
         // The upper half of the product of a number below 1 and the number of colors.
-        (((corner.at(0) >> 32) * self.sources.len() as u64) >> 32) as u8
+        (((bits >> 32) * self.sources.len() as u64) >> 32) as u8
     }
 
-    /// Some columns of a row of a tile.
-    fn mix_row(
+    /// Some columns of a row of a plane of a tile.
+    fn join_row(
         &self,
         colors: [u8; 4],
+        plane: usize,
         row: u32,
-        columns: core::ops::Range<usize>,
+        columns: core::ops::Range<u32>,
         values: &mut Vec<f32>,
     ) {
         let colors = colors.map(usize::from);
-        let sources = colors.map(|color| &self.sources[color].row(row)[columns.clone()]);
+        let [nw, ne, sw, se] = colors.map(|color| self.sources[color][plane].row(row));
         if colors == [colors[0]; 4] {
-            values.extend_from_slice(sources[0]);
+            values.extend_from_slice(&nw[columns.start as usize..columns.end as usize]);
             return;
         }
-        let means = colors.map(|color| self.means[color]);
-        let alike = alike(colors);
-        let down = self.ramps[1][row as usize];
-        let ramp = &self.ramps[0][columns];
-        let [nw, ne, sw, se] = sources.map(|source| &source[..ramp.len()]);
-        let start = values.len();
-        values.resize(start + ramp.len(), 0.0);
-        let to = &mut values[start..][..ramp.len()];
-        for x in 0..ramp.len() {
-            let right = ramp[x];
-            let weights = [
-                (1.0 - right) * (1.0 - down),
-                right * (1.0 - down),
-                (1.0 - right) * down,
-                right * down,
-            ];
-            to[x] = mix(weights, [nw[x], ne[x], sw[x], se[x]], means, alike);
+        let n_colors = self.sources.len();
+        let [upper, lower] = [[colors[0], colors[1]], [colors[2], colors[3]]]
+            .map(|[left, right]| &self.cuts.beside[left + right * n_colors]);
+        let across = &self.cuts.across[index_of(colors, n_colors)];
+        values.extend(columns.map(|column| {
+            let x = column as usize;
+            let above = mix(nw[x], ne[x], upper.weight(column, row));
+            let below = mix(sw[x], se[x], lower.weight(column, row));
+            mix(above, below, across.weight(row, column))
+        }));
+    }
+}
+
+/// The index of a tile, from the colors at its corners.
+fn index_of(colors: [usize; 4], n_colors: usize) -> usize {
+    colors
+        .iter()
+        .rev()
+        .fold(0, |index, color| index * n_colors + color)
+}
+
+/// The colors at the corners of a tile, from its index.
+fn colors_of(index: usize, n_colors: usize) -> [u8; 4] {
+    [0, 1, 2, 3].map(|place| (index / n_colors.pow(place) % n_colors) as u8)
+}
+
+impl Cuts {
+    /// The cheapest cuts that may take a share of the shorter side.
+    fn new(sources: &[Vec<Raster<f32>>], width: f64) -> Result<Self, TileError> {
+        let size = check_planes(&sources.concat())?;
+        let [along_x, along_y] = size.map(|side| band(side, size, width));
+        let of_scales: Vec<_> = sources.iter().map(Vec::as_slice).collect();
+        let scales = scales(&of_scales);
+        let turned = sources.iter().map(|planes| turned(planes));
+        let turned: Vec<_> = turned.collect::<Result<_, _>>()?;
+        let n_colors = sources.len();
+        let (mut beside, mut halves, mut ends) = (Vec::new(), Vec::new(), Vec::new());
+        for (a, b) in (0..n_colors).flat_map(|b| (0..n_colors).map(move |a| (a, b))) {
+            let cheapest = |of: &[Vec<Raster<f32>>], band| match a == b {
+                true => Ok(Cut::straight(band, of[a][0].height())),
+                false => Cut::cheapest([&of[a], &of[b]], &scales, band, Ends::Closed),
+            };
+            let cut = cheapest(sources, along_x)?;
+            ends.push(cheapest(&turned, along_y)?.ends());
+            let pairs = sources[a].iter().zip(&sources[b]);
+            let joined: Vec<_> = pairs
+                .map(|(a, b)| cut.join([a, b]))
+                .collect::<Result<_, _>>()?;
+            halves.push(self::turned(&joined)?);
+            beside.push(cut);
         }
+        let mut across = Vec::new();
+        for index in 0..n_colors.pow(4) {
+            let [a, b, c, d] = colors_of(index, n_colors).map(usize::from);
+            let pair = [&halves[a + b * n_colors][..], &halves[c + d * n_colors]];
+            let at = Ends::At([ends[a + c * n_colors][0], ends[b + d * n_colors][1]]);
+            across.push(match (a, b) == (c, d) {
+                true => Cut::straight(along_y, size[0]),
+                false => Cut::cheapest(pair, &scales, along_y, at)?,
+            });
+        }
+        Ok(Self { beside, across })
     }
 }
 
-/// For each pair of corners 2 if they have one color, or else 0.
-fn alike(colors: [usize; 4]) -> [f64; 6] {
-    [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
-        .map(|[a, b]| if colors[a] == colors[b] { 2.0 } else { 0.0 })
+/// The band of the cuts in the middle of a side: a share of the shorter side, so that a cut that moves one pixel to the side in
+/// each row gets from any pixel of the band to any other. A pixel at both ends of the side stays free, if there are three.
+fn band(side: u32, size: [u32; 2], width: f64) -> Band {
+    let shorter = size[0].min(size[1]);
+    let share = (f64::from(shorter) * width).round() as u32;
+    let count = share.min(shorter.saturating_sub(2)).max(1);
+    Band {
+        first: (side - count) / 2,
+        count,
+    }
 }
 
-/// The values at all corners, mixed: means by their weights, what differs from them by weights of length 1.
-///
-/// Corners of one color add up before the length is taken, so that each pair of them adds twice its product.
-fn mix(weights: [f64; 4], values: [f32; 4], means: [f64; 4], alike: [f64; 6]) -> f32 {
-    let [a, b, c, d] = weights;
-    let [mut mean, mut deviation] = [0.0; 2];
-    for corner in 0..4 {
-        mean += weights[corner] * means[corner];
-        deviation += weights[corner] * (f64::from(values[corner]) - means[corner]);
-    }
-    let products = [a * b, a * c, a * d, b * c, b * d, c * d];
-    let mut length_sq = a * a + b * b + c * c + d * d;
-    for pair in 0..6 {
-        length_sq += alike[pair] * products[pair];
-    }
-    // The weights are a partition of 1, so that the sum of their squares is at least a quarter.
-    (mean + deviation / length_sq.sqrt()) as f32
-}
-
-/// The weight of the far corner at the pixels of a side: half and half in the middle.
-fn ramp(side: u32, width: f64) -> Vec<f64> {
-    let place = |pixel: u32| (f64::from(pixel) + 0.5) / f64::from(side);
-    let weight = |place: f64| smooth_ramp((place - 0.5) / width + 0.5);
-    (0..side).map(place).map(weight).collect()
+fn turned(planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
+    planes.iter().map(crate::axis::transpose).collect()
 }
 
 #[cfg(test)]

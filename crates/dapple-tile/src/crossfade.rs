@@ -64,22 +64,16 @@ impl Crossfade {
 }
 
 /// What the two deviations are multiplied with, for the weight of the second and the correlation of the two.
-pub(crate) fn shares(weight: f64, correlation: f64) -> [f64; 2] {
+fn shares(weight: f64, correlation: f64) -> [f64; 2] {
     let [v, w] = [1.0 - weight, weight];
     let length = (v * v + w * w + 2.0 * correlation * v * w).sqrt();
     [v / length, w / length]
 }
 
 /// The mean of the means, and the shares of both deviations.
-pub(crate) fn mix_two(values: [f32; 2], means: [f64; 2], shares: [f64; 2], weight: f64) -> f32 {
+fn mix_two(values: [f32; 2], means: [f64; 2], shares: [f64; 2], weight: f64) -> f32 {
     let [a, b] = [0, 1].map(|side| (f64::from(values[side]) - means[side]) * shares[side]);
     (means[0] + weight * (means[1] - means[0]) + (a + b)) as f32
-}
-
-/// The quintic 6t⁵ − 15t⁴ + 10t³ from 0 to 1, flat outside: its first and second derivative are 0 at both ends.
-pub(crate) fn smooth_ramp(t: f64) -> f64 {
-    let t = t.clamp(0.0, 1.0);
-    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
 impl<'a> Pair<'a> {
@@ -119,33 +113,13 @@ impl<'a> Pair<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Crossfade, Pair, shares, smooth_ramp};
+    use super::{Crossfade, Pair, shares};
     use dapple_hash::{Seed, hash2, unit_f64};
     use dapple_raster::Raster;
 
     fn white(seed: u64, size: [u32; 2]) -> Raster<f32> {
         let value = |x: u32, y: u32| unit_f64(hash2(Seed(seed), [x.into(), y.into()], 0));
         Raster::from_fn(size, |x, y| value(x, y) as f32).unwrap()
-    }
-
-    #[test]
-    fn smooth_ramp_is_flat_at_its_ends_and_symmetric() {
-        assert_eq!(
-            [-1.0, 0.0, 0.5, 1.0, 2.0].map(smooth_ramp),
-            [0.0, 0.0, 0.5, 1.0, 1.0]
-        );
-        // The quintic begins as 10 t³.
-        assert!(
-            (smooth_ramp(1e-4) / 1e-11 - 1.0).abs() < 1e-3,
-            "begins with its cube"
-        );
-        for t in [0.1, 0.25, 0.4] {
-            // Two roundings of numbers below 1.
-            assert!(
-                (smooth_ramp(t) + smooth_ramp(1.0 - t) - 1.0).abs() < 1e-15,
-                "at {t}"
-            );
-        }
     }
 
     #[test]

@@ -31,6 +31,16 @@ pub(crate) fn closed_path(costs: &Raster<f64>) -> Vec<u32> {
     best.columns
 }
 
+/// The same for the cheapest path from a column of the first row to one of the last.
+///
+/// The two are less than a row apart for each row of the grid.
+pub(crate) fn path_between(costs: &Raster<f64>, [begin, end]: [u32; 2]) -> Vec<u32> {
+    let [left, right] = whole_band(costs);
+    let mut search = Search::new(costs);
+    search.spread(&left, &right, [begin; 2]);
+    search.trace(left.len() - 1, [end; 2]).columns
+}
+
 /// A path and its price.
 struct Path {
     price: f64,
@@ -89,17 +99,22 @@ impl<'a> Search<'a> {
     /// The cheapest path between `left` and `right`, both included; closed, if it has to begin in a given column.
     fn cheapest(&mut self, left: &[u32], right: &[u32], begin: Option<u32>) -> Path {
         let last = left.len() - 1;
-        let [from, to] = begin.map_or([left[0], right[0]], |column| [column; 2]);
-        self.begin([left[0], right[0]], [from, to]);
-        for row in 1..=last {
-            self.advance(row, [left[row], right[row]]);
-        }
+        let begins = begin.map_or([left[0], right[0]], |column| [column; 2]);
+        self.spread(left, right, begins);
         let [mut from, mut to] = [left[last], right[last]];
         if let Some(column) = begin {
             from = from.max(column.saturating_sub(1));
             to = to.min(column + 1);
         }
         self.trace(last, [from, to])
+    }
+
+    /// The prices of all cells of the band, for paths that begin in one of the cells `begins[0]..=begins[1]`.
+    fn spread(&mut self, left: &[u32], right: &[u32], begins: [u32; 2]) {
+        self.begin([left[0], right[0]], begins);
+        for row in 1..left.len() {
+            self.advance(row, [left[row], right[row]]);
+        }
     }
 
     /// The prices of the first row: only cells `from..=to` can be the first.
@@ -162,7 +177,7 @@ impl<'a> Search<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{closed_path, open_path};
+    use super::{closed_path, open_path, path_between};
     use dapple_hash::{Seed, hash2};
     use dapple_raster::Raster;
 
@@ -236,6 +251,26 @@ mod tests {
                     .map(|first| brute_force(&costs, &[first], |end| end.abs_diff(first) <= 1))
                     .fold(f64::INFINITY, f64::min);
                 assert_eq!(price(&costs, &path), best, "seed {seed}, {size:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn path_between_is_as_cheap_as_the_best_of_all_with_its_ends() {
+        for seed in 0..40 {
+            for size in [[1, 1], [1, 9], [4, 4], [9, 13], [13, 40]] {
+                let costs = costs(seed, size);
+                for ends in [[0, size[0] - 1], [size[0] - 1, 0], [size[0] / 2; 2]] {
+                    let path = path_between(&costs, ends);
+                    assert!(steps_are_short(&path), "{path:?}");
+                    assert_eq!([path[0], path[path.len() - 1]], ends);
+                    let best = brute_force(&costs, &ends[..1], |end| end == ends[1]);
+                    assert_eq!(
+                        price(&costs, &path),
+                        best,
+                        "seed {seed}, {size:?}, {ends:?}"
+                    );
+                }
             }
         }
     }

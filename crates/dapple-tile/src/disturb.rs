@@ -2,24 +2,24 @@
 //!
 //! A tile that repeats shows its repetition. Jin-Lian Du, Song Wang and Xianhai Meng, "Wavelet and Blend maps for
 //! texture synthesis", propose "using stochastic function to disturb the signal inner each tile but keep the boundary
-//! not change", and leave the function open. Here each copy of the tile in the plane is mixed with the same tile,
-//! shifted by a random number of whole pixels. So nothing comes in that the tile has not, and what is mixed keeps its
-//! variance (see [`Crossfade`](crate::Crossfade)), the tile and its shifted self taken for independent: a shift is at
-//! least a quarter of the tile along each axis, whichever way round (a side of a single pixel cannot be shifted).
+//! not change", and leave the function open. Here the middle of each copy of the tile in the plane is a piece of the same
+//! tile, shifted by a random number of whole pixels, and the two meet along a cut where they are most alike (see `cut.rs`).
+//! So nothing comes in that the tile has not. A shift is at least a quarter of the tile along each axis, whichever way round
+//! (a side of a single pixel cannot be shifted).
 //!
-//! The weight of the shifted tile is the product of two profiles, one along each axis: 0 in the `frozen` pixels next to
-//! both borders, then a quintic ramp over `ramp` pixels, 1 in the middle. So the frozen border, of all copies, is the
-//! tile's, bit for bit; the weight is twice continuously differentiable in the plane, and so is the disturbed map where
-//! the tile is. Which copy is shifted by how much is a hash of its column and row: a window is the crop of the whole.
+//! The `frozen` pixels next to the borders are the tile's in all copies, bit for bit, and the cut lies in the `margin`
+//! next to them. Which copy is shifted by how much is a hash of its column and row: a window is the crop of the whole, and a
+//! map of whole copies repeats.
 //!
 //! Reference: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 4 C; the
-//! mixture is our own.
+//! shifts and the cut are our own.
 
-use crate::crossfade::{mix_two, shares, smooth_ramp};
-use crate::map::check_finite;
+use crate::frame::{Frame, framed};
+use crate::map::check_planes;
+use crate::piece::{Piece, lay, pieces};
 use crate::{Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
-use dapple_raster::{Raster, Wrap};
+use dapple_raster::Raster;
 
 /// A map of copies of a tile that differ inside.
 ///
@@ -45,9 +45,8 @@ use dapple_raster::{Raster, Wrap};
 pub struct Disturbance {
     /// How many pixels along each border stay as they are. By default 4.
     pub frozen: u32,
-    /// Over how many more pixels the disturbance sets in. Together with the frozen ones at most half of a side. By
-    /// default 16.
-    pub ramp: u32,
+    /// How many more pixels the cut may take, for which tile and shifted tile lie over each other. Together with the frozen ones at most half of a side. By default 24.
+    pub margin: u32,
     /// Where the shifts come from. By default `Seed(0)`.
     pub seed: Seed,
 }
@@ -59,12 +58,12 @@ impl Default for Disturbance {
 }
 
 impl Disturbance {
-    /// The disturbance of a seed, for tiles of at least 40 pixels: 4 frozen and a ramp of 16.
+    /// The disturbance of a seed, for tiles of at least 56 pixels: 4 frozen and a margin of 24.
     #[must_use]
     pub fn new(seed: Seed) -> Self {
         Self {
             frozen: 4,
-            ramp: 16,
+            margin: 24,
             seed,
         }
     }
@@ -77,7 +76,7 @@ impl Disturbance {
     ///
     /// # Errors
     ///
-    /// [`TileErrorKind::Margin`] if the frozen pixels and the ramp are more than half of a side,
+    /// [`TileErrorKind::Margin`] if the frozen pixels and the margin are more than half of a side,
     /// [`TileErrorKind::NotFinite`] for a pixel that is NaN or infinite, [`TileErrorKind::Raster`] if `size` is empty or
     /// too large.
     pub fn render(
@@ -86,127 +85,87 @@ impl Disturbance {
         first: [i64; 2],
         size: [u32; 2],
     ) -> Result<Raster<f32>, TileError> {
-        check_finite(tile)?;
-        let [profile_x, profile_y] = [self.profile(tile.width())?, self.profile(tile.height())?];
-        let mean = tile.statistics().mean;
-        let seed = self.seed.child("disturb", 0);
-        let rows = Raster::from_rows(size, |row| {
-            let y = first[1].wrapping_add(row.into());
-            let in_tile = Wrap::Repeat.index(y, tile.height());
-            let row = Row {
-                tile,
-                mean,
-                y: in_tile,
-                hash: CellHash::new(seed, [y.div_euclid(tile.height().into())]),
-                profile_x: &profile_x,
-                weight_y: profile_y[in_tile as usize],
-            };
-            row.render(first[0], size[0])
-        })?;
-        Ok(rows)
+        let mut maps = self.render_planes(core::slice::from_ref(tile), first, size)?;
+        Ok(maps.swap_remove(0))
     }
 
-    /// The same for all maps of a material, whose copies are shifted alike.
+    /// The same for all maps of a material, whose copies are shifted and cut alike.
     ///
     /// Normals are mixed as slopes, so that those of the frozen border come back within rounding.
     ///
     /// # Errors
     ///
-    /// As [`render`](Self::render); [`TileErrorKind::Raster`] too if the maps differ in size.
+    /// As [`render`](Self::render); [`TileErrorKind::Count`] without maps, and [`TileErrorKind::Raster`] if they differ in
+    /// size.
     pub fn render_maps(
         &self,
         maps: &[Map],
         first: [i64; 2],
         size: [u32; 2],
     ) -> Result<Vec<Map>, TileError> {
-        maps.iter()
-            .map(|map| {
-                let planes = map.planes();
-                planes[0].check_same_size(maps[0].size())?;
-                let planes = planes.iter().map(|plane| self.render(plane, first, size));
-                map.with_planes(planes.collect::<Result<_, _>>()?)
-            })
+        let planes: Vec<_> = maps.iter().flat_map(Map::planes).collect();
+        Map::all_with_planes(maps, self.render_planes(&planes, first, size)?)
+    }
+
+    fn render_planes(
+        &self,
+        tile: &[Raster<f32>],
+        first: [i64; 2],
+        size: [u32; 2],
+    ) -> Result<Vec<Raster<f32>>, TileError> {
+        let sides = check_planes(tile)?;
+        self.check_width(sides)?;
+        Raster::<()>::filled(size, ())?;
+        let seed = self.seed.child("disturb", 0);
+        let [columns, rows] = [0, 1].map(|axis| pieces(first[axis], size[axis], sides[axis]));
+        let copies = Raster::from_rows([columns.len() as u32, rows.len() as u32], |row| {
+            let hash = CellHash::new(seed, [rows[row as usize].copy]);
+            let copy = move |column: &Piece| self.copy(tile, hash.axis(column.copy));
+            columns.iter().map(copy)
+        })?;
+        let copies = copies.into_pixels().into_iter();
+        let copies = copies.collect::<Result<Vec<_>, _>>()?;
+        let at = |[column, row]: [usize; 2]| &copies[row * columns.len() + column];
+        let planes = 0..tile.len();
+        planes
+            .map(|plane| lay([&columns, &rows], |place| &at(place)[plane]))
             .collect()
     }
 
-    /// The weights along one axis, for the pixels of a tile.
-    fn profile(&self, length: u32) -> Result<Vec<f64>, TileError> {
-        let (margin, most) = (self.frozen.saturating_add(self.ramp), length / 2);
-        if margin > most {
-            return Err(TileError::new(TileErrorKind::Margin {
-                margin,
-                length,
-                most,
-            }));
-        }
-        let weight = |pixel: u32| {
-            let from_border = pixel.min(length - 1 - pixel);
-            if from_border < self.frozen {
-                return 0.0;
-            }
-            // The center of the first pixel that is not frozen is half a pixel up the ramp.
-            let up = f64::from(from_border - self.frozen) + 0.5;
-            // Without a ramp the weight jumps to 1.
-            smooth_ramp(up / f64::from(self.ramp).max(0.5))
+    /// The planes of a copy.
+    fn copy(&self, tile: &[Raster<f32>], hash: CellHash) -> Result<Vec<Raster<f32>>, TileError> {
+        let [x, y] = [0, 1].map(|axis| shift(hash.at(axis), tile[0].size()[axis as usize]));
+        let shifted = tile.iter().map(|plane| rolled(plane, [x, y]));
+        let width = Frame {
+            whole: self.frozen,
+            band: self.margin,
         };
-        Ok((0..length).map(weight).collect())
+        framed(&shifted.collect::<Result<Vec<_>, _>>()?, tile, width)
+    }
+
+    /// Refuses a frame that leaves nothing of a side.
+    fn check_width(&self, size: [u32; 2]) -> Result<(), TileError> {
+        for length in size {
+            let (margin, most) = (self.frozen.saturating_add(self.margin), length / 2);
+            if margin > most {
+                return Err(TileError::new(TileErrorKind::Margin {
+                    margin,
+                    length,
+                    most,
+                }));
+            }
+        }
+        Ok(())
     }
 }
 
-/// What the pixels of a row of the map have in common.
-struct Row<'a> {
-    tile: &'a Raster<f32>,
-    mean: f64,
-    /// The row of the tile.
-    y: u32,
-    /// The seed and the row of copies.
-    hash: CellHash,
-    profile_x: &'a [f64],
-    weight_y: f64,
-}
-
-impl Row<'_> {
-    /// The pixels from column `first` of the plane.
-    fn render(&self, first: i64, width: u32) -> Vec<f32> {
-        let side = i64::from(self.tile.width());
-        let mut values = Vec::with_capacity(width as usize);
-        while values.len() < width as usize {
-            let x = first.wrapping_add(values.len() as i64);
-            let from = x.rem_euclid(side) as usize;
-            let count = (side as usize - from).min(width as usize - values.len());
-            self.copy(x.div_euclid(side), from..from + count, &mut values);
-        }
-        values
-    }
-
-    /// Some columns of the row of one copy.
-    fn copy(&self, column: i64, columns: core::ops::Range<usize>, values: &mut Vec<f32>) {
-        let own = &self.tile.row(self.y)[columns.clone()];
-        if self.weight_y == 0.0 {
-            values.extend_from_slice(own);
-            return;
-        }
-        let copy = self.hash.axis(column);
-        let [shift_x, shift_y] =
-            [0, 1].map(|axis| shift(copy.at(axis), self.tile.size()[axis as usize]));
-        let shifted_y = (u64::from(self.y) + u64::from(shift_y)) % u64::from(self.tile.height());
-        let shifted = self.tile.row(shifted_y as u32);
-        for (x, &own) in columns.zip(own) {
-            let weight = self.profile_x[x] * self.weight_y;
-            let past = x + shift_x as usize;
-            let to = past.checked_sub(shifted.len()).unwrap_or(past);
-            values.push(match weight {
-                0.0 => own,
-                1.0 => shifted[to],
-                _ => mix_two(
-                    [own, shifted[to]],
-                    [self.mean; 2],
-                    shares(weight, 0.0),
-                    weight,
-                ),
-            });
-        }
-    }
+/// The tile, which repeats, from another pixel on.
+pub(crate) fn rolled(plane: &Raster<f32>, [x, y]: [u32; 2]) -> Result<Raster<f32>, TileError> {
+    Ok(Raster::from_rows(plane.size(), |row| {
+        let row = (u64::from(row) + u64::from(y)) % u64::from(plane.height());
+        let row = plane.row(row as u32);
+        row[x as usize..].iter().chain(&row[..x as usize]).copied()
+    })?)
 }
 
 /// A random number of pixels from a quarter to three quarters of a side, both included; 0 for a side of one pixel.

@@ -44,7 +44,9 @@ mod seamless;
 
 mod axis;
 mod crossfade;
+mod cut;
 mod cut_path;
+mod frame;
 mod overlap;
 
 mod fourier;
@@ -62,6 +64,7 @@ mod report;
 mod corner;
 mod disturb;
 mod match_borders;
+mod piece;
 mod repeat;
 
 mod gauss;

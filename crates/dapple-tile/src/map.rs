@@ -1,6 +1,7 @@
 //! The maps of a material, and the planes of numbers that they are made of.
 
 use crate::{TileError, TileErrorKind};
+use core::mem::discriminant;
 use dapple_color::{LinearRgb, Normal};
 use dapple_raster::Raster;
 
@@ -48,6 +49,46 @@ impl Map {
                 raster.map(|normal| slope(normal.y, normal.z)),
             ],
         }
+    }
+
+    /// The planes of the maps of each of several materials.
+    ///
+    /// Refuses materials without maps, with more or fewer maps than the first, of other kinds or sizes, and pixels that are
+    /// not finite.
+    pub(crate) fn planes_of_all(
+        materials: &[Vec<Self>],
+    ) -> Result<Vec<Vec<Raster<f32>>>, TileError> {
+        let mut all = Vec::new();
+        for maps in materials {
+            let first = &materials[0];
+            if maps.is_empty() || maps.len() != first.len() {
+                return Err(TileError::new(TileErrorKind::Count {
+                    what: "maps",
+                    count: maps.len(),
+                    needed: "as many as the first has, at least 1",
+                }));
+            }
+            let mut pairs = maps.iter().zip(first);
+            if let Some(map) = pairs.position(|(a, b)| discriminant(a) != discriminant(b)) {
+                return Err(TileError::new(TileErrorKind::KindMismatch { map }));
+            }
+            let planes: Vec<_> = maps.iter().flat_map(Self::planes).collect();
+            check_planes(&planes)?;
+            planes[0].check_same_size(first[0].size())?;
+            all.push(planes);
+        }
+        Ok(all)
+    }
+
+    /// Maps of the kinds of some, from all their planes.
+    pub(crate) fn all_with_planes(
+        maps: &[Self],
+        planes: Vec<Raster<f32>>,
+    ) -> Result<Vec<Self>, TileError> {
+        let mut planes = planes.into_iter();
+        maps.iter()
+            .map(|map| map.with_planes(planes.by_ref().take(map.n_planes()).collect()))
+            .collect()
     }
 
     /// A map of this kind from its planes, in the order of [`planes`](Self::planes).

@@ -2,26 +2,27 @@
 //!
 //! Jin-Lian Du, Song Wang and Xianhai Meng, "Wavelet and Blend maps for texture synthesis", name an optional step of their
 //! method: to "adjust the tile borders to accommodate tile meshing (if using different tiles)". How is left open. Here all
-//! tiles get the same borders: near them, each tile changes over to the first one, by weights that keep the variance (see
-//! [`Crossfade`](crate::Crossfade)). So every tile fits beside, above and below every other, itself included, and what
-//! meets at a border is a piece of one texture.
+//! tiles get the same borders: each is put in the frame of the first one, along a cut where the two are most alike (see
+//! `cut.rs`). So every tile fits beside, above and below every other, itself included, and what meets at a border is a
+//! piece of one texture.
 //!
 //! What is seen there is either the border of the first tile, if that repeats by itself, or else its middle, which is
-//! continuous where its borders are not: then the first tile is mixed with itself, rolled by half, along one axis after
-//! the other, before the others are mixed with it.
+//! continuous where its borders are not: then the first tile is put in the frame of itself, rolled by half, along one axis
+//! after the other, before the others are.
 //!
 //! What it does to detail: nothing is smoothed, shifted in level, or stretched, as it would be if a correction were added
-//! to the rows. Within the quarter of the width next to the border, the tile's own detail is lost for that of the first
-//! tile; then both are seen, over each other; past the width nothing changes. A material's maps are done one channel at
-//! a time, with the same options: where a tile changes depends on the place alone.
+//! to the rows. The quarter of the width next to the border is that of the first tile; in the rest of it lies the cut; past
+//! the width nothing changes. All maps of a material are cut along the same line.
 //!
 //! Reference: Du Jin-Lian, Wang Song and Meng Xianhai, "Wavelet and Blend maps for texture synthesis", section 5; the
 //! method is our own.
 
-use crate::axis::each_axis;
-use crate::crossfade::{Pair, smooth_ramp};
-use crate::map::check_planes;
-use crate::{Crossfade, TileError, TileErrorKind};
+use crate::axis::Axis;
+use crate::disturb::rolled;
+use crate::frame::{Frame, framed, framed_along};
+use crate::piece::{lay, pieces};
+use crate::{Map, TileError, TileErrorKind};
+use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
 /// Which part of the first tile becomes the border of all.
@@ -87,30 +88,76 @@ impl MatchBorders {
     /// is too large or nothing, [`TileErrorKind::Raster`] if the tiles differ in size,
     /// [`TileErrorKind::NotFinite`] for a pixel that is NaN or infinite.
     pub fn apply(&self, tiles: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
-        if tiles.is_empty() {
-            return Err(TileError::new(TileErrorKind::Count {
-                what: "tiles",
-                count: 0,
-                needed: "at least 1",
-            }));
-        }
-        let size = check_planes(tiles)?;
-        self.check_width(size)?;
-        let donor = match self.source {
-            BorderSource::Border => tiles[0].clone(),
-            BorderSource::Middle => self.with_middle_at_borders(&tiles[0])?,
-        };
-        let [along_x, along_y] = size.map(|side| self.weights(side));
-        let weights = Raster::from_fn(size, |x, y| {
-            1.0 - (1.0 - along_x[x as usize]) * (1.0 - along_y[y as usize])
-        })?;
-        let others: Result<Vec<_>, _> = tiles[1..]
+        let materials: Vec<_> = tiles
             .iter()
-            .map(|tile| mix(tile, &donor, &weights))
+            .map(|tile| vec![Map::Value(tile.clone())])
             .collect();
-        let mut matched = others?;
-        matched.insert(0, donor);
-        Ok(matched)
+        let matched = self.matched(Map::planes_of_all(&materials)?)?;
+        Ok(matched.into_iter().flatten().collect())
+    }
+
+    /// The same for several materials, whose maps are cut alike.
+    ///
+    /// # Errors
+    ///
+    /// As [`apply`](Self::apply); [`TileErrorKind::Count`] too for materials without maps, or with more or fewer than the
+    /// first, and [`TileErrorKind::KindMismatch`] for maps of other kinds.
+    pub fn apply_maps(&self, tiles: &[Vec<Map>]) -> Result<Vec<Vec<Map>>, TileError> {
+        let matched = self.matched(Map::planes_of_all(tiles)?)?;
+        let pairs = tiles.iter().zip(matched);
+        pairs
+            .map(|(maps, planes)| Map::all_with_planes(maps, planes))
+            .collect()
+    }
+
+    /// Maps of `size` pixels from pixel `first` of the plane, which is laid with the tiles in random order.
+    ///
+    /// A window is the crop of the whole, and a map of whole tiles repeats. Tile `[0, 0]` begins in pixel `[0, 0]` of the
+    /// plane. Past the largest `i64` the plane goes on with the smallest, in the middle of a tile.
+    ///
+    /// # Errors
+    ///
+    /// As [`apply_maps`](Self::apply_maps); [`TileErrorKind::Raster`] too if `size` is empty or too large.
+    pub fn render(
+        &self,
+        tiles: &[Vec<Map>],
+        seed: Seed,
+        first: [i64; 2],
+        size: [u32; 2],
+    ) -> Result<Vec<Map>, TileError> {
+        let matched = self.matched(Map::planes_of_all(tiles)?)?;
+        Raster::<()>::filled(size, ())?;
+        let seed = seed.child("match borders", 0);
+        let side = matched[0][0].size();
+        let [columns, rows] = [0, 1].map(|axis| pieces(first[axis], size[axis], side[axis]));
+        let tile = |[column, row]: [usize; 2]| {
+            let bits = CellHash::new(seed, [rows[row].copy])
+                .axis(columns[column].copy)
+                .at(0);
+            // The upper half of the product of a number below 1 and the number of tiles.
+            &matched[(((bits >> 32) * matched.len() as u64) >> 32) as usize]
+        };
+        let planes = 0..matched[0].len();
+        let planes = planes.map(|plane| lay([&columns, &rows], |place| &tile(place)[plane]));
+        Map::all_with_planes(&tiles[0], planes.collect::<Result<_, _>>()?)
+    }
+
+    fn matched(&self, tiles: Vec<Vec<Raster<f32>>>) -> Result<Vec<Vec<Raster<f32>>>, TileError> {
+        let first = tiles.first().ok_or(TileError::new(TileErrorKind::Count {
+            what: "tiles",
+            count: 0,
+            needed: "at least 1",
+        }))?;
+        self.check_width(first[0].size())?;
+        let donor = match self.source {
+            BorderSource::Border => first.clone(),
+            BorderSource::Middle => self.with_middle_at_borders(first)?,
+        };
+        let others = tiles[1..]
+            .iter()
+            .map(|tile| framed(tile, &donor, self.frame()));
+        let others: Vec<_> = others.collect::<Result<_, _>>()?;
+        Ok([donor].into_iter().chain(others).collect())
     }
 
     /// Refuses a width of nothing, and one at which the two borders, or the seam of the rolled tile, come too near.
@@ -133,48 +180,24 @@ impl MatchBorders {
     }
 
     /// The tile with what it has along its middle at its borders, where that is continuous.
-    fn with_middle_at_borders(&self, tile: &Raster<f32>) -> Result<Raster<f32>, TileError> {
-        let mut tiles = each_axis(core::slice::from_ref(tile), [true; 2], |tiles, _| {
-            let along = self.weights(tiles[0].width());
-            let weights = Raster::from_fn(tiles[0].size(), |column, _| along[column as usize])?;
-            tiles
+    fn with_middle_at_borders(&self, tile: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {
+        framed_along(tile, self.frame(), |planes, _: Axis| {
+            let half = planes[0].width() / 2;
+            planes
                 .iter()
-                .map(|tile| mix(tile, &rolled_by_half(tile)?, &weights))
+                .map(|plane| rolled(plane, [half, 0]))
                 .collect()
-        })?;
-        Ok(tiles.swap_remove(0))
+        })
     }
 
-    /// The weight of the common border for each pixel of a side: 1 over a quarter of the width, then less.
-    fn weights(&self, side: u32) -> Vec<f64> {
-        let whole = self.width / 4;
-        let ramp = f64::from(self.width - whole);
-        let weight = |pixel: u32| {
-            let from_border = pixel.min(side - 1 - pixel);
-            1.0 - smooth_ramp((f64::from(from_border) - f64::from(whole)) / ramp)
-        };
-        (0..side).map(weight).collect()
+    /// A quarter of the width is the first tile's, and at least a pixel.
+    fn frame(&self) -> Frame {
+        let whole = self.width.div_ceil(4);
+        Frame {
+            whole,
+            band: self.width - whole,
+        }
     }
-}
-
-/// A tile that changes over to the donor, each with its own mean put aside.
-fn mix(
-    tile: &Raster<f32>,
-    donor: &Raster<f32>,
-    weights: &Raster<f64>,
-) -> Result<Raster<f32>, TileError> {
-    let images = [tile, donor];
-    let means = images.map(|image| image.statistics().mean);
-    Crossfade::KeepVariance.mix(Pair { images, means }, weights)
-}
-
-/// Every row rolled by half of its length: its ends meet where its middle was.
-fn rolled_by_half(tile: &Raster<f32>) -> Result<Raster<f32>, TileError> {
-    let half = tile.width() as usize / 2;
-    Ok(Raster::from_rows(tile.size(), |row| {
-        let row = tile.row(row);
-        row[half..].iter().chain(&row[..half]).copied()
-    })?)
 }
 
 #[cfg(test)]

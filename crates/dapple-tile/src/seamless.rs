@@ -124,12 +124,7 @@ impl Seamless {
     /// [`Margin`](TileErrorKind::Margin) or [`Range`](TileErrorKind::Range) for sizes and options that the method cannot have.
     pub fn apply_maps(&self, maps: &[Map]) -> Result<Vec<Map>, TileError> {
         let planes: Vec<_> = maps.iter().flat_map(Map::planes).collect();
-        let mut tiles = self.planes(&planes)?.into_iter();
-        let with_tiles = |map: &Map| {
-            let tiles = tiles.by_ref().take(map.n_planes());
-            map.with_planes(tiles.collect())
-        };
-        maps.iter().map(with_tiles).collect()
+        Map::all_with_planes(maps, self.planes(&planes)?)
     }
 
     fn planes(&self, planes: &[Raster<f32>]) -> Result<Vec<Raster<f32>>, TileError> {

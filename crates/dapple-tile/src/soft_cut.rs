@@ -15,6 +15,7 @@
 //! Widths are in pixels.
 
 use crate::axis::{Axis, each_axis};
+use crate::cut::{add_differences, inset, weight};
 use crate::cut_path::{closed_path, open_path};
 use crate::overlap::{check_margin, ends, overlap};
 use crate::{Crossfade, TileError};
@@ -71,15 +72,11 @@ pub(crate) fn tile(
     })
 }
 
-/// How many columns at both ends of the margin the cut keeps away from, so that its ramp stays inside.
-fn inset(cut: &SoftCut) -> u32 {
-    (cut.half_width.ceil() as u32).saturating_sub(1)
-}
-
 /// The difference of the two ends of the planes, in the columns that the cut may visit.
 fn differences(planes: &[Raster<f32>], cut: &SoftCut) -> Result<Raster<f64>, TileError> {
     let height = planes.first().map_or(1, Raster::height);
-    let width = cut.margin - 2 * inset(cut);
+    let inset = inset(cut.half_width.into());
+    let width = cut.margin - 2 * inset;
     let mut sum = Raster::filled([width, height], 0.0)?;
     for plane in planes {
         let deviation = plane.statistics().deviation;
@@ -90,14 +87,7 @@ fn differences(planes: &[Raster<f32>], cut: &SoftCut) -> Result<Raster<f64>, Til
             0.0
         };
         let [first, last] = ends(plane, cut.margin)?;
-        let from = inset(cut) as usize;
-        for (row, to) in (0..).zip(sum.view_mut().rows_mut()) {
-            let [first, last] = [&first, &last].map(|end| &end.row(row)[from..]);
-            for ((to, first), last) in to.iter_mut().zip(first).zip(last) {
-                let difference = (f64::from(*first) - f64::from(*last)) * scale;
-                *to += difference * difference;
-            }
-        }
+        add_differences([&first, &last], inset as usize, scale, &mut sum);
     }
     Ok(sum)
 }
@@ -105,24 +95,14 @@ fn differences(planes: &[Raster<f32>], cut: &SoftCut) -> Result<Raster<f64>, Til
 /// The weights of the first columns: 0 on the left of the cut, 1 on the right, ½ on it.
 fn weights(path: &[u32], cut: &SoftCut) -> Result<Raster<f64>, TileError> {
     let half_width = f64::from(cut.half_width);
-    let weight = |from_cut: f64| match half_width > 0.0 {
-        true => cubic_ramp((from_cut + half_width) / (2.0 * half_width)),
-        false => f64::from(u8::from(from_cut >= 0.0)),
-    };
-    let inset = inset(cut);
+    let inset = inset(half_width);
     Ok(Raster::from_fn(
         [cut.margin, path.len() as u32],
         |column, row| {
             let cut = path[row as usize] + inset;
-            weight(f64::from(column) - f64::from(cut))
+            weight(f64::from(column) - f64::from(cut), half_width)
         },
     )?)
-}
-
-/// The cubic 3t² − 2t³ from 0 to 1, flat outside.
-fn cubic_ramp(t: f64) -> f64 {
-    let t = t.clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What becomes of the alpha of images that are partly transparent.
 
 use super::ramp::color;
-use dapple::color::LinearRgb;
+use dapple::recipe::ImageAlpha;
 use serde::Serialize;
 use std::str::FromStr;
 
@@ -16,41 +16,73 @@ pub(crate) struct AlphaArgs {
 
 /// What becomes of alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "lowercase", untagged)]
 pub(crate) enum Alpha {
     /// It goes the way of the colors.
+    #[serde(serialize_with = "keep")]
     Keep,
-    /// The colors alone are used.
-    Drop,
-    /// The colors are laid over this one, in linear light.
-    Over(LinearRgb),
+    /// The result is opaque.
+    Without(ImageAlpha),
+}
+
+fn keep<S: serde::Serializer>(serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str("keep")
 }
 
 impl FromStr for Alpha {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
+        let without = |alpha| Ok(Self::Without(alpha));
         match text.split_once(':') {
             None if text == "keep" => Ok(Self::Keep),
-            None if text == "drop" => Ok(Self::Drop),
-            Some(("over", background)) => color(background).map(Self::Over).ok_or_else(|| {
-                format!("{background:?} is no color; one is such as #ff8000, black or white")
-            }),
+            None if text == "drop" => without(ImageAlpha::Drop),
+            Some(("over", background)) => match color(background) {
+                Some(color) => without(ImageAlpha::Over(color)),
+                None => Err(format!(
+                    "{background:?} is no color; one is such as #ff8000, black or white"
+                )),
+            },
             _ => Err(format!("{text:?} is none of keep, drop and over:COLOR")),
         }
     }
 }
 
+/// What becomes of the alpha of an image that is used without it.
+///
+/// # Errors
+///
+/// If the text is something else.
+pub(crate) fn image_alpha(text: &str) -> Result<ImageAlpha, String> {
+    match text.parse() {
+        Ok(Alpha::Without(alpha)) => Ok(alpha),
+        Ok(Alpha::Keep) => {
+            Err("there is no alpha in the result; take drop or over:COLOR".to_owned())
+        }
+        Err(error) => Err(error.replace("keep, drop", "drop")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Alpha;
+    use super::{Alpha, image_alpha};
     use dapple::color::LinearRgb;
+    use dapple::recipe::ImageAlpha;
 
     #[test]
     fn alpha_is_kept_dropped_or_laid_over_a_color() {
         assert_eq!("keep".parse(), Ok(Alpha::Keep));
-        assert_eq!("drop".parse(), Ok(Alpha::Drop));
-        assert_eq!("over:white".parse(), Ok(Alpha::Over(LinearRgb::WHITE)));
+        assert_eq!("drop".parse(), Ok(Alpha::Without(ImageAlpha::Drop)));
+        let over = ImageAlpha::Over(LinearRgb::WHITE);
+        assert_eq!("over:white".parse(), Ok(Alpha::Without(over)));
+        assert_eq!(image_alpha("over:white"), Ok(over));
+        assert!(image_alpha("keep").unwrap_err().contains("drop or over"));
+        for (alpha, json) in [
+            (Alpha::Keep, "\"keep\""),
+            (Alpha::Without(over), "\"over:#ffffff\""),
+        ] {
+            assert_eq!(serde_json::to_string(&alpha).unwrap(), json);
+        }
         for text in ["", "over", "over:", "over:blueish", "keep:1"] {
             assert!(text.parse::<Alpha>().is_err(), "{text:?}");
         }

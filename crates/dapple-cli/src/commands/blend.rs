@@ -1,7 +1,7 @@
 //! `dapple blend`: materials laid over each other by weights.
 
-mod alpha;
-mod layer;
+pub(super) mod alpha;
+pub(super) mod layer;
 mod mixing;
 
 use crate::args::{AlphaArgs, ImageArgs, Size};
@@ -89,7 +89,8 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend", &args.image.files);
     let outputs = claim(args, &mut job)?;
-    let mut reader = Reader::new(args.size, args.alpha.alpha);
+    let hint = "--size WxH repeats what is smaller and cuts what is larger";
+    let mut reader = Reader::new(args.size, args.alpha.alpha, hint);
     let read = args.layers.iter().map(|layer| layer.read(&mut reader));
     let mut materials = read.collect::<Result<Vec<_>>>()?;
     reader.agree(&args.layers, &mut materials)?;

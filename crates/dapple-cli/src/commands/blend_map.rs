@@ -1,13 +1,14 @@
 //! `dapple blend-map`: a blend tile from the features of a texture.
 
-use crate::args::{Axes, ImageArgs, Region};
+use crate::args::{Axes, ImageArgs, Region, image_alpha};
 use crate::encode::Format;
 use crate::error::{Exit, Hint};
-use crate::input::{self, Kind};
+use crate::input::{self, ALPHA_HINT, Kind};
 use crate::job::{Context, Job};
 use crate::progress::Progress;
 use anyhow::{Result, anyhow};
 use dapple::raster::Wrap;
+use dapple::recipe::ImageAlpha;
 use dapple::tile::{BlendMap, Map, rank_equalize};
 use serde::Serialize;
 use serde_json::Value;
@@ -34,6 +35,11 @@ pub(crate) struct Args {
     /// Use only this part of the image, in pixels.
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
+
+    /// What becomes of transparency, which is refused otherwise: `drop` shows the colors without it, and `over:COLOR` lays the
+    /// image over a color, such as `over:#888`.
+    #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha)]
+    alpha: Option<ImageAlpha>,
 
     /// The size of the features, such as the diameter of the stones, in pixels, from 1 to 4096.
     #[arg(long, value_name = "PX", default_value_t = 32.0)]
@@ -70,7 +76,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Format::choose(args.output.format, &target, Format::Png16)?;
     let output = job.claim(&target)?;
     job.claim_sidecar(&target)?;
-    let loaded = input::map(&args.image, Kind::ByChannels, args.region)?;
+    let kind = Kind::ByChannels;
+    let loaded = input::map(&args.image, kind, args.region, args.alpha, ALPHA_HINT)?;
     let wrap = |repeats| if repeats { Wrap::Repeat } else { Wrap::Mirror };
     let options = BlendMap {
         feature_size: args.feature_size,

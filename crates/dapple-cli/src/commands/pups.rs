@@ -2,10 +2,11 @@
 
 mod points;
 
-use crate::args::{Extent, ImageArgs, Numbers};
+use crate::args::{Extent, ImageArgs, Numbers, image_alpha};
 use crate::baking::read_picture;
 use crate::error::{Exit, Hint, usage};
 use crate::field::{Field, FieldArgs, draw, extent_of};
+use crate::input::ALPHA_HINT;
 use crate::job::Context;
 use crate::words::Word;
 use anyhow::Result;
@@ -16,7 +17,7 @@ use dapple::pups::{
     ReferenceOptions, SpaceGiraffeOptions, Spacing, Spots,
 };
 use dapple::raster::Varying;
-use dapple::recipe::{Cells, ControlPoints, Images, Node, PupsNode, Referenced};
+use dapple::recipe::{Cells, ControlPoints, ImageAlpha, Images, Node, PupsNode, Referenced};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -88,6 +89,11 @@ pub(crate) struct Args {
     /// The image that cells follow, for reference: gray, or color by its luminance.
     #[arg(long, value_name = "FILE", help_heading = "Texture")]
     reference: Option<PathBuf>,
+
+    /// What becomes of the transparency of that image, which is refused otherwise: `drop` takes the colors without it, and
+    /// `over:COLOR` lays the image over a color, such as `over:black`.
+    #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha, requires = "reference")]
+    alpha: Option<ImageAlpha>,
 
     /// Give each place the value of its strongest point alone, for control.
     #[arg(long, help_heading = "Texture")]
@@ -277,6 +283,7 @@ impl Args {
             Kind::Control => PupsNode::Points(self.control()?),
             Kind::Reference => PupsNode::Reference(Referenced {
                 file: self.reference_file()?.to_string_lossy().into_owned(),
+                alpha: self.alpha,
                 options: self.texture(|o: &mut ReferenceOptions| (&mut o.spacing, &mut o.net)),
             }),
         })
@@ -343,7 +350,7 @@ impl Args {
             return Ok(Images::new());
         }
         let file = self.reference_file()?;
-        let picture = read_picture(file)?;
+        let picture = read_picture(file, self.alpha, ALPHA_HINT)?;
         Ok(Images::from([(
             file.to_string_lossy().into_owned(),
             picture,

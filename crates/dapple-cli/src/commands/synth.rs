@@ -149,7 +149,8 @@ impl Args {
                 _ => Kind::ByChannels,
             };
             let map = self.load(path, kind)?;
-            input::check_size(path, map.map.size(), base.map.size())?;
+            input::check_size(path, map.map.size(), &self.exemplar, base.map.size())
+                .hint("the maps of an example have its size")?;
             maps.push((name.clone(), map));
         }
         let edges = self.matching.edges();
@@ -174,7 +175,7 @@ impl Args {
                 "{} is partly transparent, which a mesh cannot keep",
                 input::name(path)
             );
-            return Err(usage(message).hint("add --alpha drop or --alpha over:COLOR"));
+            return Err(usage(message).hint(input::ALPHA_HINT));
         }
         Ok(loaded)
     }

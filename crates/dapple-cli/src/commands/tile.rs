@@ -124,7 +124,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         job.say(&format!("auto takes {}", made.candidate.name))?;
     }
 
-    let (report, passes) = reports(args, &sources, &made, &job)?;
+    let (report, passes) = reports(args, &sources, &mut made, &job)?;
     for (source, map) in sources.iter().zip(made.tiles) {
         let has_alpha = source.loaded.alpha.is_some();
         let alpha = match has_alpha.then(|| alphas.next()).flatten() {
@@ -166,9 +166,9 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     for (path, kind) in inputs {
         let outputs = outputs.next();
         let loaded = input::map_with_alpha(path, kind, args.region, args.alpha.alpha)?;
-        let first = sources.first().map(|source| &source.loaded.map);
-        let first = first.map_or(loaded.map.size(), Map::size);
-        input::check_size(path, loaded.map.size(), first)
+        let size = loaded.map.size();
+        let first = sources.first().map(|source| source.loaded.map.size());
+        input::check_size(path, size, paths[0], first.unwrap_or(size))
             .hint("maps that are cut together have one size")?;
         sources.push(Source {
             name: input::name(path),
@@ -232,6 +232,8 @@ fn map_of(stem: &str) -> &str {
 struct Made {
     candidate: Candidate,
     tiles: Vec<Map>,
+    /// The report of each, where they were made to choose the method.
+    reports: Vec<SeamReports>,
 }
 
 /// The tiles by the only method, or by the one whose reports are the best of those that can be used.
@@ -241,22 +243,29 @@ fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Mad
             method: candidate.method,
             axes: args.wrap.flags(),
         };
-        let tiles = seamless.apply_maps(maps)?;
-        Ok(Made { candidate, tiles })
+        Ok(Made {
+            tiles: seamless.apply_maps(maps)?,
+            reports: Vec::new(),
+            candidate,
+        })
     };
     if let [_] = candidates.as_slice() {
         return make(candidates.remove(0)).map_err(advise);
     }
     let (mut best, mut refused) = (None, None);
     for candidate in candidates {
-        let made = match make(candidate) {
+        let mut made = match make(candidate) {
             Ok(made) => made,
             Err(error) => {
                 refused.get_or_insert(error);
                 continue;
             }
         };
-        let cost = cost(args, maps, &made)?;
+        let options = options(args, &made.candidate);
+        let pairs = maps.iter().zip(&made.tiles);
+        let reports = pairs.map(|(map, tile)| SeamReports::beside(map, tile, &options));
+        made.reports = reports.collect::<Result<_, _>>()?;
+        let cost = cost(&made.reports);
         if best.as_ref().is_none_or(|(least, _)| cost < *least) {
             best = Some((cost, made));
         }
@@ -269,10 +278,9 @@ fn best(args: &Args, maps: &[Map], mut candidates: Vec<Candidate>) -> Result<Mad
 }
 
 /// How bad the tiles are: the badness of the worst channel, and the part of the finest octave that it has lost.
-fn cost(args: &Args, maps: &[Map], made: &Made) -> Result<f64> {
+fn cost(reports: &[SeamReports]) -> f64 {
     let mut worst: f64 = 0.0;
-    for (map, tile) in maps.iter().zip(&made.tiles) {
-        let reports = SeamReports::beside(map, tile, &options(args, &made.candidate))?;
+    for reports in reports {
         for of in reports.channels() {
             let finest = of
                 .report
@@ -283,7 +291,7 @@ fn cost(args: &Args, maps: &[Map], made: &Made) -> Result<f64> {
             worst = worst.max(of.report.badness() + lost);
         }
     }
-    Ok(worst.min(SeamReport::MOST))
+    worst.min(SeamReport::MOST)
 }
 
 fn options(args: &Args, candidate: &Candidate) -> SeamOptions {
@@ -293,8 +301,13 @@ fn options(args: &Args, candidate: &Candidate) -> SeamOptions {
     }
 }
 
-/// Prints the reports that were asked for; gives them as JSON, and whether all tiles pass.
-fn reports(args: &Args, sources: &[Source], made: &Made, job: &Job<'_>) -> Result<(Value, bool)> {
+/// Prints the reports that were asked for, and makes those that there are not yet; gives them as JSON, and whether all tiles pass.
+fn reports(
+    args: &Args,
+    sources: &[Source],
+    made: &mut Made,
+    job: &Job<'_>,
+) -> Result<(Value, bool)> {
     let is_wanted = args.report || args.check || args.image.files.json.is_some();
     if !is_wanted {
         return Ok((Value::Null, true));
@@ -305,12 +318,16 @@ fn reports(args: &Args, sources: &[Source], made: &Made, job: &Job<'_>) -> Resul
         ..options
     };
     let (mut all, mut passes) = (Vec::new(), true);
+    let mut known = core::mem::take(&mut made.reports).into_iter();
     for (source, tile) in sources.iter().zip(&made.tiles) {
         let name = &source.name;
         let before =
             SeamReports::of_map(&source.loaded.map, &plain).with_context(|| name.clone())?;
-        let after = SeamReports::beside(&source.loaded.map, tile, &options);
-        let after = after.with_context(|| name.clone())?;
+        let after = match known.next() {
+            Some(after) => after,
+            None => SeamReports::beside(&source.loaded.map, tile, &options)
+                .with_context(|| name.clone())?,
+        };
         passes &= after.passes();
         if args.report {
             job.say(&format!("{name}, as it was:\n{before}\n"))?;

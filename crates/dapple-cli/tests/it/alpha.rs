@@ -4,6 +4,7 @@ use crate::support::{Folder, assert_done, assert_refused, stdout};
 use dapple::color::{LinearRgb, LinearRgba};
 use dapple::image::{Depth, Image, Limits, read_image, write_color_alpha_png};
 use dapple::raster::Raster;
+use std::fs;
 
 /// Writes an image of 48 × 48 pixels.
 fn write(folder: &Folder, name: &str, pixel: impl Fn(f32) -> LinearRgba) {
@@ -115,7 +116,7 @@ fn alpha_that_has_nowhere_to_go_is_refused_with_the_option() {
         assert_refused(&folder.run(&words), 2, "--alpha drop", line);
         let dropped = [&words[..], &["--alpha", "drop"]].concat();
         assert_done(&folder.run(&dropped), line);
-        std::fs::remove_file(folder.path(words[words.len() - 1])).unwrap();
+        fs::remove_file(folder.path(words[words.len() - 1])).unwrap();
     }
 }
 
@@ -125,4 +126,52 @@ fn info_says_how_much_is_transparent() {
     let said = stdout(&folder.run(&["info", "leaf.png"]));
     let expected = "alpha: 0.0 % of the pixels are transparent, 100.0 % partly so";
     assert!(said.contains(expected), "{said}");
+}
+
+#[test]
+fn what_takes_values_of_an_image_says_what_becomes_of_its_alpha() {
+    let folder = folder("alpha-values");
+    fs::write(
+        folder.path("leaf.toml"),
+        "dapple = 1\nnodes.leaf = { image = { file = \"leaf.png\" } }\n[material]\nalbedo = \"leaf\"\n",
+    )
+    .unwrap();
+    for line in [
+        "blend-map leaf.png -o out.png",
+        "points variable --density leaf.png --count 50 -o out.csv",
+        "pups reference --reference leaf.png --size 8 -o out.png",
+    ] {
+        let refused = folder.run(&line.split(' ').collect::<Vec<_>>());
+        assert_refused(&refused, 2, "--alpha drop or --alpha over:COLOR", line);
+        for alpha in ["drop", "over:white"] {
+            let line = format!("{line} --alpha {alpha} --force");
+            assert_done(&folder.run(&line.split(' ').collect::<Vec<_>>()), &line);
+        }
+        let line = format!("{line} --alpha keep --force");
+        let refused = folder.run(&line.split(' ').collect::<Vec<_>>());
+        assert_refused(&refused, 2, "--alpha", &line);
+    }
+}
+
+#[test]
+fn a_node_of_a_recipe_says_what_becomes_of_the_alpha_of_its_image() {
+    let folder = folder("alpha-recipe");
+    let bake = |alpha: &str| {
+        let node = format!("nodes.leaf = {{ image = {{ file = \"leaf.png\"{alpha} }} }}");
+        let text = format!("dapple = 1\n{node}\n[material]\nalbedo = \"leaf\"\n");
+        fs::write(folder.path("leaf.toml"), text).unwrap();
+        let line = "bake leaf.toml --maps albedo --size 48 --force -o out.png";
+        folder.run(&line.split(' ').collect::<Vec<_>>())
+    };
+    assert_refused(&bake(""), 2, "alpha = \"drop\"", "without alpha");
+    assert_refused(&bake(", alpha = \"keep\""), 1, "over:#ffffff", "keep");
+    let mean = |alpha: &str| {
+        assert_done(&bake(alpha), alpha);
+        let colors = read(&folder, "out.png").color().unwrap();
+        colors.map(|color| color.g).statistics().mean
+    };
+    let [dropped, white] = [", alpha = \"drop\"", ", alpha = \"over:#ffffff\""].map(mean);
+    // The leaf is as gray as it is opaque: v, or v² and 1 - v of white, for v from 0.3 to 0.7.
+    assert!((0.45..0.55).contains(&dropped), "{dropped}");
+    assert!((0.7..0.85).contains(&white), "{white}");
 }

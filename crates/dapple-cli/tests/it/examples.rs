@@ -5,7 +5,7 @@
 use crate::support::{Folder, assert_done, stdout};
 use std::fs;
 
-const SUBCOMMANDS: [&str; 15] = [
+const SUBCOMMANDS: [&str; 16] = [
     "bake",
     "watch",
     "recipe",
@@ -14,6 +14,7 @@ const SUBCOMMANDS: [&str; 15] = [
     "noise",
     "wavelet",
     "tile",
+    "copies",
     "blend",
     "blend-map",
     "synth",
@@ -79,6 +80,11 @@ fn examples_of_fields_run() {
 #[test]
 fn examples_of_tile_run() {
     run_examples(&["tile"]);
+}
+
+#[test]
+fn examples_of_copies_run() {
+    run_examples(&["copies"]);
 }
 
 #[test]

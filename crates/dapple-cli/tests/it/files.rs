@@ -6,8 +6,12 @@ use std::fs;
 use std::process::Stdio;
 
 /// A run of each subcommand that writes `out.png` or the like.
-const WRITERS: [(&str, &[&str]); 6] = [
+const WRITERS: [(&str, &[&str]); 7] = [
     ("out.png", &["tile", "photo.png", "-o", "out.png"]),
+    (
+        "out.png",
+        &["copies", "photo.png", "--size", "16", "-o", "out.png"],
+    ),
     (
         "out.png",
         &["blend", "rock.png", "grass.png", "-o", "out.png"],
@@ -56,7 +60,7 @@ fn one_file_of_several_in_the_way_stops_all() {
 #[test]
 fn standard_output_gets_the_same_bytes_as_a_file() {
     let folder = Folder::with_inputs("stdout");
-    for (name, arguments) in &WRITERS[..5] {
+    for (name, arguments) in &WRITERS[..6] {
         let what = arguments.join(" ");
         assert_done(&folder.run(&[arguments, &["--force"][..]].concat()), &what);
         let mut piped: Vec<_> = arguments.to_vec();

@@ -8,6 +8,7 @@
 mod alpha;
 mod bakes;
 mod batch;
+mod copies;
 mod examples;
 mod files;
 mod interrupt;

@@ -4,13 +4,15 @@ use crate::support::{Folder, assert_refused, stderr, stdout};
 use std::fs;
 
 /// Each subcommand that reads something, with `INPUT` for the file that is tried. Every other input is there.
-const READERS: [&str; 17] = [
+const READERS: [&str; 19] = [
     "bake INPUT -o out/ --size 8",
     "pups control --points INPUT --size 8 -o out.png",
     "pups reference --reference INPUT --size 8 -o out.png",
     "tile INPUT -o out.png",
     "tile photo.png --normal INPUT -o out/",
     "tile INPUT --report",
+    "copies INPUT --size 16 -o out.png",
+    "copies rock.png,normal=INPUT grass.png,normal=normal.png --size 16 -o out/",
     "blend INPUT grass.png -o out.png",
     "blend rock.png grass.png,weight=INPUT -o out.png",
     "blend rock.png,height=INPUT grass.png,height=height.png -o out.png",
@@ -25,7 +27,7 @@ const READERS: [&str; 17] = [
 ];
 
 /// Command lines that clap cannot tell to be wrong.
-const WRONG: [&str; 26] = [
+const WRONG: [&str; 33] = [
     "bake flagstone -o out.png --name rock",
     "bake flagstone",
     "bake flagstone --maps height,height -o out/",
@@ -44,6 +46,13 @@ const WRONG: [&str; 26] = [
     "tile photo.png height.png -o -",
     "tile photo.png --sheet -o -",
     "tile photo.png --json -o -",
+    "copies photo.png --tiles -o out/",
+    "copies photo.png --size 64 --width 8 -o out.png",
+    "copies photo.png --size 64 --method corners -o out.png",
+    "copies photo.png grass.png --size 64 --method disturb -o out.png",
+    "copies photo.png rock.png grass.png sand.png stones.png --size 64 --method corners -o out.png",
+    "copies rock.png grass.png,normal=normal.png --size 64 -o out/",
+    "copies rock.png grass.png,weight=0.5 --size 64 -o out.png",
     "blend rock.png grass.png,normal=normal.png -o out/",
     "blend rock.png grass.png --weighting mask -o out.png",
     "blend rock.png grass.png --sharpness 2 -o out.png",
@@ -55,7 +64,7 @@ const WRONG: [&str; 26] = [
 ];
 
 /// Command lines with a value that a library refuses, and what the answer holds.
-const LIMITS: [(&str, &str); 18] = [
+const LIMITS: [(&str, &str); 21] = [
     ("bake flagston -o out/", "flagstone"),
     (
         "bake flagstone --region 60,0,8,8 --size 64 -o out/",
@@ -74,6 +83,18 @@ const LIMITS: [(&str, &str); 18] = [
     (
         "tile photo.png --method soft-cut --margin 40 -o out.png",
         "margin",
+    ),
+    (
+        "copies photo.png --size 64 --margin 200 -o out.png",
+        "--margin",
+    ),
+    (
+        "copies photo.png grass.png --size 64 --share 3 -o out.png",
+        "--share 3: ",
+    ),
+    (
+        "copies photo.png rock.png --size 64 --method borders --width 90 -o out.png",
+        "--width",
     ),
     ("tile photo.png --region 60,0,8,8 -o out.png", "photo.png"),
     (
@@ -95,10 +116,27 @@ const LIMITS: [(&str, &str); 18] = [
 ];
 
 /// Command lines whose files do not go together, and what the answer holds.
-const UNLIKE: [(&str, &str); 2] = [
-    ("tile photo.png checker.png -o out/", "size"),
-    ("blend photo.png checker.png -o out.png", "--size"),
+const UNLIKE: [(&str, &str); 7] = [
+    ("tile photo.png checker.png -o out/", CHECKER),
+    ("blend photo.png checker.png -o out.png", CHECKER),
+    ("blend photo.png checker.png -o out.png", "hint: --size"),
+    (
+        "blend photo.png grass.png,weight=checker.png -o out.png",
+        CHECKER,
+    ),
+    ("copies photo.png checker.png --size 64 -o out.png", CHECKER),
+    (
+        "copies photo.png checker.png --size 64 -o out.png",
+        "one size",
+    ),
+    (
+        "synth photo.png --map cover=checker.png --size 16 -o out.png",
+        CHECKER,
+    ),
 ];
+
+/// Both names and sizes.
+const CHECKER: &str = "checker.png has 32 × 32 pixels, but photo.png has 64 × 64";
 
 /// Command lines that clap refuses, and what the answer holds.
 const SLIPS: [(&str, &str); 10] = [
@@ -227,7 +265,7 @@ fn values_that_a_library_refuses_are_wrong_usage_and_named_as_typed() {
         );
     }
     for (line, part) in UNLIKE {
-        assert_refused(&folder.run(&words(line)), 1, part, line);
+        assert_refused(&folder.run(&words(line)), 2, part, line);
     }
 }
 

@@ -32,7 +32,7 @@ const SAME: [[&str; 2]; 9] = [
 ];
 
 /// Runs of every subcommand with a file or a folder, and the files that they write to a folder.
-const NAMED: [(&str, &[&str]); 12] = [
+const NAMED: [(&str, &[&str]); 14] = [
     ("worley", &["worley.png"]),
     ("worley --frames 2", &["worley_001.png", "worley_002.png"]),
     ("pups cow --format exr", &["pups.exr"]),
@@ -42,6 +42,11 @@ const NAMED: [(&str, &[&str]); 12] = [
     ("bake flagstone --maps ao", &["flagstone_ao.png"]),
     ("points --count 20 --format json", &["points.json"]),
     ("tile photo.png --sheet", &["photo.png", "photo_2x2.png"]),
+    ("copies stones.png --size 16", &["copies.png"]),
+    (
+        "copies rock.png grass.png --method borders --tiles",
+        &["copies_1.png", "copies_2.png"],
+    ),
     (
         "blend rock.png,normal=normal.png grass.png,normal=normal.png",
         &["blend_base.png", "blend_normal.png"],

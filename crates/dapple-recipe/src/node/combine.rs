@@ -1,8 +1,8 @@
 //! Nodes that bring several together, and those that see a whole picture.
 
-use crate::Input;
+use crate::{Input, NodeSeed};
 use dapple_color::{Interpolation, LinearRgb, Outside, Palette};
-use dapple_tile::{Method, Mixing, Weighting};
+use dapple_tile::{Disturbance, MatchBorders, Method, Mixing, Weighting};
 use serde::{Deserialize, Serialize};
 
 /// A part of the way from one input to another.
@@ -76,6 +76,79 @@ pub struct Tiled {
 
 fn both() -> [bool; 2] {
     [true; 2]
+}
+
+/// The tile as copies of a texture, each with another piece of it inside of its border: see [`Disturbance`]. It sees the whole
+/// tile.
+///
+/// [`Disturbance`]: dapple_tile::Disturbance
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Disturbed {
+    /// A number or a color, which repeats: each copy is all of it, made smaller.
+    pub input: Input,
+    /// How many copies there are along each axis, x first; `[4, 4]` by default. They have a whole number of pixels.
+    #[serde(default = "four")]
+    pub copies: [u32; 2],
+    /// How many pixels along each border of a copy stay as they are; 4 by default.
+    #[serde(default = "frozen")]
+    pub frozen: u32,
+    /// How many more pixels the cut may take; 24 by default. Together at most half of a copy.
+    #[serde(default = "margin")]
+    pub margin: u32,
+    /// The name by which it draws, instead of its own, or a seed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<NodeSeed>,
+}
+
+fn four() -> [u32; 2] {
+    [4; 2]
+}
+
+fn frozen() -> u32 {
+    Disturbance::default().frozen
+}
+
+fn margin() -> u32 {
+    Disturbance::default().margin
+}
+
+/// A texture with the borders of another, so that both fit beside each other: see [`MatchBorders`]. It sees the whole tile.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Framed {
+    /// A number or a color.
+    pub input: Input,
+    /// What the borders are of: a number or a color.
+    pub border: Input,
+    /// How far from a border the texture changes, and which part of the other becomes it, as in [`MatchBorders`]. Lengths
+    /// are in pixels of the bake.
+    #[serde(default)]
+    pub options: MatchBorders,
+}
+
+/// The tile as a board of pieces of several textures, chosen by random colors at their corners: see [`CornerTiles`]. It sees the
+/// whole tile.
+///
+/// [`CornerTiles`]: dapple_tile::CornerTiles
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CornerTilesOf {
+    /// Two to four numbers or colors, which repeat: each piece is as large as all of them, made smaller.
+    pub inputs: Vec<Input>,
+    /// How many pieces there are along each axis, x first; `[4, 4]` by default. They have a whole number of pixels.
+    #[serde(default = "four")]
+    pub copies: [u32; 2],
+    /// The share of the side of a piece that cuts may take, above 0 and at most 1; ½ by default.
+    #[serde(default = "half")]
+    pub width: f64,
+    /// The name by which it draws, instead of its own, or a seed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<NodeSeed>,
+}
+
+fn half() -> f64 {
+    0.5
 }
 
 /// A map from 0 to 1, each value as often as any other, that is low in the cracks of a texture: where another one shows

@@ -1,5 +1,6 @@
 //! Nodes that make something of nothing but a seed.
 
+use super::ImageAlpha;
 use core::fmt;
 use dapple_hash::Seed;
 use dapple_pups::{
@@ -139,6 +140,9 @@ pub enum PupsNode {
 pub struct Referenced<T> {
     /// The file, as it is asked for.
     pub file: String,
+    /// What becomes of its alpha when it is read; by default a partly transparent image is refused.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub alpha: Option<ImageAlpha>,
     /// What the texture is to be like.
     #[serde(default)]
     pub options: T,
@@ -282,11 +286,14 @@ pub struct Distance {
 }
 
 /// An image, laid over the tile and read between its pixels; past its edges it repeats, or goes on, as the recipe does.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ImageNode {
     /// The file, as it is asked for; the command takes it from the folder of the recipe.
     pub file: String,
+    /// What becomes of its alpha when it is read; by default a partly transparent image is refused.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub alpha: Option<ImageAlpha>,
 }
 
 impl Serialize for Frequency {

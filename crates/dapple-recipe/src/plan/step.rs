@@ -5,9 +5,10 @@ use super::{Images, Picture, not_a_number, order};
 use crate::operation::Operation;
 use crate::{Input, Node, Recipe, RecipeError, RecipeErrorKind};
 use dapple_color::{ColorRamp, LinearRgb};
+use dapple_hash::Seed;
 use dapple_pups::VectorTexture;
 use dapple_raster::Field;
-use dapple_tile::{Blend, BlendMap, Mixing, Seamless};
+use dapple_tile::{Blend, BlendMap, Disturbance, MatchBorders, Mixing, Seamless};
 use glam::DVec2;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -47,6 +48,18 @@ pub(crate) enum Global {
     /// The size of features is in units of the plane.
     BlendMap(BlendMap, f64),
     Blend(Layers),
+    /// As many copies along each axis as are given.
+    Disturb(Disturbance, [u32; 2]),
+    MatchBorders(MatchBorders),
+    CornerTiles(Corners),
+}
+
+/// What a board of corner tiles knows beside its inputs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corners {
+    pub(crate) seed: Seed,
+    pub(crate) copies: [u32; 2],
+    pub(crate) width: f64,
 }
 
 /// What a blend knows beside its inputs.
@@ -178,6 +191,12 @@ impl<'a> Builder<'a> {
                 };
                 self.global(Global::Tile(seamless), &[&tile.input], &[])?
             }
+            Node::Disturb(node) => self.disturb(name, node)?,
+            Node::MatchBorders(node) => {
+                let inputs = [&node.border, &node.input];
+                self.global(Global::MatchBorders(node.options), &inputs, &[])?
+            }
+            Node::CornerTiles(node) => self.corner_tiles(name, node)?,
             Node::BlendMap(map) => {
                 let input = self.any(&map.input)?;
                 let how = BlendMap::new(32.0)
@@ -287,6 +306,43 @@ impl<'a> Builder<'a> {
         Ok(Step::Global(global, steps, color))
     }
 
+    fn disturb(&mut self, name: &str, node: &crate::Disturbed) -> Result<Step, RecipeError> {
+        check_copies(node.copies)?;
+        let disturbance = Disturbance {
+            frozen: node.frozen,
+            margin: node.margin,
+            seed: self.generator.seed(name, node.seed.as_ref()),
+        };
+        self.global(
+            Global::Disturb(disturbance, node.copies),
+            &[&node.input],
+            &[],
+        )
+    }
+
+    fn corner_tiles(
+        &mut self,
+        name: &str,
+        node: &crate::CornerTilesOf,
+    ) -> Result<Step, RecipeError> {
+        check_copies(node.copies)?;
+        let count = node.inputs.len();
+        if !(2..=4).contains(&count) {
+            return Err(RecipeError::new(RecipeErrorKind::Count {
+                what: "inputs",
+                count,
+                needed: "2 to 4",
+            }));
+        }
+        let corners = Corners {
+            seed: self.generator.seed(name, node.seed.as_ref()),
+            copies: node.copies,
+            width: node.width,
+        };
+        let inputs: Vec<_> = node.inputs.iter().collect();
+        self.global(Global::CornerTiles(corners), &inputs, &[])
+    }
+
     fn blend(&mut self, blend: &crate::Blended) -> Result<Step, RecipeError> {
         let count = blend.layers.len();
         if count == 0 {
@@ -329,6 +385,13 @@ impl<'a> Builder<'a> {
             step => step,
         })
     }
+}
+
+/// Refuses no copy at all.
+fn check_copies(copies: [u32; 2]) -> Result<(), RecipeError> {
+    copies.into_iter().try_for_each(|count| {
+        RecipeError::check(count > 0, "number of copies", count.into(), "at least 1")
+    })
 }
 
 /// The ramp of a node: a palette, or colors of its own.

@@ -6,7 +6,7 @@ use super::{Picture, Plan, Values};
 use crate::operation::colors;
 use crate::{RecipeError, RecipeErrorKind};
 use dapple_raster::{Raster, RasterError, Window, Wrap};
-use dapple_tile::{Layer, Map, blend, blend_by_tile, rank_equalize};
+use dapple_tile::{CornerTiles, Layer, Map, blend, blend_by_tile, rank_equalize};
 use glam::DVec2;
 use std::sync::Arc;
 
@@ -117,7 +117,8 @@ impl Plan {
                 rule: "only some nodes see the whole tile",
             }));
         };
-        let made = self.values(whole, window, inputs, &[])?;
+        let of_inputs = global.window_of_inputs(window)?;
+        let made = self.values(whole, &of_inputs, inputs, &[])?;
         let made: Vec<&Values> = made.iter().collect();
         let values = match global {
             Global::Tile(seamless) => {
@@ -136,6 +137,23 @@ impl Plan {
                 Values::Numbers(rank_equalize(&map)?.into_pixels())
             }
             Global::Blend(layers) => blend_values(layers, &made, window.size)?,
+            Global::Disturb(disturbance, _) => {
+                let maps = alike(&made, of_inputs.size)?;
+                values(disturbance.render_maps(&maps, [0, 0], window.size)?)?
+            }
+            Global::MatchBorders(options) => {
+                let maps = alike(&made, window.size)?;
+                let maps: Vec<_> = maps.into_iter().map(|map| vec![map]).collect();
+                values(options.apply_maps(&maps)?.swap_remove(1))?
+            }
+            Global::CornerTiles(corners) => {
+                let maps = alike(&made, of_inputs.size)?;
+                let maps: Vec<_> = maps.into_iter().map(|map| vec![map]).collect();
+                let tiles = CornerTiles::new(&maps)?
+                    .with_width(corners.width)?
+                    .with_period(corners.copies.map(Some))?;
+                values(tiles.render(corners.seed, [0, 0], window.size)?)?
+            }
         };
         Ok(match values {
             Values::Numbers(numbers) => {
@@ -144,6 +162,31 @@ impl Plan {
             Values::Colors(colors) => {
                 Picture::Colors(Arc::new(Raster::from_vec(window.size, colors)?))
             }
+        })
+    }
+}
+
+impl Global {
+    /// The pixels of the inputs: those of the picture, or where it is made of smaller copies, of one of them.
+    fn window_of_inputs(&self, window: &Window) -> Result<Window, RecipeError> {
+        let copies = match self {
+            Self::Disturb(_, copies) => *copies,
+            Self::CornerTiles(corners) => corners.copies,
+            Self::Tile(_) | Self::BlendMap(..) | Self::Blend(_) | Self::MatchBorders(_) => [1; 2],
+        };
+        let mut size = window.size;
+        for axis in 0..2 {
+            let pixels = f64::from(size[axis]) / f64::from(copies[axis]);
+            let what = "number of pixels along a side of a copy";
+            let range = "a whole number (size of the bake over copies)";
+            RecipeError::check(pixels.fract() == 0.0, what, pixels, range)?;
+            size[axis] /= copies[axis];
+        }
+        let copies = DVec2::new(copies[0].into(), copies[1].into());
+        Ok(Window {
+            pixel: window.pixel * copies,
+            size,
+            ..*window
         })
     }
 }
@@ -194,18 +237,8 @@ pub(crate) fn blend_values(
     size: [u32; 2],
 ) -> Result<Values, RecipeError> {
     let count = layers.heights.len();
-    let is_color = inputs[..count]
-        .iter()
-        .any(|values| matches!(values, Values::Colors(_)));
-    let mut maps = Vec::new();
-    for values in &inputs[..count] {
-        let kind = if is_color {
-            Values::Colors(colors(values))
-        } else {
-            Values::clone(values)
-        };
-        maps.push([map(&kind, size)?]);
-    }
+    let maps = alike(&inputs[..count], size)?;
+    let maps: Vec<_> = maps.into_iter().map(|map| [map]).collect();
     let rasters = inputs[count..].iter().map(|values| raster(values, size));
     let rasters = rasters.collect::<Result<Vec<_>, _>>()?;
     let mut heights = rasters[count..].iter();
@@ -225,6 +258,20 @@ pub(crate) fn blend_values(
         blend(&of_blend, &layers.how)?
     };
     values(blended)
+}
+
+/// The maps of all inputs: of colors, if one of them has colors.
+fn alike(inputs: &[&Values], size: [u32; 2]) -> Result<Vec<Map>, RasterError> {
+    let is_color = |values: &&Values| matches!(values, Values::Colors(_));
+    let any = inputs.iter().any(is_color);
+    let kind = |values: &&Values| match any {
+        true => Values::Colors(colors(values)),
+        false => Values::clone(values),
+    };
+    inputs
+        .iter()
+        .map(|values| map(&kind(values), size))
+        .collect()
 }
 
 /// Numbers as they are, and the luminance of colors.
@@ -250,3 +297,6 @@ fn values(maps: Vec<Map>) -> Result<Values, RecipeError> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -13,7 +13,7 @@ fn render_keeps_the_frozen_border_of_every_copy_bit_for_bit() {
     let tile = gravel(1, [48, 56], true);
     let disturbance = Disturbance {
         frozen: 5,
-        ramp: 10,
+        margin: 10,
         seed: Seed(3),
     };
     let map = disturbance.render(&tile, [-96, -56], [192, 168]).unwrap();
@@ -39,7 +39,7 @@ fn render_shows_a_shifted_tile_in_the_middle_of_each_copy() {
     let tile = gravel(2, [40, 40], true);
     let disturbance = Disturbance {
         frozen: 2,
-        ramp: 12,
+        margin: 12,
         seed: Seed(4),
     };
     let map = disturbance.render(&tile, [0, 0], [80, 40]).unwrap();
@@ -59,7 +59,7 @@ fn render_shows_a_shifted_tile_in_the_middle_of_each_copy() {
 
 #[test]
 fn render_of_a_window_is_the_crop_of_the_whole() {
-    let tile = gravel(3, [41, 44], true);
+    let tile = gravel(3, [57, 60], true);
     let disturbance = Disturbance::new(Seed(5));
     let whole = disturbance.render(&tile, [-100, -70], [260, 200]).unwrap();
     for (first, size) in [
@@ -100,27 +100,28 @@ fn render_keeps_the_variance_and_has_no_seam() {
 }
 
 #[test]
-fn render_sets_in_smoothly() {
-    // A tile whose mean is 0 and whose shifted self is its negative shows the weights themselves.
-    let profile = Disturbance::default().profile(64).unwrap();
-    assert_eq!(profile[..4], [0.0; 4]);
-    assert_eq!(profile[20..44], [1.0; 24]);
-    for at in 0..63 {
-        assert_eq!(profile[at], profile[63 - at], "the same from both sides");
-    }
-    // Second differences of a quintic over 16 pixels are at most 10 / √3 / 16² = 0.0226, and change by at most 60 / 16³
-    // from pixel to pixel.
-    let second: Vec<_> = profile
-        .windows(3)
-        .map(|w| w[0] - 2.0 * w[1] + w[2])
+fn render_shows_the_tile_or_its_shifted_self_but_along_a_thin_line() {
+    let tile = gravel(2, [60, 60], true);
+    let disturbance = Disturbance::new(Seed(4));
+    let map = disturbance.render(&tile, [0, 0], [240, 240]).unwrap();
+    // Any piece of three pixels in a row that is nowhere in the tile was mixed.
+    let bits = |piece: &[f32]| [0, 1, 2].map(|at| piece[at].to_bits());
+    let tripled = tile.tile([2, 1]).unwrap();
+    let pieces = tripled.view();
+    let known: Vec<_> = pieces
+        .rows()
+        .flat_map(|row| row.windows(3).map(bits))
         .collect();
-    assert!(second.iter().all(|d| d.abs() < 0.0227), "{second:?}");
-    assert!(
-        second
-            .windows(2)
-            .all(|w| (w[1] - w[0]).abs() < 60.0 / 4096.0),
-        "{second:?}"
-    );
+    let map = map.view();
+    let pieces = map.rows().flat_map(|row| row.windows(3).map(bits));
+    let (mut n_pieces, mut n_strange) = (0, 0);
+    for piece in pieces {
+        n_pieces += 1;
+        n_strange += u32::from(!known.contains(&piece));
+    }
+    // A cut is about as long as four sides of 50 pixels, and five pieces in its row see a mixed pixel.
+    let most = 16 * 4 * 50 * 5;
+    assert!(n_strange < most, "{n_strange} of {n_pieces}");
 }
 
 #[test]
@@ -128,7 +129,10 @@ fn render_maps_shifts_all_maps_alike() {
     let tile = gravel(6, [48, 48], true);
     let color = tile.map(|&value| LinearRgb::new(value, value, value));
     let maps = [Map::Value(tile.clone()), Map::Color(color)];
-    let disturbance = Disturbance::new(Seed(8));
+    let disturbance = Disturbance {
+        margin: 20,
+        ..Disturbance::new(Seed(8))
+    };
     let maps = disturbance.render_maps(&maps, [7, -9], [100, 70]).unwrap();
     let expected = disturbance.render(&tile, [7, -9], [100, 70]).unwrap();
     assert_eq!(maps[0], Map::Value(expected.clone()));
@@ -136,13 +140,8 @@ fn render_maps_shifts_all_maps_alike() {
         maps[1],
         Map::Color(expected.map(|&value| LinearRgb::new(value, value, value)))
     );
-    assert!(
-        disturbance
-            .render_maps(&[], [0, 0], [9, 9])
-            .unwrap()
-            .is_empty(),
-        "no maps"
-    );
+    let none = disturbance.render_maps(&[], [0, 0], [9, 9]).unwrap_err();
+    assert!(matches!(none.kind(), TileErrorKind::Count { .. }), "{none}");
     let other = Map::Value(gravel(6, [48, 49], true));
     assert!(
         disturbance
@@ -173,7 +172,7 @@ fn shift_is_at_least_a_quarter_of_the_side_either_way_round() {
 #[test]
 fn render_refuses_what_does_not_fit() {
     let disturbance = Disturbance::new(Seed(1));
-    for size in [[1, 1], [2, 2], [1, 64], [64, 39]] {
+    for size in [[1, 1], [2, 2], [1, 64], [64, 55]] {
         let error = disturbance.render(
             &gravel(1, [64, 64], true).crop([0, 0], size).unwrap(),
             [0, 0],
@@ -181,13 +180,13 @@ fn render_refuses_what_does_not_fit() {
         );
         let kind = error.unwrap_err().kind().clone();
         assert!(
-            matches!(kind, TileErrorKind::Margin { margin: 20, .. }),
+            matches!(kind, TileErrorKind::Margin { margin: 28, .. }),
             "{size:?}: {kind:?}"
         );
     }
     let hard = Disturbance {
         frozen: 0,
-        ramp: 0,
+        margin: 0,
         seed: Seed(1),
     };
     for size in [[1, 1], [2, 2], [1, 5], [5, 4]] {
@@ -196,7 +195,7 @@ fn render_refuses_what_does_not_fit() {
     }
     let vast = Disturbance {
         frozen: u32::MAX,
-        ramp: u32::MAX,
+        margin: u32::MAX,
         seed: Seed(1),
     };
     let tile = gravel(1, [64, 64], true);
@@ -216,12 +215,12 @@ fn render_refuses_what_does_not_fit() {
 proptest! {
     #[test]
     fn render_gives_a_finite_map_or_a_typed_error(
-        tile_size in [1_u32..24, 1_u32..24], frozen in 0_u32..6, ramp in 0_u32..6, seed: u64,
+        tile_size in [1_u32..24, 1_u32..24], frozen in 0_u32..6, margin in 0_u32..6, seed: u64,
         first: [i64; 2], size in [0_u32..20, 0_u32..20],
         bad in prop_oneof![Just(0.0), Just(f32::NAN), Just(f32::NEG_INFINITY)],
     ) {
         let tile = Raster::from_fn(tile_size, |x, y| if x + y == 0 { bad } else { x as f32 }).unwrap();
-        let disturbance = Disturbance { frozen, ramp, seed: Seed(seed) };
+        let disturbance = Disturbance { frozen, margin, seed: Seed(seed) };
         match disturbance.render(&tile, first, size) {
             Ok(map) => {
                 prop_assert_eq!(map.size(), size);
@@ -237,7 +236,7 @@ proptest! {
 
 #[test]
 fn render_has_the_same_bits_on_any_number_of_threads() {
-    let tile = gravel(3, [41, 44], true);
+    let tile = gravel(3, [57, 60], true);
     let disturbance = Disturbance::new(Seed(5));
     assert!(same_on_threads(|| disturbance
         .render(&tile, [-9, 4], [150, 170])
@@ -247,10 +246,12 @@ fn render_has_the_same_bits_on_any_number_of_threads() {
 #[test]
 fn value_stability_disturb() {
     let tile = gravel(9, [48, 40], true);
-    let map = Disturbance::new(Seed(7))
-        .render(&tile, [-30, -30], [90, 90])
-        .unwrap();
+    let disturbance = Disturbance {
+        margin: 16,
+        ..Disturbance::new(Seed(7))
+    };
+    let map = disturbance.render(&tile, [-30, -30], [90, 90]).unwrap();
     let bits = [[0, 0], [10, 15], [50, 50], [89, 89]]
         .map(|[x, y]: [usize; 2]| map.row(y as u32)[x].to_bits());
-    assert_eq!(bits, [1051352163, 1062009822, 1059973746, 1057510168]);
+    assert_eq!(bits, [1052928431, 1063551567, 1059975078, 1057285837]);
 }

@@ -1,8 +1,10 @@
 //! Matched borders: that any two tiles fit, and what does not change.
 
 use super::{BorderSource, MatchBorders};
-use crate::TileErrorKind;
 use crate::test_fields::{fbm, gravel, seam_ratio_of, top_power, turned};
+use crate::{Map, TileErrorKind};
+use dapple_color::LinearRgb;
+use dapple_hash::Seed;
 use dapple_raster::Raster;
 use proptest::prelude::*;
 
@@ -92,10 +94,9 @@ fn the_seam_of_the_first_tile_is_nowhere_seen_for_any_width() {
                 source: BorderSource::Middle,
             };
             let matched = options.apply(&tiles).unwrap();
-            let flat = matched.iter().all(|tile| {
-                // Only what is mixed is not copied: the mean is taken off and put back.
-                tile.pixels().iter().all(|value| value.abs() < 1e-3)
-            });
+            let flat = matched
+                .iter()
+                .all(|tile| tile.pixels().iter().all(|value| *value == 0.0));
             assert!(flat, "side {side}, width {width}");
         }
         let kind = MatchBorders {
@@ -111,6 +112,34 @@ fn the_seam_of_the_first_tile_is_nowhere_seen_for_any_width() {
             }
         );
     }
+}
+
+#[test]
+fn render_lays_each_place_with_one_of_the_tiles_and_windows_are_crops() {
+    let tiles = [1, 2, 3].map(|seed| gravel(seed, [40, 44], true));
+    let maps = tiles.each_ref().map(|tile| vec![Map::Value(tile.clone())]);
+    let value = |first, size| {
+        let options = MatchBorders::default();
+        match options
+            .render(&maps, Seed(3), first, size)
+            .unwrap()
+            .remove(0)
+        {
+            Map::Value(raster) => raster,
+            other => panic!("{other:?}"),
+        }
+    };
+    let matched = MatchBorders::default().apply(&tiles).unwrap();
+    let whole = value([-80, -44], [240, 220]);
+    let mut seen = [false; 3];
+    for (i, j) in (0..5).flat_map(|j| (0..6).map(move |i| (i, j))) {
+        let here = whole.crop([i * 40, j * 44], [40, 44]).unwrap();
+        let index = matched.iter().position(|tile| *tile == here);
+        seen[index.expect("one of the tiles")] = true;
+    }
+    assert_eq!(seen, [true; 3]);
+    let part = value([-75, 30], [100, 60]);
+    assert_eq!(part, whole.crop([5, 74], [100, 60]).unwrap());
 }
 
 proptest! {
@@ -146,8 +175,26 @@ fn equal_tiles_that_repeat_hardly_change_and_the_first_not_at_all() {
     assert_eq!(tiles[0], tile);
     let pixels = tiles[1].pixels().iter().zip(tile.pixels());
     let worst = pixels.fold(0.0_f32, |worst, (a, b)| worst.max((a - b).abs()));
-    // Mixed in `f64` by shares whose sum is 1 within rounding.
+    // A mean of two equal numbers, by weights that sum to 1 within rounding.
     assert!(worst < 1e-6, "{worst}");
+}
+
+#[test]
+fn all_maps_are_cut_alike() {
+    let tiles = [1, 2].map(|seed| gravel(seed, [40, 44], true));
+    let color = |gray: f32| LinearRgb::new(gray, gray, gray);
+    let maps = tiles.each_ref().map(|tile| {
+        vec![
+            Map::Value(tile.clone()),
+            Map::Color(tile.map(|&value| color(value))),
+        ]
+    });
+    let both = MatchBorders::default().apply_maps(&maps).unwrap();
+    let alone = MatchBorders::default().apply(&tiles).unwrap();
+    for (maps, alone) in both.iter().zip(alone) {
+        assert_eq!(maps[0], Map::Value(alone.clone()));
+        assert_eq!(maps[1], Map::Color(alone.map(|&value| color(value))));
+    }
 }
 
 #[test]
@@ -160,9 +207,9 @@ fn matched_tiles_keep_their_detail() {
         sums[1] += after.iter().map(top_power).sum::<f64>();
     }
     let kept = sums[1] / sums[0];
-    // 32 tiles of 64 stones.
+    // 32 tiles of 64 stones. What is lost is that of a mean along the cut, what is added are the stones that it splits.
     assert!(
-        (0.95..1.05).contains(&kept),
+        (0.95..1.08).contains(&kept),
         "power of the top octave {kept}"
     );
 }
@@ -228,5 +275,5 @@ fn value_stability_match_borders() {
     let tiles = matched(BorderSource::Middle, &tiles);
     let bits =
         [[0, 0], [7, 9], [10, 30]].map(|[x, y]: [usize; 2]| tiles[1].row(y as u32)[x].to_bits());
-    assert_eq!(bits, [1044736711, 3151649367, 1056983977]);
+    assert_eq!(bits, [1044736711, 1026265202, 1050118888]);
 }

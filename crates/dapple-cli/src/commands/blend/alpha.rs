@@ -7,7 +7,7 @@ use dapple::raster::Raster;
 use dapple::tile::Map;
 
 /// Multiplies alpha into the first maps, and adds it as the last map of every layer, if any layer has some.
-pub(super) fn multiply(materials: &mut [Material]) -> Result<bool> {
+pub(in crate::commands) fn multiply(materials: &mut [Material]) -> Result<bool> {
     if materials.iter().all(|material| material.alpha.is_none()) {
         return Ok(false);
     }
@@ -25,7 +25,7 @@ pub(super) fn multiply(materials: &mut [Material]) -> Result<bool> {
 }
 
 /// Takes alpha from the end of the maps, and divides the first by it.
-pub(super) fn divide(maps: &mut Vec<Map>) -> Result<Option<Raster<f32>>> {
+pub(in crate::commands) fn divide(maps: &mut Vec<Map>) -> Result<Option<Raster<f32>>> {
     let Some(Map::Value(alpha)) = maps.pop() else {
         return Ok(None);
     };

@@ -16,11 +16,11 @@ use std::str::FromStr;
 const BASE: &str = "base";
 
 /// The name of the map that is a layer's height.
-pub(super) const HEIGHT: &str = "height";
+pub(in crate::commands) const HEIGHT: &str = "height";
 
 /// What the user wrote of a layer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct LayerArg {
+pub(in crate::commands) struct LayerArg {
     path: PathBuf,
     weight: Option<Weight>,
     /// The other maps by their names, in order; [`HEIGHT`] and `normal` are special.
@@ -37,15 +37,15 @@ enum Weight {
 
 /// A layer that was read.
 #[derive(Debug)]
-pub(super) struct Material {
+pub(in crate::commands) struct Material {
     /// Its maps, in the order of their names.
-    pub(super) maps: Vec<Map>,
+    pub(in crate::commands) maps: Vec<Map>,
     /// The alpha of its first map, where that is kept.
-    pub(super) alpha: Option<Raster<f32>>,
+    pub(in crate::commands) alpha: Option<Raster<f32>>,
     /// Its height.
-    pub(super) height: Option<Raster<f32>>,
+    pub(in crate::commands) height: Option<Raster<f32>>,
     /// Whether an image has more than 8 bits.
-    pub(super) is_deep: bool,
+    pub(in crate::commands) is_deep: bool,
     weight: Option<ReadWeight>,
 }
 
@@ -91,17 +91,22 @@ impl FromStr for LayerArg {
 
 impl LayerArg {
     /// The file of its first map.
-    pub(super) fn path(&self) -> &Path {
+    pub(in crate::commands) fn path(&self) -> &Path {
         &self.path
     }
 
+    /// Whether it has a weight.
+    pub(in crate::commands) fn has_weight(&self) -> bool {
+        self.weight.is_some()
+    }
+
     /// Whether it has a height.
-    pub(super) fn has_height(&self) -> bool {
+    pub(in crate::commands) fn has_height(&self) -> bool {
         self.maps.iter().any(|(name, _)| name == HEIGHT)
     }
 
     /// The names of its maps but the height.
-    pub(super) fn map_names(&self) -> Vec<&str> {
+    pub(in crate::commands) fn map_names(&self) -> Vec<&str> {
         let others = self.maps.iter().map(|(name, _)| name.as_str());
         let others: Vec<_> = others.filter(|name| *name != HEIGHT).collect();
         [BASE].into_iter().chain(others).collect()
@@ -112,7 +117,7 @@ impl LayerArg {
     /// # Errors
     ///
     /// If one cannot be read.
-    pub(super) fn read(&self, reader: &mut Reader) -> Result<Material> {
+    pub(in crate::commands) fn read(&self, reader: &mut Reader) -> Result<Material> {
         let base = reader.read(&self.path, Kind::ByChannels)?;
         let (mut maps, mut height, mut is_deep) = (vec![base.map], None, base.is_deep);
         for (name, path) in &self.maps {
@@ -155,22 +160,25 @@ impl LayerArg {
 
 /// Reads the images of all layers, which have one size in the end.
 #[derive(Debug)]
-pub(super) struct Reader {
+pub(in crate::commands) struct Reader {
     /// The size that they are repeated or cut to.
     size: Option<Size>,
     /// What becomes of their alpha.
     alpha: Alpha,
-    /// The size of the first that was read.
-    first: Option<[u32; 2]>,
+    /// The first that was read, and its size.
+    first: Option<(PathBuf, [u32; 2])>,
+    /// What to do about images of unlike sizes.
+    hint: &'static str,
 }
 
 impl Reader {
-    /// For a blend of a size, or of that of the first image.
-    pub(super) fn new(size: Option<Size>, alpha: Alpha) -> Self {
+    /// For images of a size, or of that of the first image; with a hint for those that have another.
+    pub(in crate::commands) fn new(size: Option<Size>, alpha: Alpha, hint: &'static str) -> Self {
         Self {
             size,
             alpha,
             first: None,
+            hint,
         }
     }
 
@@ -179,16 +187,16 @@ impl Reader {
     /// # Errors
     ///
     /// If it cannot be read, or has another size.
-    pub(super) fn read(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
+    pub(in crate::commands) fn read(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
         let mut loaded = input::map_with_alpha(path, kind, None, self.alpha)?;
         if let Some(size) = self.size {
             loaded.map = repeated(&loaded.map, size)?;
             let alpha = loaded.alpha.map(|alpha| repeat(&alpha, size.0));
             loaded.alpha = alpha.transpose().context("the images cannot be repeated")?;
         }
-        let first = *self.first.get_or_insert(loaded.map.size());
-        input::check_size(path, loaded.map.size(), first)
-            .hint("--size WxH repeats what is smaller and cuts what is larger")?;
+        let size = loaded.map.size();
+        let (first, first_size) = self.first.get_or_insert_with(|| (path.to_owned(), size));
+        input::check_size(path, size, first, *first_size).hint(self.hint)?;
         Ok(loaded)
     }
 
@@ -197,14 +205,14 @@ impl Reader {
     /// # Errors
     ///
     /// As [`read`](Self::read); and if it is partly transparent, and that was not to be dropped or laid over a color.
-    pub(super) fn read_opaque(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
+    pub(in crate::commands) fn read_opaque(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
         let loaded = self.read(path, kind)?;
         if loaded.alpha.is_some() {
             let message = format!(
                 "{} is partly transparent, which only the first image of a layer keeps",
                 input::name(path)
             );
-            return Err(usage(message).hint("add --alpha drop or --alpha over:COLOR"));
+            return Err(usage(message).hint(input::ALPHA_HINT));
         }
         Ok(loaded)
     }
@@ -214,7 +222,11 @@ impl Reader {
     /// # Errors
     ///
     /// If one cannot be read.
-    pub(super) fn agree(&mut self, layers: &[LayerArg], materials: &mut [Material]) -> Result<()> {
+    pub(in crate::commands) fn agree(
+        &mut self,
+        layers: &[LayerArg],
+        materials: &mut [Material],
+    ) -> Result<()> {
         for map in 0..materials[0].maps.len() {
             let is_color = |material: &Material| matches!(material.maps[map], Map::Color(_));
             if !materials.iter().any(is_color) {
@@ -237,7 +249,7 @@ impl Reader {
 /// # Errors
 ///
 /// If a mask has another size.
-pub(super) fn weights(
+pub(in crate::commands) fn weights(
     materials: &[Material],
     size: [u32; 2],
 ) -> Result<Vec<Raster<f32>>, TileError> {
@@ -262,7 +274,7 @@ pub(super) fn weights(
 }
 
 /// The numbers of a map; of color its luminance.
-pub(super) fn values(map: Map) -> Raster<f32> {
+pub(in crate::commands) fn values(map: Map) -> Raster<f32> {
     match map {
         Map::Value(values) => values,
         Map::Color(colors) => colors.map(|color| color.luminance()),

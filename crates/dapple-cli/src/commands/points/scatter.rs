@@ -1,8 +1,8 @@
 //! The kinds of point sets, and the options that each of them takes.
 
-use crate::args::{Axes, Extent, Size, seed};
+use crate::args::{Axes, Extent, Size, image_alpha, seed};
 use crate::error::{Hint, usage};
-use crate::input::{self, Kind as ImageKind};
+use crate::input::{self, ALPHA_HINT, Kind as ImageKind};
 use crate::words::Word;
 use anyhow::{Context as _, Error, Result};
 use clap::ValueEnum;
@@ -14,6 +14,7 @@ use dapple::points::{
     gentle_radius_for_count, jittered_grid, nested_poisson_disk, poisson_disk, poisson_disk_radius,
     radius_for_count, variable_poisson_disk, white_noise,
 };
+use dapple::recipe::ImageAlpha;
 use dapple::tile::Map;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -72,6 +73,11 @@ pub(super) struct ScatterArgs {
     /// points in the ratio of A to B at its ends.
     #[arg(long, value_name = "IMAGE|A:B")]
     density: Option<Density>,
+
+    /// variable: what becomes of the transparency of the image, which is refused otherwise: `drop` takes the colors without it,
+    /// and `over:COLOR` lays the image over a color, such as `over:black`.
+    #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha, requires = "density")]
+    alpha: Option<ImageAlpha>,
 
     /// variable: let dark parts of the image be dense.
     #[arg(long)]
@@ -212,7 +218,8 @@ impl ScatterArgs {
             }
             Some(Density::Image(path)) => path,
         };
-        let values = match input::map(path, ImageKind::ByChannels, None)?.map {
+        let kind = ImageKind::ByChannels;
+        let values = match input::map(path, kind, None, self.alpha, ALPHA_HINT)?.map {
             Map::Value(values) => values,
             Map::Color(colors) => colors.map(|color| color.luminance()),
             Map::Normal(normals) => normals.map(|normal| normal.z),

@@ -4,7 +4,7 @@ use super::pebbles;
 use crate::docs::Strip;
 use crate::docs::picture::{GRAYS, shaded};
 use dapple_raster::Raster;
-use dapple_tile::{CornerTiles, Disturbance, MatchBorders, repeat};
+use dapple_tile::{CornerTiles, Disturbance, Map, MatchBorders, repeat};
 use dapple_worley::hash::Seed;
 
 /// Pixels along the side of a tile.
@@ -20,7 +20,7 @@ pub(super) const DISTURBANCE: Strip = Strip {
         let [tile, _] = tiles()?;
         let disturbance = Disturbance {
             frozen: 3,
-            ramp: 9,
+            margin: 16,
             seed: Seed(2),
         };
         let disturbed = disturbance.render(&tile, [0, 0], MAP)?;
@@ -37,7 +37,7 @@ pub(super) const MATCH_BORDERS: Strip = Strip {
     render: || {
         let tiles = tiles()?;
         let matched = MatchBorders {
-            width: TILE / 4,
+            width: TILE / 8 * 3,
             ..MatchBorders::default()
         };
         let matched = matched.apply(&tiles)?;
@@ -52,8 +52,12 @@ pub(super) const CORNER_TILES: Strip = Strip {
     name: "corner-tiles",
     caption: "",
     render: || {
-        let map = CornerTiles::new(&tiles()?)?.render(Seed(3), [0, 0], MAP)?;
-        Ok(vec![shaded("corner tiles of two textures", &map, GRAYS)])
+        let tiles = tiles()?.map(|tile| vec![Map::Value(tile)]);
+        let maps = CornerTiles::new(&tiles)?.render(Seed(3), [0, 0], MAP)?;
+        let [Map::Value(map)] = maps.as_slice() else {
+            anyhow::bail!("numbers became something else");
+        };
+        Ok(vec![shaded("corner tiles of two textures", map, GRAYS)])
     },
 };
 

@@ -71,7 +71,7 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
 }
 
 /// The blend tile of a texture: its features, so many pixels large, halved and doubled once, and then as ranks.
-fn blend_tile(ground: &Raster<LinearRgb>, feature: f64) -> anyhow::Result<Raster<f32>> {
+pub(super) fn blend_tile(ground: &Raster<LinearRgb>, feature: f64) -> anyhow::Result<Raster<f32>> {
     let features = BlendMap::new(feature).apply_color(ground)?;
     let tile = Seamless::new(Method::SplineProject(BLEND_TILE)).apply(&features)?;
     Ok(rank_equalize(&tile)?)

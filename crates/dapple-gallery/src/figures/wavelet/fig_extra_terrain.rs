@@ -1,101 +1,198 @@
-//! A terrain of stone, grass and soil: linear splatting, and blending by tiles.
+//! A terrain of stone, grass and soil: linear splatting, and blending by the blend tiles of the ground.
 //!
-//! Stone lies where the land is steep or high, grass where it is low and flat, soil between. On the left the textures fade
-//! into each other; on the right each place is given to one of them by the features of a small tile of wavelet noise, and
-//! what contrast is left to lose is kept.
+//! Stone lies where the land is steep or high, grass where it is low and flat, soil between. Splatting fades the textures
+//! into each other, and grass shines through the stones. With the paper's method grass and soil "growth around the pebbles
+//! and stone, or growth from the cracks": the blend tile of the stone, made of its features, halved and doubled, says where
+//! what is not stone comes first, and that of the soil where grass takes hold on it. At every place both pictures have the
+//! same shares of stone, soil and grass.
 
 use super::super::fractal::FractalNoise;
+use super::fig_04::blend_tile;
 use super::grass::grass;
 use super::patch::Edges;
 use super::soil::soil;
 use super::stone::stone;
-use super::tile_side;
+use super::{stone_px, tile_side};
 use crate::figure::source;
 use crate::{Figure, Panel};
-use dapple_color::{NormalOptions, normal_map};
+use dapple_color::{LinearRgb, Normal, NormalOptions, normal_map};
 use dapple_pups::hash::Seed;
 use dapple_raster::{Raster, Window};
 use dapple_tile::{
     Blend, Layer, Map, Mixing, Weighting, blend, blend_by_tile, rank_equalize, repeat,
 };
-use dapple_wavelet::wavelet_tile;
 use glam::DVec3;
 
 pub(super) const FIGURE: Figure = Figure {
     number: "extra",
     parameters: &[
         ("textures", "three tiles of 256 × 256"),
-        ("blend tile", "128 × 128, three bands of wavelet noise"),
-        ("gain of the mask", "5"),
+        ("blend tiles", "of the stone and of the soil"),
+        ("gain of the masks", "8"),
     ],
     source: source!(),
     render,
 };
 
+/// The size of a crumb of soil as a part of that of a stone.
+const CRUMB: f64 = 0.4;
+
+/// Textures over the whole terrain, and the blend tiles of those on which others lie.
+struct Ground {
+    stone: Raster<LinearRgb>,
+    grass: Raster<LinearRgb>,
+    soil: Raster<LinearRgb>,
+    stone_mask: Raster<f32>,
+    soil_mask: Raster<f32>,
+}
+
+/// The parts of stone, and of grass where no stone is.
+struct Shares {
+    stone: Raster<f32>,
+    grass: Raster<f32>,
+}
+
 fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let window = Window::unit([size; 2])?;
     let noise = FractalNoise::new(0.45, Seed(12))?;
     let land = Raster::from_window(&window, |at| noise.at(at))?;
-    let normals = normal_map(
-        &land,
-        &NormalOptions {
-            strength: 0.3,
-            ..NormalOptions::default()
-        },
-    )?;
-    let weights = weights(&land, &normals.map(|normal| normal.z))?;
-    let side = 2 * tile_side(size);
-    let tiles = [
-        stone(side, Seed(1), Edges::Repeating)?,
-        grass(side, Seed(1), Edges::Repeating)?,
-        soil(side, Seed(1), Edges::Repeating)?,
-    ];
-    let mut maps = Vec::new();
-    for tile in &tiles {
-        maps.push([Map::Color(repeat(&tile.color, [size; 2])?)]);
-    }
-    let layers: Vec<Layer<'_>> = maps
-        .iter()
-        .zip(&weights)
-        .map(|(maps, weight)| Layer {
-            maps,
-            weight,
-            height: None,
-        })
-        .collect();
-    let tile = wavelet_tile([tile_side(size); 2], &[0.1, 0.3, 1.0], Seed(6))?;
-    let mask = repeat(&rank_equalize(&tile)?, [size; 2])?;
-    let by_tile = Blend::new(Weighting::Mask { gain: 5.0 }, Mixing::KeepVariance);
-    // The textures are lit as level ground, which stays as it is.
-    let toward = DVec3::new(-0.5, 0.5, 1.0);
+    let options = NormalOptions {
+        strength: 0.3,
+        ..NormalOptions::default()
+    };
+    let normals = normal_map(&land, &options)?;
+    let shares = shares(&land, &normals.map(|normal| normal.z))?;
+    let ground = Ground::new(size)?;
     [
-        ("linear splatting", blend(&layers, &Blend::default())?),
-        ("by tiles", blend_by_tile(&layers, &mask, &by_tile)?),
+        ("linear splatting", ground.splatted(&shares)?),
+        ("by blend tiles", ground.by_tiles(&shares)?),
     ]
     .into_iter()
-    .map(|(label, maps)| {
-        let Some(Map::Color(color)) = maps.into_iter().next() else {
-            anyhow::bail!("colors became something else");
-        };
-        let lit = color.zip_map(&normals, |&color, normal| {
-            let normal = DVec3::from_array(normal.to_array().map(f64::from));
-            color * (0.2 + 0.8 * normal.dot(toward).max(0.0)) as f32
-        })?;
-        Ok(Panel::color(label, lit))
-    })
+    .map(|(label, color)| Ok(Panel::color(label, lit(&color, &normals)?)))
     .collect()
 }
 
-/// How much stone, grass and soil there is at each place, from how much of the land is lower, and how level it is.
-fn weights(land: &Raster<f32>, level: &Raster<f32>) -> anyhow::Result<[Raster<f32>; 3]> {
+impl Ground {
+    fn new(size: u32) -> anyhow::Result<Self> {
+        let side = 2 * tile_side(size);
+        let [stone, grass, soil] =
+            [stone, grass, soil].map(|make| make(side, Seed(1), Edges::Repeating));
+        let (stone, grass, soil) = (stone?.color, grass?.color, soil?.color);
+        let feature = stone_px(side);
+        let large = |tile: &Raster<LinearRgb>| repeat(tile, [size; 2]);
+        Ok(Self {
+            stone_mask: repeat(&blend_tile(&stone, feature)?, [size; 2])?,
+            soil_mask: repeat(&blend_tile(&soil, CRUMB * feature)?, [size; 2])?,
+            stone: large(&stone)?,
+            grass: large(&grass)?,
+            soil: large(&soil)?,
+        })
+    }
+
+    /// All three by their shares.
+    fn splatted(&self, shares: &Shares) -> anyhow::Result<Raster<LinearRgb>> {
+        let lower = over([&self.grass, &self.soil], &shares.grass, None)?;
+        over([&self.stone, &lower], &shares.stone, None)
+    }
+
+    /// Grass where the soil is low, and both where the stone is.
+    fn by_tiles(&self, shares: &Shares) -> anyhow::Result<Raster<LinearRgb>> {
+        let lower = over(
+            [&self.grass, &self.soil],
+            &shares.grass,
+            Some(&self.soil_mask),
+        )?;
+        let other = shares.stone.map(|stone| 1.0 - stone);
+        over([&lower, &self.stone], &other, Some(&self.stone_mask))
+    }
+}
+
+/// A texture over another, by its share: plainly, or first where a mask is low.
+fn over(
+    textures: [&Raster<LinearRgb>; 2],
+    share: &Raster<f32>,
+    mask: Option<&Raster<f32>>,
+) -> anyhow::Result<Raster<LinearRgb>> {
+    let maps = textures.map(|texture| [Map::Color(texture.clone())]);
+    let rest = share.map(|share| 1.0 - share);
+    let layer = |maps, weight| Layer {
+        maps,
+        weight,
+        height: None,
+    };
+    let layers = [layer(&maps[0], share), layer(&maps[1], &rest)];
+    let by_tile = Blend::new(Weighting::Mask { gain: 8.0 }, Mixing::Linear);
+    let blended = match mask {
+        Some(mask) => blend_by_tile(&layers, mask, &by_tile)?,
+        None => blend(&layers, &Blend::default())?,
+    };
+    match blended.into_iter().next() {
+        Some(Map::Color(color)) => Ok(color),
+        other => anyhow::bail!("colors became {other:?}"),
+    }
+}
+
+/// The colors on the slopes of the land. The textures are lit as level ground, which stays as it is.
+fn lit(color: &Raster<LinearRgb>, normals: &Raster<Normal>) -> anyhow::Result<Raster<LinearRgb>> {
+    let toward = DVec3::new(-0.5, 0.5, 1.0);
+    Ok(color.zip_map(normals, |&color, normal| {
+        let normal = DVec3::from_array(normal.to_array().map(f64::from));
+        color * (0.2 + 0.8 * normal.dot(toward).max(0.0)) as f32
+    })?)
+}
+
+/// How much stone there is, and how much grass beside it, from how much of the land is lower and how level it is.
+fn shares(land: &Raster<f32>, level: &Raster<f32>) -> anyhow::Result<Shares> {
     let rise = |from: f32, to: f32, value: f32| ((value - from) / (to - from)).clamp(0.0, 1.0);
     let lower = rank_equalize(land)?;
     let stone = lower.zip_map(level, |&lower, &level| {
-        rise(0.8, 0.65, level).max(rise(0.6, 0.9, lower))
+        rise(0.85, 0.6, level).max(rise(0.45, 0.9, lower))
     })?;
-    let soil = lower.zip_map(&stone, |&lower, &stone| {
-        rise(0.3, 0.6, lower) * (1.0 - stone)
-    })?;
-    let grass = soil.zip_map(&stone, |&soil, &stone| (1.0 - soil - stone).max(0.0))?;
-    Ok([stone, grass, soil])
+    let grass = lower.map(|&lower| rise(0.65, 0.25, lower));
+    Ok(Shares { stone, grass })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Ground, Shares};
+    use dapple_color::LinearRgb;
+    use dapple_raster::Raster;
+
+    #[test]
+    fn what_is_not_stone_comes_from_the_cracks_and_leaves_the_stones_whole() {
+        let size = 256;
+        let mut ground = Ground::new(size).unwrap();
+        let flat = |color| Raster::filled([size; 2], color).unwrap();
+        // What is not stone is white, so that the picture is its share.
+        ground.stone = flat(LinearRgb::BLACK);
+        (ground.grass, ground.soil) = (flat(LinearRgb::WHITE), flat(LinearRgb::WHITE));
+        let shares = Shares {
+            stone: Raster::filled([size; 2], 0.6).unwrap(),
+            grass: Raster::filled([size; 2], 0.5).unwrap(),
+        };
+        let mean_where = |picture: &Raster<LinearRgb>, low: bool| {
+            let pixels = picture.pixels().iter().zip(ground.stone_mask.pixels());
+            let here = pixels.filter(|(_, mask)| (**mask < 0.5) == low);
+            let values: Vec<f32> = here.map(|(color, _)| color.g).collect();
+            values.iter().sum::<f32>() / values.len() as f32
+        };
+        let splatted = ground.splatted(&shares).unwrap();
+        let by_tiles = ground.by_tiles(&shares).unwrap();
+        for low in [false, true] {
+            assert!(
+                (mean_where(&splatted, low) - 0.4).abs() < 1e-3,
+                "everywhere alike"
+            );
+        }
+        let [cracks, stones] = [true, false].map(|low| mean_where(&by_tiles, low));
+        // 40 % of the area, in the lower half of the mask.
+        assert!(
+            cracks > 0.75 && stones < 0.05,
+            "{cracks} in cracks, {stones} on stones"
+        );
+        assert!(
+            (0.5 * (cracks + stones) - 0.4).abs() < 0.01,
+            "the same share"
+        );
+    }
 }

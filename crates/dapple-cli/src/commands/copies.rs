@@ -1,0 +1,208 @@
+//! `dapple copies`: maps of copies of tiles that are not all alike.
+
+mod method;
+
+use super::blend::alpha;
+use super::blend::layer::{HEIGHT, LayerArg, Material, Reader};
+use crate::args::{AlphaArgs, ImageArgs, Size, seed};
+use crate::encode::Format;
+use crate::error::{Exit, Hint, usage};
+use crate::job::{Context, Job};
+use crate::output::OutputIdx;
+use crate::progress::Progress;
+use anyhow::{Error, Result};
+use dapple::hash::Seed;
+use dapple::tile::{Map, TileError, TileErrorKind};
+use method::{MethodArgs, Tiles};
+use serde::Serialize;
+use serde_json::Value;
+
+const EXAMPLES: &str = "\
+Examples:
+  dapple copies stones.png --size 256 -o ground.png
+  dapple copies rock.png grass.png --size 256x128 --seed 7 -o board.png
+  dapple copies rock.png,normal=rock_normal.png sand.png,normal=normal.png \\
+    --size 256 -o ground/
+  dapple copies rock.png grass.png sand.png --method borders --tiles -o tiles/
+  dapple copies rock.png grass.png --method corners --tiles -o set/
+
+Which method:
+  disturb  one tile: each copy keeps its border, and inside of it has another piece of the tile;
+           the default for one tile
+  corners  two to four tiles: pieces of them, chosen by random colors at the corners where
+           pieces meet; the default for two to four
+  borders  any number: all get the border of the first one and lie in random order;
+           the default for more
+
+Tiles repeat by themselves, as those of `dapple tile` do. A map of whole tiles repeats, too.
+A tile is an image, and behind commas what belongs to it, as a layer of `dapple blend`:
+height=FILE, normal=FILE, NAME=FILE. All its maps are cut along the same line.";
+
+/// Cover a map with copies of a tile that are not all alike, or with several tiles in random order.
+#[derive(clap::Args, Debug, Serialize)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// The tiles: an image each, and what belongs to it.
+    #[arg(value_name = "IMAGE[,KEY=FILE...]", required = true)]
+    images: Vec<LayerArg>,
+
+    /// How large the map is, in pixels.
+    #[arg(
+        long,
+        value_name = "WxH",
+        required_unless_present = "tiles",
+        conflicts_with = "tiles"
+    )]
+    size: Option<Size>,
+
+    /// Where the randomness comes from: any whole number from 0 to 2^64 - 1.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed, conflicts_with = "tiles")]
+    seed: u64,
+
+    #[command(flatten)]
+    #[serde(flatten)]
+    alpha: AlphaArgs,
+
+    #[command(flatten)]
+    method: MethodArgs,
+
+    /// Write the tiles themselves, for a program that lays them out: those of borders by their number from 1 on, as
+    /// `NAME_1`; those of corners by the tiles at their corners (top left and right, bottom left and right), as `NAME_1221`.
+    #[arg(long, help_heading = "Output")]
+    tiles: bool,
+
+    #[command(flatten)]
+    #[serde(skip)]
+    image: ImageArgs,
+}
+
+/// Runs it.
+///
+/// # Errors
+///
+/// Whatever went wrong.
+pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    let method = args.method.method(args.images.len(), args.tiles)?;
+    let names = names(args)?;
+    let mut job = Job::new(context, "copies", &args.image.files);
+    let sets = match args.tiles {
+        true => method.tile_names(args.images.len()),
+        false => vec![String::new()],
+    };
+    let outputs = claim(args, &sets, &names, &mut job)?;
+    let (materials, has_alpha, is_deep) = read(args)?;
+    let progress = Progress::spinner("cutting", context);
+    let tiles = Tiles {
+        method,
+        materials: &materials,
+    };
+    let made = match args.size {
+        Some(Size(size)) => tiles.render(Seed(args.seed), size).map(|maps| vec![maps]),
+        None => tiles.tiles(),
+    };
+    let made = made.map_err(advise)?;
+    drop(progress);
+    let mut outputs = outputs.into_iter();
+    for mut maps in made {
+        let mut alpha = match has_alpha {
+            true => alpha::divide(&mut maps)?,
+            false => None,
+        };
+        for (map, output) in maps.into_iter().zip(&mut outputs) {
+            // Alpha is that of the first map.
+            job.write_with_alpha(output, map, alpha.take().as_ref(), is_deep, &args.image)?;
+        }
+    }
+    job.finish(args, Value::Null)?;
+    Ok(Exit::Done)
+}
+
+/// The names of the maps that all tiles have; the height is the last.
+fn names(args: &Args) -> Result<Vec<&str>> {
+    let of = |tile: &LayerArg| -> Vec<String> {
+        let height = tile.has_height().then_some(HEIGHT);
+        let names = tile.map_names().into_iter().chain(height);
+        names.map(str::to_owned).collect()
+    };
+    let first = &args.images[0];
+    for tile in &args.images {
+        if tile.has_weight() {
+            let message = format!(
+                "{} has a weight, which means nothing to a tile",
+                tile.path().display()
+            );
+            return Err(usage(message).hint("give it to a layer of `dapple blend`"));
+        }
+        if of(tile) != of(first) {
+            let message = format!(
+                "{} has the maps {}, but {} has {}",
+                first.path().display(),
+                of(first).join(", "),
+                tile.path().display(),
+                of(tile).join(", ")
+            );
+            return Err(usage(message).hint("give all tiles the same maps"));
+        }
+    }
+    let height = first.has_height().then_some(HEIGHT);
+    Ok(first.map_names().into_iter().chain(height).collect())
+}
+
+/// Claims an output for each map of each tile of a set; a map has a set of one tile without a name.
+fn claim(
+    args: &Args,
+    sets: &[String],
+    names: &[&str],
+    job: &mut Job<'_>,
+) -> Result<Vec<OutputIdx>> {
+    let part = |tile: &String, name: &str| match (tile.as_str(), names.len()) {
+        ("", 1) => String::new(),
+        ("", _) => name.to_owned(),
+        (tile, 1) => tile.to_owned(),
+        (tile, _) => format!("{tile}_{name}"),
+    };
+    let parts = sets
+        .iter()
+        .flat_map(|tile| names.iter().map(move |name| part(tile, name)));
+    let parts: Vec<_> = parts.collect();
+    let targets = args
+        .image
+        .files
+        .targets("copies", &parts, args.image.ending())?;
+    let mut outputs = Vec::new();
+    for target in &targets.files {
+        Format::choose(args.image.format, target, Format::Png16)?;
+        outputs.push(job.claim(target)?);
+    }
+    job.claim_sidecar(&targets.main)?;
+    Ok(outputs)
+}
+
+/// The maps of all tiles, the height and then alpha the last of them; whether there is alpha, and whether an image has more than
+/// 8 bits.
+fn read(args: &Args) -> Result<(Vec<Vec<Map>>, bool, bool)> {
+    let mut reader = Reader::new(None, args.alpha.alpha, "tiles and their maps have one size");
+    let read = args.images.iter().map(|tile| tile.read(&mut reader));
+    let mut materials = read.collect::<Result<Vec<Material>>>()?;
+    reader.agree(&args.images, &mut materials)?;
+    for material in &mut materials {
+        material.maps.extend(material.height.take().map(Map::Value));
+    }
+    let has_alpha = alpha::multiply(&mut materials)?;
+    let is_deep = materials.iter().any(|material| material.is_deep);
+    let maps = materials.into_iter().map(|material| material.maps);
+    Ok((maps.collect(), has_alpha, is_deep))
+}
+
+/// Adds what to do about what is refused.
+fn advise(error: TileError) -> Error {
+    let hint = match error.kind() {
+        TileErrorKind::Margin { .. } => {
+            "take a smaller --frozen or --margin for disturb, or a smaller --width for borders"
+        }
+        TileErrorKind::KindMismatch { .. } => "give gray images for a map in all tiles, or in none",
+        TileErrorKind::NotFinite { .. } => return error.into(),
+        _ => return Error::new(error).wrong_value(),
+    };
+    Error::new(error).hint(hint).wrong_value()
+}

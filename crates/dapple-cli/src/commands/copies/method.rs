@@ -1,0 +1,232 @@
+//! The methods of `dapple copies`, and the options that each of them takes.
+
+use crate::error::{Hint, usage};
+use crate::words::Word;
+use anyhow::Result;
+use clap::ValueEnum;
+use dapple::hash::Seed;
+use dapple::tile::{BorderSource, CornerTiles, Disturbance, Map, MatchBorders, TileError};
+use serde::Serialize;
+
+/// The most tiles of corners.
+const CORNERS_MAX: usize = 4;
+
+/// How copies become unlike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Name {
+    Disturb,
+    Corners,
+    Borders,
+}
+
+/// The method and its options.
+#[derive(clap::Args, Clone, Debug, Serialize)]
+#[command(next_help_heading = "Method")]
+pub(super) struct MethodArgs {
+    /// How; by default after the number of tiles.
+    #[arg(long, value_enum)]
+    method: Option<Name>,
+
+    /// disturb: how many pixels along the borders of a tile stay as they are; by default 4, or an eighth of the shorter side if
+    /// that is less.
+    #[arg(long, value_name = "PX")]
+    frozen: Option<u32>,
+
+    /// disturb: how many more pixels the cut may take, together with the frozen ones at most half of a side; by default a
+    /// quarter of the shorter side.
+    #[arg(long, value_name = "PX")]
+    margin: Option<u32>,
+
+    /// borders: how far from its borders a tile changes, in pixels, from 1 to half of a side; by default a quarter of the shorter
+    /// side.
+    #[arg(long, value_name = "PX")]
+    width: Option<u32>,
+
+    /// borders: what all borders become: the border of the first tile, or its middle, if it does not repeat; by default the
+    /// border.
+    #[arg(long, value_name = "WHICH", value_parser = Word::<BorderSource>::of(&["border", "middle"]))]
+    source: Option<BorderSource>,
+
+    /// corners: the share of the shorter side that cuts may take, above 0 and at most 1; the more, the less the pieces are squares;
+    /// by default 0.75.
+    #[arg(long, value_name = "PART")]
+    share: Option<f64>,
+}
+
+/// A method with its options, of which those that depend on the tiles may be left open.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Method {
+    Disturb {
+        frozen: Option<u32>,
+        margin: Option<u32>,
+    },
+    Corners {
+        share: f64,
+    },
+    Borders {
+        width: Option<u32>,
+        source: BorderSource,
+    },
+}
+
+impl MethodArgs {
+    /// The method for so many tiles, which are or are not what is to be written.
+    ///
+    /// # Errors
+    ///
+    /// If it is none for so many, or an option of another method was given.
+    pub(super) fn method(&self, count: usize, writes_tiles: bool) -> Result<Method> {
+        let name = self.method.unwrap_or(match count {
+            1 => Name::Disturb,
+            2..=CORNERS_MAX => Name::Corners,
+            _ => Name::Borders,
+        });
+        self.check_used(name)?;
+        match name {
+            Name::Disturb if count != 1 => Err(usage(format!(
+                "--method disturb takes one tile, and there are {count}"
+            ))
+            .hint("take --method corners or borders")),
+            Name::Disturb if writes_tiles => Err(usage(
+                "--tiles means nothing to disturb, whose copies are all different",
+            )
+            .hint("add --size WxH, or more tiles")),
+            Name::Corners if !(2..=CORNERS_MAX).contains(&count) => Err(usage(format!(
+                "--method corners takes 2 to {CORNERS_MAX} tiles, and there are {count}"
+            ))
+            .hint("take --method borders for more, or disturb for one")),
+            Name::Disturb => Ok(Method::Disturb {
+                frozen: self.frozen,
+                margin: self.margin,
+            }),
+            Name::Corners => Ok(Method::Corners {
+                share: self.share.unwrap_or(0.75),
+            }),
+            Name::Borders => Ok(Method::Borders {
+                width: self.width,
+                source: self.source.unwrap_or_default(),
+            }),
+        }
+    }
+
+    /// Refuses options of other methods, which would have no effect.
+    fn check_used(&self, method: Name) -> Result<()> {
+        for (option, is_given, used_by) in [
+            ("frozen", self.frozen.is_some(), Name::Disturb),
+            ("margin", self.margin.is_some(), Name::Disturb),
+            ("width", self.width.is_some(), Name::Borders),
+            ("source", self.source.is_some(), Name::Borders),
+            ("share", self.share.is_some(), Name::Corners),
+        ] {
+            if is_given && method != used_by {
+                let name = used_by.to_possible_value();
+                let name = name.map_or_else(String::new, |value| value.get_name().to_owned());
+                let message = format!("--{option} means nothing to this method");
+                return Err(usage(message).hint(format!("add --method {name}")));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Method {
+    /// The names of the tiles of a set made of so many.
+    pub(super) fn tile_names(self, count: usize) -> Vec<String> {
+        let Self::Corners { .. } = self else {
+            return (1..=count).map(|tile| tile.to_string()).collect();
+        };
+        let corner = |index: usize, place: u32| (index / count.pow(place) % count + 1).to_string();
+        (0..count.pow(4))
+            .map(|index| [0, 1, 2, 3].map(|place| corner(index, place)).concat())
+            .collect()
+    }
+}
+
+/// A method, and the maps of the tiles that it is to take, at least one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tiles<'a> {
+    pub(super) method: Method,
+    pub(super) materials: &'a [Vec<Map>],
+}
+
+impl Tiles<'_> {
+    /// A map.
+    ///
+    /// # Errors
+    ///
+    /// What the method refuses.
+    pub(super) fn render(&self, seed: Seed, size: [u32; 2]) -> Result<Vec<Map>, TileError> {
+        match self.method {
+            Method::Disturb { frozen, margin } => {
+                let shorter = self.shorter();
+                let default = Disturbance::new(seed);
+                let disturbance = Disturbance {
+                    frozen: frozen.unwrap_or(default.frozen.min(shorter / 8)),
+                    margin: margin.unwrap_or(shorter / 4),
+                    seed,
+                };
+                disturbance.render_maps(&self.materials[0], [0, 0], size)
+            }
+            Method::Corners { share } => {
+                // A map of whole tiles repeats.
+                let side = self.materials[0][0].size();
+                let period = [0, 1].map(|axis| {
+                    let tiles = size[axis] / side[axis];
+                    (size[axis] % side[axis] == 0).then_some(tiles)
+                });
+                let tiles = self.corners(share)?.with_period(period)?;
+                tiles.render(seed, [0, 0], size)
+            }
+            Method::Borders { width, source } => {
+                let borders = self.borders(width, source);
+                borders.render(self.materials, seed, [0, 0], size)
+            }
+        }
+    }
+
+    /// The tiles of a set, in the order of their names.
+    ///
+    /// # Errors
+    ///
+    /// What the method refuses.
+    pub(super) fn tiles(&self) -> Result<Vec<Vec<Map>>, TileError> {
+        match self.method {
+            Method::Corners { share } => self.corners(share)?.all(),
+            Method::Borders { width, source } => {
+                self.borders(width, source).apply_maps(self.materials)
+            }
+            Method::Disturb { .. } => Ok(Vec::new()),
+        }
+    }
+
+    fn corners(&self, share: f64) -> Result<CornerTiles, TileError> {
+        CornerTiles::new(self.materials)?.with_width(share)
+    }
+
+    fn borders(&self, width: Option<u32>, source: BorderSource) -> MatchBorders {
+        MatchBorders {
+            width: width.unwrap_or((self.shorter() / 4).max(1)),
+            source,
+        }
+    }
+
+    fn shorter(&self) -> u32 {
+        let [width, height] = self.materials[0][0].size();
+        width.min(height)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Method;
+
+    #[test]
+    fn tiles_of_corners_are_named_by_the_tiles_at_their_corners() {
+        let names = Method::Corners { share: 0.5 }.tile_names(3);
+        assert_eq!(names.len(), 81);
+        assert_eq!(names[..4], ["1111", "2111", "3111", "1211"]);
+        // The order of the library: a + b C + c C² + d C³.
+        assert_eq!(names[2 + 3 + 27], "3212");
+    }
+}

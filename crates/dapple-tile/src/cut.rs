@@ -1,0 +1,295 @@
+//! A cut between two images along the line where they are most alike.
+//!
+//! On the left of the cut the first image is seen, on the right the second. In each row the cut passes one pixel, and it
+//! moves at most one column from row to row: the cut of Alexei A. Efros and William T. Freeman, "Image Quilting for Texture
+//! Synthesis and Transfer", SIGGRAPH 2001, <https://doi.org/10.1145/383259.383296>, the cheapest of all such lines.
+//!
+//! Two images differ in a pixel by the sum over all planes of their squared differences, each plane divided by its variance:
+//! a height in meters counts as much as a color. Across the cut the two are mixed along a short smooth ramp, where they are
+//! alike and a mean of both does no harm. All other pixels are copies. In each row a cut costs what the pixels of the ramp
+//! differ by, each times w (1 - w) for its weight w: the variance that the mean loses.
+
+use crate::TileError;
+use crate::cut_path::{closed_path, open_path, path_between};
+use dapple_raster::Raster;
+
+/// Half of the width over which a cut between unlike tiles is softened, in pixels.
+const HALF_WIDTH: f64 = 2.0;
+
+/// The columns that a cut and its ramp may take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Band {
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+}
+
+/// Where a cut begins and ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ends {
+    /// Anywhere.
+    Free,
+    /// The last pixel is below the first one or beside it, as in rows that repeat.
+    Closed,
+    /// In these columns of the first and the last row.
+    At([u32; 2]),
+}
+
+/// A cut: for each row, the column of the pixel that is half of either image.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Cut {
+    columns: Vec<u32>,
+    half_width: f64,
+}
+
+impl Cut {
+    /// The cheapest cut in a band. The scales are those of the planes, as [`scales`] gives them.
+    pub(crate) fn cheapest(
+        images: [&[Raster<f32>]; 2],
+        scales: &[f64],
+        band: Band,
+        ends: Ends,
+    ) -> Result<Self, TileError> {
+        let half_width = half_width(band);
+        // A band of no column still has a first one on the right of it.
+        let size = [
+            band.count.max(1),
+            images[0].first().map_or(1, Raster::height),
+        ];
+        let mut differences = Raster::filled(size, 0.0)?;
+        for ((a, b), scale) in images[0].iter().zip(images[1]).zip(scales) {
+            add_differences([a, b], band.first as usize, *scale, &mut differences);
+        }
+        let costs = costs(&differences, half_width)?;
+        let first = band.first + inset(half_width);
+        let mut columns = match ends {
+            Ends::Free => open_path(&costs),
+            Ends::Closed => closed_path(&costs),
+            Ends::At(ends) => path_between(&costs, ends.map(|column| column - first)),
+        };
+        columns.iter_mut().for_each(|column| *column += first);
+        Ok(Self {
+            columns,
+            half_width,
+        })
+    }
+
+    /// A cut straight down the middle of a band.
+    pub(crate) fn straight(band: Band, height: u32) -> Self {
+        Self {
+            columns: vec![band.first + band.count / 2; height as usize],
+            half_width: half_width(band),
+        }
+    }
+
+    /// The columns of its first and its last pixel.
+    pub(crate) fn ends(&self) -> [u32; 2] {
+        [self.columns[0], self.columns[self.columns.len() - 1]]
+    }
+
+    /// The weight of the second image.
+    pub(crate) fn weight(&self, column: u32, row: u32) -> f64 {
+        let cut = self.columns[row as usize];
+        weight(f64::from(column) - f64::from(cut), self.half_width)
+    }
+
+    /// The two images joined.
+    pub(crate) fn join(&self, [a, b]: [&Raster<f32>; 2]) -> Result<Raster<f32>, TileError> {
+        a.check_same_size(b.size())?;
+        Ok(Raster::from_rows(a.size(), |row| {
+            let pixels = a.row(row).iter().zip(b.row(row)).zip(0..);
+            pixels.map(move |((&a, &b), column)| mix(a, b, self.weight(column, row)))
+        })?)
+    }
+}
+
+/// Half of the width over which a cut in a band is softened, so that the ramp fits into it.
+fn half_width(band: Band) -> f64 {
+    HALF_WIDTH.min(f64::from(band.count) / 2.0)
+}
+
+/// What a cut through each of the pixels costs that leave room for its ramp.
+fn costs(differences: &Raster<f64>, half_width: f64) -> Result<Raster<f64>, TileError> {
+    let inset = inset(half_width);
+    let factors: Vec<f64> = (0..=2 * inset)
+        .map(|column| weight(f64::from(column) - f64::from(inset), half_width))
+        .map(|weight| weight * (1.0 - weight))
+        .collect();
+    let size = [differences.width() - 2 * inset, differences.height()];
+    Ok(Raster::from_fn(size, |column, row| {
+        let pixels = &differences.row(row)[column as usize..][..factors.len()];
+        let products = pixels.iter().zip(&factors);
+        products
+            .map(|(difference, factor)| difference * factor)
+            .sum()
+    })?)
+}
+
+/// A part of the way from one value to another; a copy at both ends.
+pub(crate) fn mix(a: f32, b: f32, weight: f64) -> f32 {
+    match weight {
+        0.0 => a,
+        1.0 => b,
+        _ => (f64::from(a) * (1.0 - weight) + f64::from(b) * weight) as f32,
+    }
+}
+
+/// The weight of what lies right of a cut, so many columns from it: 0 on the left, 1 on the right, ½ on it.
+pub(crate) fn weight(from_cut: f64, half_width: f64) -> f64 {
+    if half_width > 0.0 {
+        cubic_ramp((from_cut + half_width) / (2.0 * half_width))
+    } else {
+        f64::from(u8::from(from_cut >= 0.0))
+    }
+}
+
+/// How many columns at both ends of a band the cut keeps away from, so that its ramp stays inside.
+pub(crate) fn inset(half_width: f64) -> u32 {
+    (half_width.ceil() as u32).saturating_sub(1)
+}
+
+/// Adds what two planes differ by, in as many columns from `first` on as there are costs.
+pub(crate) fn add_differences(
+    [a, b]: [&Raster<f32>; 2],
+    first: usize,
+    scale: f64,
+    costs: &mut Raster<f64>,
+) {
+    for (row, costs) in (0..).zip(costs.view_mut().rows_mut()) {
+        let [a, b] = [a, b].map(|plane| &plane.row(row)[first..]);
+        for ((cost, a), b) in costs.iter_mut().zip(a).zip(b) {
+            let difference = (f64::from(*a) - f64::from(*b)) * scale;
+            *cost += difference * difference;
+        }
+    }
+}
+
+/// For each plane, one over the root of its mean variance in all materials, or 0 if it has one value in each.
+pub(crate) fn scales(materials: &[&[Raster<f32>]]) -> Vec<f64> {
+    let n_planes = materials.first().map_or(0, |planes| planes.len());
+    let scale = |plane: usize| {
+        let deviations = materials
+            .iter()
+            .map(|planes| planes[plane].statistics().deviation);
+        let variance = deviations.map(|d| d * d).sum::<f64>() / materials.len() as f64;
+        if variance > 0.0 {
+            1.0 / variance.sqrt()
+        } else {
+            0.0
+        }
+    };
+    (0..n_planes).map(scale).collect()
+}
+
+/// The cubic 3t² − 2t³ from 0 to 1, flat outside.
+fn cubic_ramp(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Band, Cut, Ends, scales};
+    use dapple_hash::{Seed, hash2};
+    use dapple_raster::Raster;
+
+    /// Small whole numbers, so that sums are exact in any order.
+    fn image(seed: u64, size: [u32; 2]) -> Raster<f32> {
+        let value = |x: u32, y: u32| hash2(Seed(seed), [x.into(), y.into()], 0) % 8;
+        Raster::from_fn(size, |x, y| value(x, y) as f32).unwrap()
+    }
+
+    /// Σ w (1 - w) d² over all pixels.
+    fn price(cut: &Cut, images: [&Raster<f32>; 2]) -> f64 {
+        let [width, height] = images[0].size();
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let lost = pixels.map(|(x, y)| {
+            let [a, b] = images.map(|image| f64::from(image.row(y)[x as usize]));
+            let weight = cut.weight(x, y);
+            weight * (1.0 - weight) * (a - b) * (a - b)
+        });
+        lost.sum()
+    }
+
+    /// All cuts that pass columns `from..=to` and move at most one column from row to row.
+    fn all_cuts(from: u32, to: u32, height: usize, half_width: f64) -> Vec<Cut> {
+        let mut paths: Vec<Vec<u32>> = (from..=to).map(|column| vec![column]).collect();
+        for _ in 1..height {
+            let longer = |path: Vec<u32>| {
+                let end = path[path.len() - 1];
+                let next = (from..=to).filter(move |column| column.abs_diff(end) <= 1);
+                next.map(move |column| [path.as_slice(), &[column]].concat())
+            };
+            paths = paths.into_iter().flat_map(longer).collect();
+        }
+        let cut = |columns| Cut {
+            columns,
+            half_width,
+        };
+        paths.into_iter().map(cut).collect()
+    }
+
+    #[test]
+    fn cheapest_loses_no_more_than_any_other_cut_of_its_kind() {
+        for (size, band, [from, to], half_width) in [
+            ([9, 5], [1, 7], [2, 6], 2.0),
+            ([6, 6], [0, 6], [1, 4], 2.0),
+            ([5, 4], [1, 3], [2, 2], 1.5),
+            ([4, 6], [1, 2], [1, 2], 1.0),
+            ([3, 5], [1, 1], [1, 1], 0.5),
+        ] {
+            let band = Band {
+                first: band[0],
+                count: band[1],
+            };
+            for seed in 0..20 {
+                let images = [seed, seed + 100].map(|seed| image(seed, size));
+                let [a, b] = [&images[..1], &images[1..]];
+                for ends in [Ends::Free, Ends::Closed, Ends::At([from, to.min(from + 2)])] {
+                    let found = Cut::cheapest([a, b], &[1.0], band, ends).unwrap();
+                    let holds = |cut: &Cut| match ends {
+                        Ends::Free => true,
+                        Ends::Closed => cut.ends()[0].abs_diff(cut.ends()[1]) <= 1,
+                        Ends::At(ends) => cut.ends() == ends,
+                    };
+                    let all = all_cuts(from, to, size[1] as usize, half_width);
+                    let all = all.iter().filter(|cut| holds(cut));
+                    let prices = all.map(|cut| price(cut, [&a[0], &b[0]]));
+                    let best = prices.fold(f64::INFINITY, f64::min);
+                    let price = price(&found, [&a[0], &b[0]]);
+                    assert!(holds(&found), "{ends:?}: {found:?}");
+                    // Sums of the same terms in another order.
+                    let gap = price - best;
+                    assert!(
+                        gap <= 1e-12 * best,
+                        "{gap}: seed {seed}, {size:?}, {ends:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn join_is_the_first_image_on_the_left_and_the_second_on_the_right() {
+        let images = [1.0, 2.0].map(|value| Raster::filled([20, 9], value).unwrap());
+        let band = Band { first: 5, count: 8 };
+        let cut = Cut::straight(band, 9);
+        let joined = cut.join([&images[0], &images[1]]).unwrap();
+        for row in joined.view().rows() {
+            assert!(row[..8].iter().all(|value| *value == 1.0), "{row:?}");
+            assert!(row[8..11].is_sorted() && row[9] == 1.5, "{row:?}");
+            assert!(row[11..].iter().all(|value| *value == 2.0), "{row:?}");
+        }
+    }
+
+    #[test]
+    fn scales_make_planes_of_unlike_units_count_alike() {
+        let plane = image(1, [20, 20]);
+        let flat = plane.map(|_| 3.0);
+        let planes = [plane.clone(), plane.map(|value| 1000.0 * value), flat];
+        let [one, thousand, none] = scales(&[&planes, &planes])[..] else {
+            panic!("a scale for each plane")
+        };
+        assert!((one / thousand / 1000.0 - 1.0).abs() < 1e-6);
+        assert_eq!(none, 0.0);
+    }
+}

@@ -1,0 +1,139 @@
+//! An image in the frame of another: the borders of the one, the middle of the other, and a cut between them all around.
+//!
+//! Along each axis there is a cut at either end: first those on the left and on the right, from the top to the bottom;
+//! then, on the result, those above and below. Where both sides of a cut are the frame it costs nothing, so that the four
+//! cuts become one line around the middle.
+
+use crate::TileError;
+use crate::axis::{Axis, each_axis, transpose};
+use crate::cut::{Band, Cut, Ends, scales};
+use dapple_raster::Raster;
+
+/// How wide a frame is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Frame {
+    /// How many pixels along each border are the frame's.
+    pub(crate) whole: u32,
+    /// How many more pixels the cut and its ramp may take. Both together are at most half of a side.
+    pub(crate) band: u32,
+}
+
+/// The planes in a frame: all are cut along the same line.
+pub(crate) fn framed(
+    planes: &[Raster<f32>],
+    frame: &[Raster<f32>],
+    width: Frame,
+) -> Result<Vec<Raster<f32>>, TileError> {
+    framed_along(planes, width, |_, axis| match axis {
+        Axis::X => Ok(frame.to_vec()),
+        Axis::Y => frame.iter().map(transpose).collect(),
+    })
+}
+
+/// The planes in a frame that is made for each axis from what there is by then, its rows along that axis.
+pub(crate) fn framed_along(
+    planes: &[Raster<f32>],
+    width: Frame,
+    frame: impl Fn(&[Raster<f32>], Axis) -> Result<Vec<Raster<f32>>, TileError>,
+) -> Result<Vec<Raster<f32>>, TileError> {
+    each_axis(planes, [true; 2], |planes, axis| {
+        let mut frame = frame(planes, axis)?;
+        let mut planes = planes.to_vec();
+        let scales = scales(&[&planes, &frame]);
+        let band = Band {
+            first: width.whole,
+            count: width.band,
+        };
+        // The cuts above and below meet themselves where columns repeat.
+        let ends = match axis {
+            Axis::X => Ends::Free,
+            Axis::Y => Ends::Closed,
+        };
+        // The end on the left, and after mirroring that on the right, which is mirrored back.
+        for _ in 0..2 {
+            let cut = Cut::cheapest([&frame, &planes], &scales, band, ends)?;
+            let pairs = frame.iter().zip(&planes);
+            let joined = pairs.map(|(frame, plane)| mirrored(&cut.join([frame, plane])?));
+            planes = joined.collect::<Result<_, _>>()?;
+            frame = frame.iter().map(mirrored).collect::<Result<_, _>>()?;
+        }
+        Ok(planes)
+    })
+}
+
+/// The raster with its columns in reverse.
+fn mirrored(plane: &Raster<f32>) -> Result<Raster<f32>, TileError> {
+    Ok(Raster::from_rows(plane.size(), |row| {
+        plane.row(row).iter().rev().copied()
+    })?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Frame, framed};
+    use crate::test_fields::{gravel, turned};
+    use core::slice;
+    use dapple_raster::Raster;
+
+    fn in_frame(plane: &Raster<f32>, frame: &Raster<f32>, width: Frame) -> Raster<f32> {
+        let planes = framed(slice::from_ref(plane), slice::from_ref(frame), width);
+        planes.unwrap().swap_remove(0)
+    }
+
+    #[test]
+    fn framed_has_whole_pieces_of_both_and_a_thin_line_between_them() {
+        let width = Frame { whole: 3, band: 12 };
+        for seed in 0..8 {
+            let [plane, frame] = [seed, seed + 50].map(|seed| gravel(seed, [50, 41], true));
+            let made = in_frame(&plane, &frame, width);
+            let mut n_mixed = 0;
+            for (x, y) in (0..41).flat_map(|y| (0..50).map(move |x| (x, y))) {
+                let [plane, frame, made] =
+                    [&plane, &frame, &made].map(|raster| raster.row(y)[x as usize]);
+                let from_border = x.min(49 - x).min(y.min(40 - y));
+                match from_border {
+                    0..3 => assert_eq!(made, frame, "{x}, {y}"),
+                    15.. => assert_eq!(made, plane, "{x}, {y}"),
+                    _ => n_mixed += u32::from(made != frame && made != plane),
+                }
+            }
+            // Three pixels of each row or column that a cut crosses, and the cuts are as long as the sides.
+            assert!(n_mixed <= 3 * 2 * (50 + 41), "{n_mixed} pixels are mixed");
+        }
+    }
+
+    #[test]
+    fn framed_shows_no_cut_where_there_is_a_way_of_no_difference() {
+        // The two differ but for a ring of equal pixels whose distance from the border varies.
+        let ring = |x: u32, y: u32| {
+            let from_border = x.min(39 - x).min(y.min(39 - y));
+            let wave = 7 + (x / 5 + y / 7) % 3;
+            (wave..wave + 5).contains(&from_border)
+        };
+        let plane = Raster::from_fn([40; 2], |x, y| if ring(x, y) { 0.0 } else { 1.0 });
+        let frame = Raster::from_fn([40; 2], |x, y| if ring(x, y) { 0.0 } else { -1.0 });
+        let made = in_frame(
+            &plane.unwrap(),
+            &frame.unwrap(),
+            Frame { whole: 2, band: 16 },
+        );
+        for (x, y) in (0..40).flat_map(|y| (0..40).map(move |x| (x, y))) {
+            let value = made.row(y)[x as usize];
+            assert!([-1.0, 0.0, 1.0].contains(&value), "{value} at {x}, {y}");
+        }
+    }
+
+    #[test]
+    fn framed_with_a_hard_edge_is_a_rectangle_in_a_rectangle() {
+        let [plane, frame] = [1.0, 2.0].map(|value| Raster::filled([9, 7], value).unwrap());
+        for whole in 0..=3 {
+            let made = in_frame(&plane, &frame, Frame { whole, band: 0 });
+            let expected = Raster::from_fn([9, 7], |x, y| {
+                let from_border = x.min(8 - x).min(y.min(6 - y));
+                if from_border < whole { 2.0 } else { 1.0 }
+            });
+            assert_eq!(made, expected.unwrap());
+            assert_eq!(turned(&turned(&made)), made);
+        }
+    }
+}
