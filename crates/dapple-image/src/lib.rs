@@ -11,10 +11,10 @@
 //! | color | [`write_color_png`], [`write_color_alpha_png`] | [`write_png`], [`encode_png`] |
 //! | any numbers | [`write_gray_exr`], [`write_color_exr`], [`write_color_alpha_exr`] | [`write_exr`], [`encode_exr`] |
 //!
-//! An image that is too large for memory is written row by row with a [`RowWriter`], as PNG or as OpenEXR in tiles; its
-//! [`Content`] and its [`Encoding`] say how.
+//! An image that is too large for memory is written row by row with a [`RowWriter`], as PNG, as OpenEXR in tiles, as a
+//! NumPy array or as raw heights; its [`Content`] and its [`Encoding`] say how.
 //!
-//! [`read_image`] reads all of them back, and JPEG, too:
+//! [`read_image`] reads images back, and JPEG, too:
 //!
 //! ```no_run
 //! use dapple_image::{Depth, Limits, read_image, write_gray_png};
@@ -37,6 +37,7 @@ mod image;
 mod jpeg;
 mod limits;
 mod png;
+mod raw;
 mod rows;
 mod shortcut;
 
