@@ -1,7 +1,7 @@
 //! A baked material in light: on a plane, seen at a slant, or on a ball.
 
 use crate::baking::advise;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use clap::ValueEnum;
 use dapple::color::{LinearRgb, NormalY};
 use dapple::points::glam::{DVec2, DVec3, Vec3};
@@ -89,26 +89,24 @@ impl Maps {
             maps: vec![MapKind::Normal, MapKind::Albedo, MapKind::Orm],
             ..BakeOptions::default()
         };
-        let (mut normal, mut albedo, mut orm) = (Vec::new(), Vec::new(), Vec::new());
-        for band in Bake::new(&plan, &options).map_err(advise)? {
-            for (_, rows) in band.map_err(advise)?.maps {
-                match rows {
-                    MapRows::Normal(rows) => {
-                        let rows = rows.into_pixels().into_iter();
-                        normal.extend(rows.map(|normal| Vec3::from(normal.to_array())));
-                    }
-                    MapRows::Color(rows) => albedo.extend(rows.into_pixels()),
-                    MapRows::Packed(rows) => {
-                        orm.extend(rows.into_pixels().into_iter().map(Vec3::from));
-                    }
-                    _ => {}
-                }
-            }
-        }
+        let bake = Bake::new(&plan, &options).map_err(advise)?;
+        let mut maps = bake
+            .whole_maps()
+            .map_err(advise)?
+            .into_iter()
+            .map(|(_, map)| map);
+        let (
+            Some(MapRows::Normal(normal)),
+            Some(MapRows::Color(albedo)),
+            Some(MapRows::Packed(orm)),
+        ) = (maps.next(), maps.next(), maps.next())
+        else {
+            bail!("a map of the preview was not baked");
+        };
         Ok(Self {
-            normal: Raster::from_vec(size, normal)?,
-            albedo: Raster::from_vec(size, albedo)?,
-            orm: Raster::from_vec(size, orm)?,
+            normal: normal.map(|normal| Vec3::from(normal.to_array())),
+            albedo,
+            orm: orm.map(|&orm| Vec3::from(orm)),
             tiles,
         })
     }

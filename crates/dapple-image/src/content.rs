@@ -27,6 +27,10 @@ pub enum Content {
     /// Three numbers that are no color, such as occlusion, roughness and metallic. PNG: RGB from 0 to 1, linear, without a
     /// color chunk. OpenEXR: the planes `R`, `G` and `B`, any numbers.
     Packed,
+    /// Four numbers that are no color, of which the fourth is no coverage, such as metallic, occlusion, a mask and
+    /// smoothness. PNG: RGBA from 0 to 1, linear, without a color chunk. OpenEXR: the planes `R`, `G`, `B` and `A`, any
+    /// numbers.
+    PackedFour,
 }
 
 /// How many bits a channel has in a PNG file.
@@ -49,6 +53,13 @@ pub enum Encoding {
     /// OpenEXR with 32-bit floating point, in tiles.
     #[cfg(feature = "exr")]
     Exr,
+    /// A NumPy array (`.npy`, format 1.0) of little-endian `f32` in C order, with the shape (height, width) for gray,
+    /// (height, width, 3) and, with alpha or a fourth number, (height, width, 4). The numbers are as they are: colors
+    /// linear, alpha not multiplied into them, the parts of normals from -1 to 1.
+    Npy,
+    /// Raw heights (`.r16`, and `.raw` for some): `round(value · 65535)` as two bytes, the low one first, the top row
+    /// first, without a header. Only for [`Content::Gray`].
+    R16,
 }
 
 impl Content {
@@ -60,6 +71,7 @@ impl Content {
             Self::ColorAlpha => "RGB with alpha",
             Self::Normal => "a normal map",
             Self::Packed => "packed maps",
+            Self::PackedFour => "four packed maps",
         }
     }
 
@@ -67,7 +79,7 @@ impl Content {
     pub(crate) const fn transfer(self) -> Transfer {
         match self {
             Self::Color | Self::ColorAlpha => Transfer::Srgb,
-            Self::Gray | Self::Normal | Self::Packed => Transfer::Data,
+            Self::Gray | Self::Normal | Self::Packed | Self::PackedFour => Transfer::Data,
         }
     }
 
@@ -76,7 +88,7 @@ impl Content {
         match self {
             Self::Gray => &["Y"],
             Self::Color | Self::Normal | Self::Packed => &["B", "G", "R"],
-            Self::ColorAlpha => &["A", "B", "G", "R"],
+            Self::ColorAlpha | Self::PackedFour => &["A", "B", "G", "R"],
         }
     }
 }
@@ -93,6 +105,8 @@ pub(crate) trait Pixel: Sync {
     type Eight: PngPixel;
     /// Its codes of 16 bits.
     type Sixteen: PngPixel;
+    /// Its numbers as an array has them.
+    type Numbers: AsRef<[f32]>;
 
     fn eight(&self) -> Self::Eight;
 
@@ -100,12 +114,16 @@ pub(crate) trait Pixel: Sync {
 
     /// Its number in a plane, by the place of that in [`Content::planes`].
     fn part(&self, plane: usize) -> f32;
+
+    /// Its numbers, neither coded nor moved.
+    fn numbers(&self) -> Self::Numbers;
 }
 
 impl Pixel for f32 {
     const CONTENT: Content = Content::Gray;
     type Eight = u8;
     type Sixteen = u16;
+    type Numbers = [f32; 1];
 
     #[inline(always)]
     fn eight(&self) -> u8 {
@@ -121,12 +139,18 @@ impl Pixel for f32 {
     fn part(&self, _plane: usize) -> f32 {
         *self
     }
+
+    #[inline(always)]
+    fn numbers(&self) -> [f32; 1] {
+        [*self]
+    }
 }
 
 impl Pixel for LinearRgb {
     const CONTENT: Content = Content::Color;
     type Eight = [u8; 3];
     type Sixteen = [u16; 3];
+    type Numbers = [f32; 3];
 
     #[inline(always)]
     fn eight(&self) -> [u8; 3] {
@@ -142,12 +166,18 @@ impl Pixel for LinearRgb {
     fn part(&self, plane: usize) -> f32 {
         [self.b, self.g, self.r][plane]
     }
+
+    #[inline(always)]
+    fn numbers(&self) -> [f32; 3] {
+        self.to_array()
+    }
 }
 
 impl Pixel for [f32; 3] {
     const CONTENT: Content = Content::Packed;
     type Eight = [u8; 3];
     type Sixteen = [u16; 3];
+    type Numbers = Self;
 
     #[inline(always)]
     fn eight(&self) -> [u8; 3] {
@@ -163,12 +193,45 @@ impl Pixel for [f32; 3] {
     fn part(&self, plane: usize) -> f32 {
         self[2 - plane]
     }
+
+    #[inline(always)]
+    fn numbers(&self) -> Self {
+        *self
+    }
+}
+
+impl Pixel for [f32; 4] {
+    const CONTENT: Content = Content::PackedFour;
+    type Eight = [u8; 4];
+    type Sixteen = [u16; 4];
+    type Numbers = Self;
+
+    #[inline(always)]
+    fn eight(&self) -> [u8; 4] {
+        self.map(u8::from_unit)
+    }
+
+    #[inline(always)]
+    fn sixteen(&self) -> [u16; 4] {
+        self.map(u16::from_unit)
+    }
+
+    #[inline(always)]
+    fn part(&self, plane: usize) -> f32 {
+        self[[3, 2, 1, 0][plane]]
+    }
+
+    #[inline(always)]
+    fn numbers(&self) -> Self {
+        *self
+    }
 }
 
 impl Pixel for LinearRgba {
     const CONTENT: Content = Content::ColorAlpha;
     type Eight = [u8; 4];
     type Sixteen = [u16; 4];
+    type Numbers = [f32; 4];
 
     #[inline(always)]
     fn eight(&self) -> [u8; 4] {
@@ -185,12 +248,19 @@ impl Pixel for LinearRgba {
         let LinearRgb { r, g, b } = self.color * self.alpha;
         [self.alpha, b, g, r][plane]
     }
+
+    #[inline(always)]
+    fn numbers(&self) -> [f32; 4] {
+        let LinearRgb { r, g, b } = self.color;
+        [r, g, b, self.alpha]
+    }
 }
 
 impl Pixel for Normal {
     const CONTENT: Content = Content::Normal;
     type Eight = [u8; 3];
     type Sixteen = [u16; 3];
+    type Numbers = [f32; 3];
 
     #[inline(always)]
     fn eight(&self) -> [u8; 3] {
@@ -205,5 +275,10 @@ impl Pixel for Normal {
     #[inline(always)]
     fn part(&self, plane: usize) -> f32 {
         [self.z, self.y, self.x][plane] * 0.5 + 0.5
+    }
+
+    #[inline(always)]
+    fn numbers(&self) -> [f32; 3] {
+        self.to_array()
     }
 }

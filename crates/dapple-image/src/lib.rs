@@ -11,10 +11,10 @@
 //! | color | [`write_color_png`], [`write_color_alpha_png`] | [`write_png`], [`encode_png`] |
 //! | any numbers | [`write_gray_exr`], [`write_color_exr`], [`write_color_alpha_exr`] | [`write_exr`], [`encode_exr`] |
 //!
-//! An image that is too large for memory is written row by row with a [`RowWriter`], as PNG or as OpenEXR in tiles; its
-//! [`Content`] and its [`Encoding`] say how.
+//! An image that is too large for memory is written row by row with a [`RowWriter`], as PNG, as OpenEXR in tiles, as a
+//! NumPy array or as raw heights; its [`Content`] and its [`Encoding`] say how.
 //!
-//! [`read_image`] reads all of them back, and JPEG, too:
+//! [`read_image`] reads images back, and JPEG, too:
 //!
 //! ```no_run
 //! use dapple_image::{Depth, Limits, read_image, write_gray_png};
@@ -48,7 +48,7 @@ mod image;
 mod jpeg;
 mod limits;
 mod png;
-#[cfg(any(feature = "png", feature = "exr"))]
+mod raw;
 mod rows;
 
 pub use self::exr::{ExrImage, ExrPlane};
@@ -69,7 +69,6 @@ pub use channels::Channels;
 pub use content::{Content, Depth, Encoding};
 pub use error::{ImageError, ImageErrorKind};
 pub use limits::Limits;
-#[cfg(any(feature = "png", feature = "exr"))]
 pub use rows::RowWriter;
 
 #[cfg(all(test, feature = "png", feature = "exr"))]

@@ -7,6 +7,7 @@ use crate::content::Pixel;
 use crate::exr::TileStream;
 #[cfg(feature = "png")]
 use crate::png::PngStream;
+use crate::raw::RawStream;
 use crate::{Content, Encoding, ImageError, ImageErrorKind};
 use core::fmt;
 use dapple_color::{LinearRgb, LinearRgba, Normal};
@@ -18,7 +19,7 @@ use std::io::{Seek, Write};
 /// The rows come in bands of any height; how they are divided does not change a byte of the file. PNG takes a few rows of
 /// memory, and gives the bytes of [`encode_png`](crate::encode_png). OpenEXR is written in tiles of 64 × 64 pixels and
 /// takes a band of these: 64 rows of 4 bytes for each plane. It is compressed on all cores where the feature `rayon` is
-/// on.
+/// on. NumPy arrays and raw heights take a row.
 ///
 /// The sink should be empty, and buffered if it is a file. What is in it is an image only after
 /// [`finish`](Self::finish).
@@ -58,6 +59,8 @@ enum File<W: Write + Seek> {
     Sixteen(Box<PngStream<W>>),
     #[cfg(feature = "exr")]
     Exr(Box<TileStream<W>>),
+    Npy(RawStream<W>),
+    R16(RawStream<W>),
 }
 
 impl<W: Write + Seek> RowWriter<W> {
@@ -68,8 +71,8 @@ impl<W: Write + Seek> RowWriter<W> {
     /// [`ImageErrorKind::Empty`] if the image has no pixel, [`ImageErrorKind::TooLarge`] if a side is longer than
     /// 2^31 - 1 pixels in PNG or 2^30 - 2 in OpenEXR, [`ImageErrorKind::TooManyBytes`] if a row of PNG takes more than
     /// 2^30 bytes,
-    /// [`ImageErrorKind::Unsupported`] if OpenEXR has no room for as many tiles, [`ImageErrorKind::Io`] if the sink
-    /// refuses.
+    /// [`ImageErrorKind::Unsupported`] if OpenEXR has no room for as many tiles, [`ImageErrorKind::Channels`] if raw
+    /// heights are to hold something else, [`ImageErrorKind::Io`] if the sink refuses.
     pub fn new(
         sink: W,
         size: [u32; 2],
@@ -82,6 +85,7 @@ impl<W: Write + Seek> RowWriter<W> {
             Content::ColorAlpha => File::new::<LinearRgba>(sink, size, encoding),
             Content::Normal => File::new::<Normal>(sink, size, encoding),
             Content::Packed => File::new::<[f32; 3]>(sink, size, encoding),
+            Content::PackedFour => File::new::<[f32; 4]>(sink, size, encoding),
         }?;
         Ok(Self {
             content,
@@ -142,6 +146,15 @@ impl<W: Write + Seek> RowWriter<W> {
         self.write(rows)
     }
 
+    /// Writes the next rows of an image of [`Content::PackedFour`].
+    ///
+    /// # Errors
+    ///
+    /// As of [`write_gray`](Self::write_gray).
+    pub fn write_packed_four(&mut self, rows: RasterView<'_, [f32; 4]>) -> Result<(), ImageError> {
+        self.write(rows)
+    }
+
     /// Ends the file and gives the sink back.
     ///
     /// # Errors
@@ -161,6 +174,7 @@ impl<W: Write + Seek> RowWriter<W> {
             File::Eight(stream) | File::Sixteen(stream) => stream.finish(),
             #[cfg(feature = "exr")]
             File::Exr(stream) => stream.finish(),
+            File::Npy(stream) | File::R16(stream) => stream.finish(),
         }
     }
 
@@ -177,6 +191,8 @@ impl<W: Write + Seek> RowWriter<W> {
             File::Sixteen(stream) => stream.write_rows(rows, T::sixteen)?,
             #[cfg(feature = "exr")]
             File::Exr(stream) => stream.write_rows(rows, T::part)?,
+            File::Npy(stream) => stream.write_numbers(rows)?,
+            File::R16(stream) => stream.write_codes(rows)?,
         }
         self.is_broken = false;
         self.rows += height;
@@ -226,6 +242,14 @@ impl<W: Write + Seek> File<W> {
             }
             #[cfg(feature = "exr")]
             Encoding::Exr => Self::Exr(TileStream::new(sink, size, T::CONTENT.planes())?.into()),
+            Encoding::Npy => Self::Npy(RawStream::npy(sink, size, T::CONTENT.planes().len())?),
+            Encoding::R16 if T::CONTENT == Content::Gray => Self::R16(RawStream::r16(sink, size)?),
+            Encoding::R16 => {
+                return Err(ImageError::new(ImageErrorKind::Channels {
+                    found: T::CONTENT.name(),
+                    needed: Content::Gray.name(),
+                }));
+            }
         })
     }
 }

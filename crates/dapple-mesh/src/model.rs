@@ -57,6 +57,8 @@ pub struct Material {
     pub normal: Option<EncodedImage>,
     /// Roughness in green and metalness in blue.
     pub metallic_roughness: Option<EncodedImage>,
+    /// Ambient occlusion in red; it may be the image of metalness and roughness, which then holds all three.
+    pub occlusion: Option<EncodedImage>,
     /// Whether textures may be shown by the coarser levels of a mipmap; true by default. Where pieces of a texture lie close
     /// to each other, those mix pieces that are far apart on the mesh.
     pub mipmaps: bool,
@@ -150,6 +152,7 @@ impl Default for Material {
             base_color: None,
             normal: None,
             metallic_roughness: None,
+            occlusion: None,
             mipmaps: true,
             double_sided: false,
         }

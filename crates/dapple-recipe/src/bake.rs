@@ -133,6 +133,26 @@ impl<'a> Bake<'a> {
         self.window.size
     }
 
+    /// The maps that are left, each in one piece, in the order in which they were asked for.
+    ///
+    /// # Errors
+    ///
+    /// What a band refuses, and [`Raster`](crate::RecipeErrorKind::Raster) if a map has more pixels than a raster can have.
+    pub fn whole_maps(self) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
+        let mut whole: Vec<(MapKind, MapRows)> = Vec::new();
+        for band in self {
+            let maps = band?.maps;
+            if whole.is_empty() {
+                whole = maps;
+                continue;
+            }
+            let pairs = whole.into_iter().zip(maps);
+            let joined = pairs.map(|((kind, above), (_, below))| Ok((kind, above.joined(below)?)));
+            whole = joined.collect::<Result<_, RecipeError>>()?;
+        }
+        Ok(whole)
+    }
+
     fn band(&mut self) -> Result<Band, RecipeError> {
         let [width, height] = self.window.size;
         let first_row = self.next_row;

@@ -1,5 +1,6 @@
 //! Why a recipe was refused.
 
+use crate::words::similar_words;
 use core::fmt;
 use dapple_color::ColorError;
 use dapple_pups::PupsError;
@@ -174,7 +175,8 @@ impl RecipeError {
         written: &str,
         valid: impl IntoIterator<Item = &'a str>,
     ) -> Self {
-        self.content.nearest = nearest(written, valid).map(str::to_owned);
+        let near = similar_words(written, valid).into_iter().next();
+        self.content.nearest = near.map(str::to_owned);
         self
     }
 
@@ -201,14 +203,6 @@ impl RecipeError {
     pub fn nearest(&self) -> Option<&str> {
         self.content.nearest.as_deref()
     }
-}
-
-/// The word that is nearest to what was written, if they have more in common than not.
-fn nearest<'a>(written: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let likeness = |word: &str| strsim::jaro_winkler(&written.to_lowercase(), &word.to_lowercase());
-    let likely = valid.into_iter().map(|word| (likeness(word), word));
-    let best = likely.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
-    (best.0 > 0.7).then_some(best.1)
 }
 
 impl fmt::Display for RecipeError {

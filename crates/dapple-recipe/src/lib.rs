@@ -11,6 +11,7 @@ mod plan;
 mod recipe;
 mod rust;
 mod text;
+mod words;
 
 pub use bake::{Bake, BakeMemory, BakeOptions, Band, MapKind, MapRows, Region};
 pub use dapple_color as color;
@@ -22,3 +23,4 @@ pub use node::*;
 pub use plan::{Images, NodeColors, NodeField, Picture, Plan, PlanLimits, Values, Whole};
 pub use recipe::{Material, Recipe, SCHEMA};
 pub use text::MAX_TEXT;
+pub use words::similar_words;

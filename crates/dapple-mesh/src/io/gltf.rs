@@ -151,6 +151,7 @@ impl Source<'_> {
             base_color: image(pbr.and_then(|pbr| pbr.base_color_texture)),
             normal: image(material.normal_texture),
             metallic_roughness: image(pbr.and_then(|pbr| pbr.metallic_roughness_texture)),
+            occlusion: image(material.occlusion_texture),
             double_sided: material.double_sided,
             ..Material::default()
         }

@@ -93,6 +93,24 @@ impl MapRows {
         }
     }
 
+    /// These rows with further ones of the same map below.
+    pub(super) fn joined(self, below: Self) -> Result<Self, RecipeError> {
+        fn join<T>(above: Raster<T>, below: Raster<T>) -> Result<Raster<T>, RecipeError> {
+            let size = [above.width(), above.height().saturating_add(below.height())];
+            let mut pixels = above.into_pixels();
+            pixels.extend(below.into_pixels());
+            Ok(Raster::from_vec(size, pixels)?)
+        }
+        Ok(match (self, below) {
+            (Self::Gray(above), Self::Gray(below)) => Self::Gray(join(above, below)?),
+            (Self::Color(above), Self::Color(below)) => Self::Color(join(above, below)?),
+            (Self::Normal(above), Self::Normal(below)) => Self::Normal(join(above, below)?),
+            (Self::Packed(above), Self::Packed(below)) => Self::Packed(join(above, below)?),
+            // The bands of a map are of one kind.
+            (above, _) => above,
+        })
+    }
+
     /// A range of numbers, made as wide as the finite numbers of these rows need.
     #[must_use]
     pub fn range(&self, range: [f32; 2]) -> [f32; 2] {

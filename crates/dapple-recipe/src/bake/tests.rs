@@ -190,6 +190,40 @@ fn a_wide_bake_in_many_bands_has_the_bits_of_its_regions() {
 }
 
 #[test]
+fn whole_maps_are_the_bands_one_below_the_other() {
+    let plan = plan(ALL_NODES);
+    // Wide enough for bands of 16 rows.
+    let options = BakeOptions {
+        maps: vec![
+            MapKind::Height,
+            MapKind::Orm,
+            MapKind::Albedo,
+            MapKind::Normal,
+        ],
+        ..options([1 << 16, 40])
+    };
+    let bake = Bake::new(&plan, &options).unwrap();
+    let bands: Vec<_> = bake.clone().map(Result::unwrap).collect();
+    assert!(bands.len() > 2, "there are several");
+    let whole = bake.whole_maps().unwrap();
+    assert_eq!(whole.len(), options.maps.len());
+    for (index, (kind, map)) in whole.iter().enumerate() {
+        assert_eq!((*kind, map.size()), (options.maps[index], options.size));
+        for band in &bands {
+            let rows = &band.maps[index].1;
+            let [first, size] = [[0, band.first_row], rows.size()];
+            let part = match map {
+                MapRows::Gray(map) => MapRows::Gray(map.crop(first, size).unwrap()),
+                MapRows::Color(map) => MapRows::Color(map.crop(first, size).unwrap()),
+                MapRows::Normal(map) => MapRows::Normal(map.crop(first, size).unwrap()),
+                MapRows::Packed(map) => MapRows::Packed(map.crop(first, size).unwrap()),
+            };
+            assert!(part == *rows, "{kind:?} from row {}", band.first_row);
+        }
+    }
+}
+
+#[test]
 fn what_maps_share_with_the_height_has_the_bits_that_it_has_alone() {
     let plan = plan(ALL_NODES);
     let shared = plan.shared_with_height(&[plan.channels().albedo]);

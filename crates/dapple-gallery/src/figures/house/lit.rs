@@ -27,24 +27,16 @@ fn maps(plan: &Plan, size: [u32; 2]) -> anyhow::Result<Maps> {
         maps: vec![MapKind::Normal, MapKind::Orm, MapKind::Albedo],
         ..BakeOptions::default()
     };
-    let mut normals = Vec::new();
-    let mut packed = Vec::new();
-    let mut albedo = Vec::new();
-    for band in Bake::new(plan, &options)? {
-        for (_, rows) in band?.maps {
-            match rows {
-                MapRows::Normal(rows) => normals.extend(rows.into_pixels()),
-                MapRows::Packed(rows) => packed.extend(rows.into_pixels()),
-                MapRows::Color(rows) => albedo.extend(rows.into_pixels()),
-                MapRows::Gray(_) => {}
-            }
-        }
+    let maps = Bake::new(plan, &options)?.whole_maps()?;
+    let mut maps = maps.into_iter().map(|(_, map)| map);
+    match (maps.next(), maps.next(), maps.next()) {
+        (
+            Some(MapRows::Normal(normals)),
+            Some(MapRows::Packed(packed)),
+            Some(MapRows::Color(albedo)),
+        ) => Ok((normals, packed, albedo)),
+        _ => anyhow::bail!("a map was not baked"),
     }
-    Ok((
-        Raster::from_vec(size, normals)?,
-        Raster::from_vec(size, packed)?,
-        Raster::from_vec(size, albedo)?,
-    ))
 }
 
 /// The light that comes from a point: scattered by what is no metal, and mirrored, more blurred on what is rough.

@@ -139,6 +139,7 @@ pub(super) struct Buffer {
 pub(super) struct Material {
     pub(super) pbr_metallic_roughness: Option<Box<Pbr>>,
     pub(super) normal_texture: Option<TextureInfo>,
+    pub(super) occlusion_texture: Option<TextureInfo>,
     #[serde(default)]
     pub(super) double_sided: bool,
 }

@@ -401,6 +401,23 @@ fn model_reads_back_with_all_that_it_has() {
 }
 
 #[test]
+fn an_image_of_occlusion_roughness_and_metalness_is_written_once() {
+    let mut model = full();
+    let n_images = |model: &Model| {
+        let bytes = write(model).expect("it is valid");
+        let material = read(&bytes).expect("it is valid").material;
+        assert_eq!(material, model.material);
+        let file = ::gltf::Gltf::from_slice(&bytes).expect("it is valid");
+        file.images().len()
+    };
+    assert_eq!(n_images(&model), 3);
+    model.material.occlusion = model.material.metallic_roughness.clone();
+    assert_eq!(n_images(&model), 3);
+    model.material.occlusion = model.material.base_color.clone();
+    assert_eq!(n_images(&model), 4);
+}
+
+#[test]
 fn clouds_and_nothing_read_back() {
     let mut cloud = Model::from(mesh(&[[0.5, 0.0, 1.0], [1.0, 2.0, 3.0]], &[]));
     cloud.normals = Some(vec![DVec3::X, DVec3::Z]);

@@ -145,6 +145,11 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
         "metallicFactor": metallic,
         "roughnessFactor": 1.0,
     });
+    // An image that holds all three is written once.
+    let occlusion = match &metallic_roughness {
+        Some(texture) if material.occlusion == material.metallic_roughness => Some(texture.clone()),
+        _ => texture(&material.occlusion),
+    };
     if let Some(texture) = metallic_roughness {
         pbr["metallicRoughnessTexture"] = texture;
     }
@@ -154,6 +159,9 @@ fn material(model: &Model, bin: &mut Bin) -> Value {
     let mut value = json!({ "pbrMetallicRoughness": pbr });
     if let Some(texture) = texture(&material.normal) {
         value["normalTexture"] = texture;
+    }
+    if let Some(texture) = occlusion {
+        value["occlusionTexture"] = texture;
     }
     if material.double_sided || is_open(&model.mesh) {
         value["doubleSided"] = true.into();

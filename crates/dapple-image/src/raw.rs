@@ -1,0 +1,114 @@
+//! Numbers one after the other: NumPy arrays and raw heights, written row by row.
+//!
+//! Reference: NumPy Developers, "A Simple File Format for NumPy Arrays" (`numpy.lib.format`), version 1.0; there is no
+//! standard for raw heights, which the terrain importers of Unity and Unreal call RAW and r16: codes of 16 bits, the low
+//! byte first, the top row first, without a header.
+
+use crate::content::Pixel;
+use crate::limits::check_side;
+use crate::{ImageError, ImageErrorKind};
+use dapple_color::Code;
+use dapple_raster::RasterView;
+use std::io::Write;
+
+/// The header of a NumPy file ends at a multiple of this.
+const ALIGNMENT: usize = 64;
+/// What comes before the text of the header: the magic string, the version 1.0, and the length of the text.
+const PREAMBLE: usize = 10;
+
+/// A file of plain numbers on its way into `sink`.
+pub(crate) struct RawStream<W> {
+    sink: W,
+    /// The bytes of a row.
+    bytes: Vec<u8>,
+}
+
+impl<W: Write> RawStream<W> {
+    /// A NumPy array of `f32` with the shape (height, width), or (height, width, channels) where there are several.
+    pub(crate) fn npy(mut sink: W, size: [u32; 2], n_channels: usize) -> Result<Self, ImageError> {
+        check_side(size, u32::MAX, "a NumPy array")?;
+        sink.write_all(&npy_header(size, n_channels))
+            .map_err(failure)?;
+        Ok(Self::headless(sink))
+    }
+
+    /// Heights as codes of 16 bits without a header.
+    pub(crate) fn r16(sink: W, size: [u32; 2]) -> Result<Self, ImageError> {
+        check_side(size, u32::MAX, "raw heights")?;
+        Ok(Self::headless(sink))
+    }
+
+    fn headless(sink: W) -> Self {
+        let bytes = Vec::new();
+        Self { sink, bytes }
+    }
+
+    /// Writes rows as `f32`.
+    pub(crate) fn write_numbers<T: Pixel>(
+        &mut self,
+        rows: RasterView<'_, T>,
+    ) -> Result<(), ImageError> {
+        self.write_rows(rows, |value, bytes| {
+            for number in value.numbers().as_ref() {
+                bytes.extend(number.to_le_bytes());
+            }
+        })
+    }
+
+    /// Writes rows as codes of 16 bits.
+    pub(crate) fn write_codes<T: Pixel>(
+        &mut self,
+        rows: RasterView<'_, T>,
+    ) -> Result<(), ImageError> {
+        self.write_rows(rows, |value, bytes| {
+            for &number in value.numbers().as_ref() {
+                bytes.extend(u16::from_unit(number).to_le_bytes());
+            }
+        })
+    }
+
+    /// Ends the file.
+    pub(crate) fn finish(mut self) -> Result<W, ImageError> {
+        self.sink.flush().map_err(failure)?;
+        Ok(self.sink)
+    }
+
+    fn write_rows<T>(
+        &mut self,
+        rows: RasterView<'_, T>,
+        put: impl Fn(&T, &mut Vec<u8>),
+    ) -> Result<(), ImageError> {
+        for row in rows.rows() {
+            self.bytes.clear();
+            for value in row {
+                put(value, &mut self.bytes);
+            }
+            self.sink.write_all(&self.bytes).map_err(failure)?;
+        }
+        Ok(())
+    }
+}
+
+/// The header of an array in C order, padded with spaces to the alignment of the data.
+fn npy_header([width, height]: [u32; 2], n_channels: usize) -> Vec<u8> {
+    let shape = match n_channels {
+        1 => format!("({height}, {width})"),
+        _ => format!("({height}, {width}, {n_channels})"),
+    };
+    let mut text = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}");
+    let length = (PREAMBLE + text.len() + 1).next_multiple_of(ALIGNMENT);
+    text.extend(std::iter::repeat_n(' ', length - PREAMBLE - text.len() - 1));
+    text.push('\n');
+    let mut header = b"\x93NUMPY\x01\x00".to_vec();
+    // The text has less than 128 bytes.
+    header.extend((text.len() as u16).to_le_bytes());
+    header.extend(text.into_bytes());
+    header
+}
+
+fn failure(error: std::io::Error) -> ImageError {
+    ImageError::new(ImageErrorKind::Io).because(error)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,44 @@
+//! Which words are slips of which.
+
+/// How alike two words are, from 0 to 1, for one to be a slip of the other: at least this.
+const ALIKE: f64 = 0.6;
+
+/// The words of which what was written is perhaps a slip, the most alike first.
+///
+/// Insertions, omissions, changes and swaps of neighboring letters are counted (the distance of Damerau and Levenshtein), and
+/// related to the length of the longer word; case does not matter.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_recipe::similar_words;
+///
+/// assert_eq!(similar_words("hieght", ["weight", "normal", "height"]), ["height", "weight"]);
+/// ```
+#[must_use]
+pub fn similar_words<'a>(written: &str, valid: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+    let written = written.to_lowercase();
+    let alike = |word: &str| strsim::normalized_damerau_levenshtein(&written, &word.to_lowercase());
+    let words = valid.into_iter().map(|word| (alike(word), word));
+    let mut words: Vec<_> = words.filter(|&(alike, _)| alike >= ALIKE).collect();
+    words.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(b.1)));
+    words.into_iter().map(|(_, word)| word).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::similar_words;
+
+    #[test]
+    fn the_nearest_word_is_that_of_a_slip_and_no_other() {
+        let words = ["weight", "height", "normal"];
+        for (typed, expected) in [
+            ("weigth", Some(&"weight")),
+            ("Hight", Some(&"height")),
+            ("normals", Some(&"normal")),
+            ("roughness", None),
+        ] {
+            assert_eq!(similar_words(typed, words).first(), expected, "{typed}");
+        }
+    }
+}
