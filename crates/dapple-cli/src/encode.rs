@@ -5,7 +5,7 @@ use crate::error::{Hint, usage};
 use crate::output::Target;
 use anyhow::Result;
 use clap::ValueEnum;
-use dapple::color::{Interpolation, LinearRgb, LinearRgba, Outside};
+use dapple::color::{Interpolation, LinearRgb, LinearRgba, Outside, RampSpace};
 use dapple::image::{Content, Depth, Encoding, RowWriter};
 use dapple::raster::Raster;
 use dapple::recipe::{Input, Node, Ramped};
@@ -100,6 +100,7 @@ pub(crate) fn ramped_recipe(ramp: &RampArg, input: &Input) -> Node {
         palette: None,
         colors: ramp.colors.clone(),
         positions: Vec::new(),
+        space: RampSpace::default(),
         interpolation: Interpolation::Linear,
         outside: Outside::Clamp,
     })

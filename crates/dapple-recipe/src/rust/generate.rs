@@ -6,7 +6,7 @@ use crate::plan::Generator;
 use crate::{
     Fractal, FractalBasis, Images, Node, Ramped, RecipeError, WaveletNode, WorleyNode, WorleyValue,
 };
-use dapple_color::{ColorStop, Interpolation, Outside};
+use dapple_color::{ColorStop, Interpolation, Outside, RampSpace};
 use dapple_worley::{Combination, Metric, Octaves, Scatter};
 
 impl<'a> Printer<'a> {
@@ -282,6 +282,9 @@ pub(super) fn ramp(node: &Ramped) -> String {
             format!("color::ColorRamp::new([{}])?", stops.join(", "))
         }
     };
+    if node.space != RampSpace::default() {
+        code += &format!(".with_space(color::RampSpace::{:?})", node.space);
+    }
     if node.interpolation != Interpolation::Linear {
         code += &format!(
             ".with_interpolation(color::Interpolation::{:?})",
