@@ -12,6 +12,7 @@ mod examples;
 mod files;
 mod interrupt;
 mod meshes;
+mod outputs;
 mod refusals;
 mod results;
 mod support;
