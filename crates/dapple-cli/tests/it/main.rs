@@ -16,4 +16,5 @@ mod outputs;
 mod refusals;
 mod results;
 mod support;
+mod watch;
 mod words;
