@@ -48,11 +48,11 @@ pub enum Interpolation {
 pub enum RampSpace {
     /// Oklab (Ottosson 2020): equal steps look about equal, and the middle of two colors is halfway in lightness and hue.
     /// Between two strong colors a part may be a little below 0 or above 1, which files cut off.
+    #[default]
     Oklab,
     /// The codes of sRGB, as most drawing programs mix. Parts below 0 are mixed as those above, with their sign.
     Srgb,
     /// Linear light, as lamps mix; for numbers that are no colors, and where black to white has to be a straight line.
-    #[default]
     Linear,
 }
 
@@ -82,9 +82,9 @@ pub enum Outside {
 ///
 /// let ramp = ColorRamp::from_hex(&["#000000", "#ffffff"])?;
 /// assert_eq!(ramp.at(7.0), LinearRgb::WHITE);
-/// assert_eq!(ramp.at(0.25), LinearRgb::gray(0.25), "a quarter of its light");
-/// let ramp = ramp.with_space(RampSpace::Oklab);
 /// assert_eq!(ramp.at(0.5).to_srgb::<u8>(), [99; 3], "half as light as white");
+/// let ramp = ramp.with_space(RampSpace::Linear);
+/// assert_eq!(ramp.at(0.25), LinearRgb::gray(0.25), "a quarter of its light");
 /// # Ok::<(), dapple_color::ColorError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -116,7 +116,7 @@ struct RampData {
 }
 
 impl ColorRamp {
-    /// A ramp through stops, linear between them, and clamped outside.
+    /// A ramp through stops, with straight lines in Oklab between them, and clamped outside.
     ///
     /// # Errors
     ///

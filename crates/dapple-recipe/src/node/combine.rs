@@ -52,7 +52,7 @@ pub struct Ramped {
     /// The number at which each color is; at equal distances from 0 to 1 by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub positions: Vec<f32>,
-    /// The space in which two colors are mixed; linear light by default.
+    /// The space in which two colors are mixed; Oklab by default.
     #[serde(default)]
     pub space: RampSpace,
     /// What lies between two colors; a line by default.
