@@ -101,6 +101,7 @@ positions = [
     0.32,
     0.42,
 ]
+space = "oklab"
 interpolation = "linear"
 outside = "clamp"
 
@@ -237,6 +238,7 @@ positions = [
     0.25,
     0.42,
 ]
+space = "oklab"
 interpolation = "linear"
 outside = "clamp"
 
@@ -255,6 +257,7 @@ colors = [
     "#a09888",
     "#6f6a64",
 ]
+space = "oklab"
 interpolation = "linear"
 outside = "clamp"
 
