@@ -1,5 +1,6 @@
 //! What CI runs, step by step; `.ci/run` installs what is missing and then comes here.
 
+mod exchange;
 mod fuzz;
 
 use crate::tidy;
@@ -24,13 +25,15 @@ pub(crate) enum Step {
     Features,
     /// Every published crate as the package that a registry would get.
     Package,
+    /// Materials for other programs, given to those that are there.
+    Exchange,
     /// Each fuzz target for some seconds, where nightly Rust and cargo-fuzz are.
     Fuzz,
 }
 
 impl Step {
     /// The steps, in the order in which CI runs them.
-    pub(crate) const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 9] = [
         Self::Test,
         Self::Fmt,
         Self::Clippy,
@@ -38,6 +41,7 @@ impl Step {
         Self::Tidy,
         Self::Features,
         Self::Package,
+        Self::Exchange,
         Self::Fuzz,
     ];
 
@@ -51,6 +55,7 @@ impl Step {
             Self::Tidy => "tidy",
             Self::Features => "features",
             Self::Package => "package",
+            Self::Exchange => "exchange",
             Self::Fuzz => "fuzz",
         }
     }
@@ -84,6 +89,7 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
         Step::Tidy => return tidy::tidy(shell),
         Step::Features => return features(shell),
         Step::Package => return package(shell),
+        Step::Exchange => return exchange::exchange(shell),
         Step::Fuzz => return fuzz::fuzz(shell),
     };
     Ok(command.run()?)

@@ -56,7 +56,8 @@ pub(crate) struct OutputArgs {
     #[arg(long)]
     pub(crate) force: bool,
 
-    /// Write a JSON file beside the output: the options, the version, and size, range and SHA-256 of each file.
+    /// Write a JSON file beside the output: the options, the version, and size, range and SHA-256 of each file. Raw heights
+    /// always have one.
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     pub(crate) json: Option<Option<PathBuf>>,
 }
@@ -77,8 +78,9 @@ pub(crate) struct ImageArgs {
     #[command(flatten)]
     pub(crate) files: OutputArgs,
 
-    /// The format. By default by the ending of the output: EXR for `.exr`; for `.png` 8 bits for color and 16 bits for data
-    /// (gray images and normals), and 16 bits for color, too, if the input is deeper than 8.
+    /// The format. By default by the ending of the output: EXR for `.exr`, a NumPy array for `.npy`, raw heights for `.r16`; for
+    /// `.png` 8 bits for color and 16 bits for data (gray images and normals), and 16 bits for color, too, if the input is
+    /// deeper than 8.
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(crate) format: Option<Format>,
 

@@ -4,29 +4,42 @@ use crate::encode::Format;
 use crate::error::Hint;
 use crate::input;
 use crate::job::Job;
+use crate::layers::{Image, LayerRows, Layers};
 use crate::output::{OutputIdx, Target, cannot_be_written};
 use crate::progress::Progress;
 use crate::words::with_dashes;
 use anyhow::{Context as _, Error, Result};
-use dapple::image::{Content, RowWriter};
+use dapple::image::RowWriter;
 use dapple::recipe::{
-    Bake, ImageAlpha, Images, MapKind, MapRows, Picture, Recipe, RecipeError, RecipeErrorKind,
+    Bake, Band, ImageAlpha, Images, Picture, Recipe, RecipeError, RecipeErrorKind,
 };
 use dapple::tile::{Map, repeat};
 use rayon::prelude::*;
+use serde_json::{Value, json};
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Cursor, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A file for a map.
+/// A file for an image of maps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MapFile {
-    pub(crate) kind: MapKind,
+    pub(crate) image: Image,
     pub(crate) output: OutputIdx,
     /// Where 2 x 2 copies go, if there are to be any.
     pub(crate) sheet: Option<OutputIdx>,
-    pub(crate) format: Format,
+}
+
+/// What programs that read the maps of a recipe need to know: a unit of the plane is a meter.
+pub(crate) fn report(recipe: &Recipe) -> Value {
+    json!({
+        "name": recipe.name,
+        "seed": recipe.seed.0,
+        "extent": recipe.extent,
+        "repeats": recipe.wrap,
+        "relief": recipe.material.relief,
+        "meters_per_unit": 1.0,
+    })
 }
 
 /// A recipe, from a file, from standard input (`-`), or by the name of a built-in one, with the folder of its images.
@@ -124,30 +137,63 @@ pub(crate) fn write(
     }
     for (rows, file) in rows.into_iter().zip(files) {
         rows.map.finish()?;
-        job.note(file.output, file.format, size, rows.range);
+        let format = file.image.format;
+        job.note(file.output, format, size, rows.range);
         if let (Some(writer), Some(sheet)) = (rows.sheet, file.sheet) {
             writer.finish()?;
-            job.note(sheet, file.format, size.map(|side| 2 * side), rows.range);
+            job.note(sheet, format, size.map(|side| 2 * side), rows.range);
         }
     }
     Ok(())
 }
 
-/// Gives the bands of a bake to all maps.
+/// The files of images in memory, and says of each row that it is done.
+///
+/// # Errors
+///
+/// What the recipe refuses.
+pub(crate) fn encode(
+    bake: Bake<'_>,
+    images: &[Image],
+    progress: &Progress,
+) -> Result<Vec<Vec<u8>>> {
+    let size = bake.size();
+    let writer = |image: &Image| {
+        let (content, encoding) = (image.layers.content(), image.format.encoding());
+        RowWriter::new(Cursor::new(Vec::new()), size, content, encoding)
+    };
+    let mut writers = images.iter().map(writer).collect::<Result<Vec<_>, _>>()?;
+    for band in bake {
+        let band = band.map_err(advise)?;
+        let work = writers.par_iter_mut().zip(images);
+        work.try_for_each(|(writer, image)| -> Result<()> {
+            Ok(image.layers.rows(&band)?.write(writer)?)
+        })?;
+        progress.add(n_rows(&band));
+    }
+    let finished = writers.into_iter().map(RowWriter::finish);
+    finished.map(|file| Ok(file?.into_inner())).collect()
+}
+
+/// Gives the bands of a bake to all files.
 fn draw(
     bake: Bake<'_>,
     rows: &mut [Rows],
     progress: &Progress,
-    write: fn(&mut Rows, &MapRows) -> Result<()>,
+    write: fn(&mut Rows, &LayerRows<'_>) -> Result<()>,
 ) -> Result<()> {
     for band in bake {
         let band = band.map_err(advise)?;
-        let n_rows = band.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
-        let work = rows.par_iter_mut().zip(&band.maps);
-        work.try_for_each(|(rows, (_, map))| write(rows, map))?;
-        progress.add(n_rows.into());
+        rows.par_iter_mut()
+            .try_for_each(|rows| write(rows, &rows.layers.rows(&band)?))?;
+        progress.add(n_rows(&band));
     }
     Ok(())
+}
+
+fn n_rows(band: &Band) -> u64 {
+    let rows = band.maps.first().map_or(0, |(_, rows)| rows.size()[1]);
+    rows.into()
 }
 
 /// The format of a map's file.
@@ -181,8 +227,9 @@ struct Writer {
     rows: RowWriter<BufWriter<File>>,
 }
 
-/// A map on its way into a file, and into 2 x 2 copies of it.
+/// An image on its way into a file, and into 2 x 2 copies of it.
 struct Rows {
+    layers: Layers,
     map: Writer,
     sheet: Option<Writer>,
     /// The smallest and the largest number so far.
@@ -192,44 +239,42 @@ struct Rows {
 impl Rows {
     fn new(job: &Job<'_>, file: &MapFile, size: [u32; 2]) -> Result<Self> {
         let twice = size.map(|side| side.saturating_mul(2));
-        let sheet = file.sheet.map(|sheet| Writer::new(job, file, sheet, twice));
+        let sheet = file
+            .sheet
+            .map(|sheet| Writer::new(job, file.image, sheet, twice));
         Ok(Self {
-            map: Writer::new(job, file, file.output, size)?,
+            layers: file.image.layers,
+            map: Writer::new(job, file.image, file.output, size)?,
             sheet: sheet.transpose()?,
             range: [f32::INFINITY, f32::NEG_INFINITY],
         })
     }
 
-    fn write(&mut self, map: &MapRows) -> Result<()> {
-        self.map.write(map)?;
-        self.range = map.range(self.range);
-        self.write_sheet(map)
+    fn write(&mut self, rows: &LayerRows<'_>) -> Result<()> {
+        self.map.write(rows)?;
+        self.range = rows.range(self.range);
+        self.write_sheet(rows)
     }
 
-    fn write_sheet(&mut self, map: &MapRows) -> Result<()> {
+    fn write_sheet(&mut self, rows: &LayerRows<'_>) -> Result<()> {
         match &mut self.sheet {
-            Some(sheet) => sheet.write(&beside_itself(map)?),
+            Some(sheet) => sheet.write(&rows.beside_themselves()?),
             None => Ok(()),
         }
     }
 }
 
 impl Writer {
-    fn new(job: &Job<'_>, file: &MapFile, output: OutputIdx, size: [u32; 2]) -> Result<Self> {
-        let (content, encoding) = (content(file.kind), file.format.encoding());
+    fn new(job: &Job<'_>, image: Image, output: OutputIdx, size: [u32; 2]) -> Result<Self> {
+        let (content, encoding) = (image.layers.content(), image.format.encoding());
         let target = job.target(output).clone();
         let rows = RowWriter::new(job.writer(output)?, size, content, encoding);
         let rows = rows.with_context(|| cannot_be_written(&target))?;
         Ok(Self { target, rows })
     }
 
-    fn write(&mut self, map: &MapRows) -> Result<()> {
-        let written = match map {
-            MapRows::Gray(raster) => self.rows.write_gray(raster.view()),
-            MapRows::Color(raster) => self.rows.write_color(raster.view()),
-            MapRows::Normal(raster) => self.rows.write_normals(raster.view()),
-            MapRows::Packed(raster) => self.rows.write_packed(raster.view()),
-        };
+    fn write(&mut self, rows: &LayerRows<'_>) -> Result<()> {
+        let written = rows.write(&mut self.rows);
         written.with_context(|| cannot_be_written(&self.target))
     }
 
@@ -237,26 +282,5 @@ impl Writer {
         let ended = self.rows.finish().map_err(Error::from);
         let flushed = ended.and_then(|mut file| Ok(file.flush()?));
         flushed.with_context(|| cannot_be_written(&self.target))
-    }
-}
-
-/// Rows with a copy of them to their right.
-fn beside_itself(map: &MapRows) -> Result<MapRows> {
-    let [width, height] = map.size();
-    let size = [width.saturating_mul(2), height];
-    Ok(match map {
-        MapRows::Gray(raster) => MapRows::Gray(repeat(raster, size)?),
-        MapRows::Color(raster) => MapRows::Color(repeat(raster, size)?),
-        MapRows::Normal(raster) => MapRows::Normal(repeat(raster, size)?),
-        MapRows::Packed(raster) => MapRows::Packed(repeat(raster, size)?),
-    })
-}
-
-fn content(kind: MapKind) -> Content {
-    match kind {
-        MapKind::Normal => Content::Normal,
-        MapKind::Albedo => Content::Color,
-        MapKind::Orm => Content::Packed,
-        _ => Content::Gray,
     }
 }

@@ -5,7 +5,7 @@ use crate::error::{Hint, usage};
 use crate::output::Target;
 use anyhow::Result;
 use clap::ValueEnum;
-use dapple::color::{Interpolation, LinearRgb, LinearRgba, Outside};
+use dapple::color::{Interpolation, LinearRgb, LinearRgba, Outside, RampSpace};
 use dapple::image::{Content, Depth, Encoding, RowWriter};
 use dapple::raster::Raster;
 use dapple::recipe::{Input, Node, Ramped};
@@ -24,6 +24,10 @@ pub(crate) enum Format {
     Png16,
     /// OpenEXR with 32-bit floating point.
     Exr,
+    /// A NumPy array of 32-bit floating point.
+    Npy,
+    /// Raw heights of 16 bits, as terrain importers take them, with a JSON file that says their size.
+    R16,
 }
 
 impl Format {
@@ -39,13 +43,15 @@ impl Format {
                 .contains(&default)
                 .then_some(default),
             (_, "exr") => Some(Self::Exr),
+            (_, "npy") => Some(Self::Npy),
+            (_, "r16") => Some(Self::R16),
             // A device has no ending.
             (Target::Path(path), "") if path.exists() && !path.is_file() => {
                 return Ok(asked.unwrap_or(default));
             }
             (_, ending) => {
                 let error = usage(format!("{target}: there is no image format {ending:?}"));
-                return Err(error.hint("let the name end in .png or .exr"));
+                return Err(error.hint("let the name end in .png, .exr, .npy or .r16"));
             }
         };
         let format = asked.or(by_ending).unwrap_or(Self::Png16);
@@ -65,7 +71,37 @@ impl Format {
             Self::Png8 => Encoding::Png(Depth::Eight),
             Self::Png16 => Encoding::Png(Depth::Sixteen),
             Self::Exr => Encoding::Exr,
+            Self::Npy => Encoding::Npy,
+            Self::R16 => Encoding::R16,
         }
+    }
+
+    /// Whether numbers are kept as they are, also those below 0 and above 1.
+    pub(crate) fn keeps_numbers(self) -> bool {
+        matches!(self, Self::Exr | Self::Npy)
+    }
+
+    /// How many bytes a number takes, and what they are.
+    pub(crate) fn depth(self) -> (u64, &'static str) {
+        match self {
+            Self::Png8 => (1, "8 bits"),
+            Self::Png16 | Self::R16 => (2, "16 bits"),
+            Self::Exr | Self::Npy => (4, "32-bit floating point"),
+        }
+    }
+
+    /// Refuses raw heights for what is no single number at each pixel.
+    ///
+    /// # Errors
+    ///
+    /// If they are to hold something else.
+    pub(crate) fn check(self, content: Content, target: &Target) -> Result<()> {
+        if self != Self::R16 || content == Content::Gray {
+            return Ok(());
+        }
+        let message =
+            format!("{target}: raw heights are one number at each pixel, and this has several");
+        Err(usage(message).hint("write a height as .r16, and this as .png, .exr or .npy"))
     }
 
     /// The ending of the names of such files, without its dot.
@@ -73,6 +109,8 @@ impl Format {
         match self {
             Self::Png8 | Self::Png16 => "png",
             Self::Exr => "exr",
+            Self::Npy => "npy",
+            Self::R16 => "r16",
         }
     }
 }
@@ -100,6 +138,7 @@ pub(crate) fn ramped_recipe(ramp: &RampArg, input: &Input) -> Node {
         palette: None,
         colors: ramp.colors.clone(),
         positions: Vec::new(),
+        space: RampSpace::default(),
         interpolation: Interpolation::Linear,
         outside: Outside::Clamp,
     })
@@ -107,8 +146,8 @@ pub(crate) fn ramped_recipe(ramp: &RampArg, input: &Input) -> Node {
 
 /// The bytes of a file with a map.
 ///
-/// Values are `round(value * max)` in PNG and as they are in EXR, color is sRGB in PNG and linear in EXR, and normals are
-/// `(part + 1) / 2` in both.
+/// Values are `round(value * max)` in PNG and raw heights, and as they are in EXR and NumPy arrays; color is sRGB in PNG
+/// and linear in the others; normals are `(part + 1) / 2` in images and as they are in arrays.
 pub(crate) fn encode(map: &Map, format: Format) -> Result<Vec<u8>> {
     let (sink, encoding) = (Cursor::new(Vec::new()), format.encoding());
     let sink = match map {
@@ -145,6 +184,15 @@ pub(crate) fn encode_with_alpha(
     let mut rows = RowWriter::new(sink, pixels.size(), Content::ColorAlpha, format.encoding())?;
     rows.write_color_alpha(pixels.view())?;
     Ok(rows.finish()?.into_inner())
+}
+
+/// What an image of a map holds.
+pub(crate) fn content(map: &Map) -> Content {
+    match map {
+        Map::Value(_) => Content::Gray,
+        Map::Color(_) => Content::Color,
+        Map::Normal(_) => Content::Normal,
+    }
 }
 
 /// The smallest and the largest number of a map that are finite, over all channels; normals are from -1 to 1.

@@ -1,11 +1,12 @@
 //! A single field drawn: what `worley`, `pups` and `wavelet` share. Each makes a recipe of one node and bakes it.
 
 use crate::args::{Axes, ImageArgs, Region, Size, Targets, seed};
-use crate::baking::{self, MapFile, advise};
+use crate::baking::{self, MapFile, advise, report};
 use crate::encode::{Format, ramped_recipe};
 use crate::error::{Exit, Hint, usage};
 use crate::foresight::foresee;
 use crate::job::{Context, Job, put_text};
+use crate::layers::{Image, Layers};
 use crate::output::Target;
 use crate::progress::Progress;
 use anyhow::{Error, Result};
@@ -15,7 +16,6 @@ use dapple::recipe::{
     RecipeError,
 };
 use serde::Serialize;
-use serde_json::Value;
 
 /// What commands that draw a field take.
 #[derive(clap::Args, Clone, Debug, Serialize)]
@@ -37,7 +37,7 @@ pub(crate) struct FieldArgs {
     pub(crate) region: Option<Region>,
 
     /// Which values become black and white: `LO,HI`, or `raw` for the values as they are. By default what the subcommand
-    /// says for PNG, and `raw` for EXR.
+    /// says for PNG and raw heights, and `raw` for EXR and NumPy arrays.
     #[arg(long, value_name = "LO,HI|raw", allow_hyphen_values = true)]
     pub(crate) range: Option<RangeArg>,
 
@@ -131,13 +131,16 @@ pub(crate) fn draw(
     } else {
         MapKind::Height
     };
+    let image_of_map = Image {
+        layers: Layers::Map(kind),
+        format,
+    };
+    format.check(image_of_map.layers.content(), &main)?;
     let claim = |target: &Target| {
-        let output = job.claim(target)?;
         Ok(MapFile {
-            kind,
-            output,
+            image: image_of_map,
+            output: job.claim(target)?,
             sheet: None,
-            format,
         })
     };
     let files = files.iter().map(claim).collect::<Result<Vec<_>>>()?;
@@ -155,7 +158,7 @@ pub(crate) fn draw(
         let time = f64::from(index) / files.len() as f64;
         let plan = Plan::new(&recipe, &field.images, time).map_err(refused)?;
         if index == 0 {
-            foresee(&plan, &bake, &files, &job)?;
+            foresee(&plan, &bake, &vec![image_of_map; files.len()], &job)?;
         }
         let bake = Bake::new(&plan, &bake).map_err(refused)?;
         baking::write(&mut job, bake, std::slice::from_ref(file), &progress)?;
@@ -165,7 +168,7 @@ pub(crate) fn draw(
         options,
         recipe: &recipe,
     };
-    job.finish(&told, Value::Null)?;
+    job.finish(&told, report(&recipe))?;
     Ok(Exit::Done)
 }
 
@@ -193,7 +196,7 @@ fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) ->
         Some(RangeArg::Raw) => None,
         Some(RangeArg::Ends(ends)) => Some(ends),
         // A ramp goes from 0 to 1.
-        None if format == Format::Exr && image.ramp.is_none() => None,
+        None if format.keeps_numbers() && image.ramp.is_none() => None,
         None => Some(field.range),
     };
     if field.is_color {

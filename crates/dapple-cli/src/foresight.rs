@@ -1,11 +1,11 @@
 //! How much work a bake is, said before it begins: pixels, bytes, and about how long.
 
-use crate::baking::{MapFile, advise};
-use crate::encode::Format;
+use crate::baking::advise;
 use crate::error::Hint;
 use crate::job::Job;
+use crate::layers::Image;
 use anyhow::{Result, anyhow};
-use dapple::recipe::{Bake, BakeMemory, BakeOptions, MapKind, Plan};
+use dapple::recipe::{Bake, BakeMemory, BakeOptions, Plan};
 use indicatif::{DecimalBytes, HumanDuration};
 use std::time::{Duration, Instant};
 
@@ -24,7 +24,7 @@ const PROBE: [u32; 2] = [256; 2];
 pub(crate) fn foresee(
     plan: &Plan,
     options: &BakeOptions,
-    files: &[MapFile],
+    images: &[Image],
     job: &Job<'_>,
 ) -> Result<()> {
     let size = options.region.map_or(options.size, |region| region.size);
@@ -33,7 +33,7 @@ pub(crate) fn foresee(
         return Ok(());
     }
     let pace = probe(plan, options)?;
-    let work = work(size, files, pace);
+    let work = work(size, images, pace);
     if pixels > MOST_PIXELS && options.memory == BakeMemory::Whole {
         let error =
             anyhow!("without --banded at most 32768 × 32768 pixels are baked, and this is {work}");
@@ -63,12 +63,12 @@ fn probe(plan: &Plan, options: &BakeOptions) -> Result<f64> {
 }
 
 /// The work in words.
-fn work([width, height]: [u32; 2], files: &[MapFile], pace: f64) -> String {
+fn work([width, height]: [u32; 2], images: &[Image], pace: f64) -> String {
     let pixels = n_pixels([width, height]);
-    let bytes = files.iter().map(|file| n_bytes(file.kind, file.format));
+    let bytes = images.iter().map(n_bytes);
     let bytes = DecimalBytes(pixels.saturating_mul(bytes.sum()));
     let time = Duration::try_from_secs_f64(pixels as f64 * pace).unwrap_or(Duration::MAX);
-    let maps = match files.len() {
+    let maps = match images.len() {
         1 => "1 map".to_owned(),
         count => format!("{count} maps"),
     };
@@ -80,30 +80,26 @@ fn n_pixels(size: [u32; 2]) -> u64 {
     u64::from(size[0]) * u64::from(size[1])
 }
 
-/// The bytes of a pixel of a map in a file that is not compressed.
-fn n_bytes(kind: MapKind, format: Format) -> u64 {
-    let channels = match kind {
-        MapKind::Normal | MapKind::Albedo | MapKind::Orm => 3,
-        _ => 1,
-    };
-    channels
-        * match format {
-            Format::Png8 => 1,
-            Format::Png16 => 2,
-            Format::Exr => 4,
-        }
+/// The bytes of a pixel of an image in a file that is not compressed.
+fn n_bytes(image: &Image) -> u64 {
+    image.layers.n_channels() * image.format.depth().0
 }
 
 #[cfg(test)]
 mod tests {
     use super::n_bytes;
     use crate::encode::Format;
+    use crate::layers::{Image, Layers};
     use dapple::recipe::MapKind;
 
     #[test]
     fn bytes_are_those_of_all_channels() {
-        assert_eq!(n_bytes(MapKind::Height, Format::Png8), 1);
-        assert_eq!(n_bytes(MapKind::Normal, Format::Png16), 6);
-        assert_eq!(n_bytes(MapKind::Albedo, Format::Exr), 12);
+        let image = |kind, format| Image {
+            layers: Layers::Map(kind),
+            format,
+        };
+        assert_eq!(n_bytes(&image(MapKind::Height, Format::Png8)), 1);
+        assert_eq!(n_bytes(&image(MapKind::Normal, Format::Png16)), 6);
+        assert_eq!(n_bytes(&image(MapKind::Albedo, Format::Exr)), 12);
     }
 }

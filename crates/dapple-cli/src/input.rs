@@ -14,7 +14,7 @@ use dapple::image::{
 };
 use dapple::mesh::{MeshErrorKind, Model, io::read_model};
 use dapple::raster::Raster;
-use dapple::recipe::ImageAlpha;
+use dapple::recipe::{ImageAlpha, similar_words};
 use dapple::tile::Map;
 use std::fs;
 use std::io::{self, Read};
@@ -22,8 +22,6 @@ use std::path::Path;
 
 /// The most bytes of a text that is read.
 const TEXT_MAX: u64 = 1 << 28;
-/// How alike two names are, from 0 to 1, for one to be a slip of the other.
-const ALIKE: f64 = 0.6;
 /// How many similar names are told.
 const NAMES_MAX: usize = 3;
 
@@ -376,14 +374,12 @@ fn similar_names(path: &Path) -> Vec<String> {
         fs::read_dir(folder)
     };
     let entries = listed.into_iter().flatten().flatten();
-    let mut names: Vec<(f64, String)> = entries
+    let others: Vec<_> = entries
         .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .map(|other| (strsim::normalized_damerau_levenshtein(&name, &other), other))
-        .filter(|&(alike, _)| alike >= ALIKE)
         .collect();
-    names.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let names = names.into_iter().take(NAMES_MAX);
+    let names = similar_words(&name, others.iter().map(String::as_str)).into_iter();
     names
-        .map(|(_, name)| folder.join(name).display().to_string())
+        .take(NAMES_MAX)
+        .map(|name| folder.join(name).display().to_string())
         .collect()
 }

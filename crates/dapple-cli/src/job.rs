@@ -1,11 +1,12 @@
 //! A run of a subcommand: its files, what it says, and the JSON file beside the output.
 
 use crate::args::{ImageArgs, OutputArgs};
-use crate::encode::{Format, default_format, encode, encode_with_alpha, ramped, range};
+use crate::encode::{Format, content, default_format, encode, encode_with_alpha, ramped, range};
 use crate::error::{Exit, Hint, usage};
 use crate::output::{OutputIdx, Outputs, Target};
 use crate::progress::Style;
 use anyhow::{Context as _, Result};
+use dapple::image::Content;
 use dapple::raster::Raster;
 use dapple::tile::Map;
 use serde::Serialize;
@@ -62,6 +63,29 @@ struct Sidecar<'a> {
     #[serde(skip_serializing_if = "Value::is_null")]
     report: Value,
     outputs: Vec<&'a FileRecord>,
+    #[serde(flatten)]
+    raw: Option<RawSize>,
+}
+
+/// What raw heights do not say themselves, by the names by which the landscape importer of Unreal reads it from the JSON file
+/// beside them.
+#[derive(Serialize)]
+struct RawSize {
+    width: u32,
+    height: u32,
+    bpp: u32,
+}
+
+impl FileRecord {
+    /// The size of raw heights.
+    fn raw_size(&self) -> Option<RawSize> {
+        let [width, height] = self.size.filter(|_| self.format == Some(Format::R16))?;
+        Some(RawSize {
+            width,
+            height,
+            bpp: 16,
+        })
+    }
 }
 
 impl<'a> Job<'a> {
@@ -105,15 +129,24 @@ impl<'a> Job<'a> {
         Ok(output)
     }
 
-    /// Claims the JSON file, if one was asked for: beside the output, unless the command line names it. The outputs have to
-    /// be claimed before.
+    /// Claims the JSON file, if one was asked for: beside the output, unless the command line names it. Raw heights always
+    /// have one, by their own name, since they do not say their size. The outputs have to be claimed before.
     ///
     /// # Errors
     ///
     /// As [`Outputs::claim`], and if there is no name for it.
     pub(crate) fn claim_sidecar(&mut self, main: &Target) -> Result<()> {
         let target = match &self.args.json {
-            None => return Ok(()),
+            None => {
+                let targets = self
+                    .files
+                    .iter()
+                    .map(|(output, _)| self.outputs.target(*output));
+                match targets.into_iter().find(|target| target.ending() == "r16") {
+                    Some(raw) => raw.clone().with_ending("json"),
+                    None => return Ok(()),
+                }
+            }
             Some(Some(path)) => Target::from(path.as_path()),
             Some(None) => self.beside(main)?,
         };
@@ -136,6 +169,7 @@ impl<'a> Job<'a> {
     ///
     /// As [`encode`] and [`Outputs::write`].
     pub(crate) fn write_map(&mut self, output: OutputIdx, map: &Map, format: Format) -> Result<()> {
+        format.check(content(map), self.target(output))?;
         self.write(output, &encode(map, format)?)?;
         self.note(output, format, map.size(), range(map));
         Ok(())
@@ -213,6 +247,7 @@ impl<'a> Job<'a> {
         };
         let default = default_format(&map, is_deep);
         let format = Format::choose(args.format, self.outputs.target(output), default)?;
+        format.check(Content::ColorAlpha, self.target(output))?;
         self.write(output, &encode_with_alpha(colors, alpha, format)?)?;
         self.note(output, format, map.size(), range(&map));
         Ok(())
@@ -252,6 +287,7 @@ impl<'a> Job<'a> {
                 options,
                 report,
                 outputs: self.files.iter().map(|(_, record)| record).collect(),
+                raw: self.files.iter().find_map(|(_, record)| record.raw_size()),
             };
             let mut text = serde_json::to_string_pretty(&sidecar_content)?;
             text.push('\n');
@@ -351,11 +387,7 @@ fn told(record: &FileRecord) -> String {
     } = record;
     match (size, format) {
         (Some([width, height]), Some(format)) => {
-            let depth = match format {
-                Format::Png8 => "8 bits",
-                Format::Png16 => "16 bits",
-                Format::Exr => "32-bit floating point",
-            };
+            let (_, depth) = format.depth();
             format!("wrote {file}: {width} × {height} pixels, {depth}")
         }
         _ => format!("wrote {file}"),

@@ -2,7 +2,7 @@
 //!
 //! `cli.rs` has the command line as a whole, `commands/` a file for each subcommand, and the other files what they share:
 //! `arguments.rs` the words as they are typed, `args.rs` the options, `input.rs` what is read, `encode.rs` and `output.rs` what is written, `baking.rs` recipes drawn band by
-//! band, `field.rs` a single field as a recipe, `job.rs` a run from its first claim of a file to its last word,
+//! band, `layers.rs` what the channels of an image hold, `field.rs` a single field as a recipe, `job.rs` a run from its first claim of a file to its last word,
 //! `error.rs` what went wrong.
 
 #![forbid(unsafe_code)]
@@ -18,6 +18,7 @@ mod field;
 mod foresight;
 mod input;
 mod job;
+mod layers;
 mod output;
 mod preview;
 mod progress;

@@ -83,6 +83,12 @@ impl Target {
         }
     }
 
+    /// The name without its folder; empty for standard output.
+    pub(crate) fn name(&self) -> String {
+        let name = self.path().and_then(Path::file_name);
+        name.unwrap_or_default().to_string_lossy().into_owned()
+    }
+
     /// The ending in small letters, without its dot; empty where there is none.
     pub(crate) fn ending(&self) -> String {
         let ending = self.path().and_then(Path::extension);

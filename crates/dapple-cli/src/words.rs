@@ -3,13 +3,11 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, Command, Error};
+use dapple::recipe::similar_words;
 use serde::de::value::Error as WordError;
 use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::ffi::OsStr;
 use std::marker::PhantomData;
-
-/// How alike two words are, from 0 to 1, for one to be a slip of the other.
-const ALIKE: f64 = 0.6;
 
 /// A word as the names of maps and of fields are written: in small letters, with `_`.
 pub(crate) fn with_underscores(word: &str) -> String {
@@ -21,13 +19,25 @@ pub(crate) fn with_dashes(word: &str) -> String {
     word.trim().to_lowercase().replace('_', "-")
 }
 
-/// The word that was perhaps meant.
-pub(crate) fn nearest<'a>(word: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let alike = |other: &str| strsim::normalized_damerau_levenshtein(word, other);
-    let near = valid.into_iter().map(|other| (alike(other), other));
-    let near = near.filter(|&(alike, _)| alike >= ALIKE);
-    near.max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, other)| other)
+/// The error message for a word that is none of a kind, with the one that was perhaps meant, or all of them and `more`.
+pub(crate) fn unknown(kind: &str, word: &str, names: &[&str], more: &str) -> String {
+    slip(kind, word, names.iter().copied()).unwrap_or_else(|| {
+        format!(
+            "{word:?} is no {kind}; there are {}{more}",
+            names.join(", ")
+        )
+    })
+}
+
+/// The error message for a word that is a slip of a name, if it is one.
+pub(crate) fn slip<'a>(
+    kind: &str,
+    word: &str,
+    names: impl IntoIterator<Item = &'a str>,
+) -> Option<String> {
+    let written = with_underscores(word);
+    let near = similar_words(&written, names).into_iter().next()?;
+    (near != written).then(|| format!("{word:?} is no {kind}; did you mean {near}?"))
 }
 
 /// Reads a value of a library by the name that it has in recipes.
@@ -73,18 +83,19 @@ impl<T: DeserializeOwned + Clone + Send + Sync + 'static> TypedValueParser for W
 
 #[cfg(test)]
 mod tests {
-    use super::nearest;
+    use super::unknown;
 
     #[test]
-    fn the_nearest_word_is_that_of_a_slip_and_no_other() {
-        let words = ["weight", "height", "normal"];
-        for (typed, expected) in [
-            ("weigth", Some("weight")),
-            ("hight", Some("height")),
-            ("normals", Some("normal")),
-            ("roughness", None),
-        ] {
-            assert_eq!(nearest(typed, words), expected, "{typed}");
-        }
+    fn an_unknown_word_is_answered_with_the_nearest_or_with_all() {
+        let names = ["height", "normal"];
+        let message = |word: &str| unknown("map", word, &names, ", or all");
+        assert_eq!(
+            message("Hight"),
+            "\"Hight\" is no map; did you mean height?"
+        );
+        assert_eq!(
+            message("xyz"),
+            "\"xyz\" is no map; there are height, normal, or all"
+        );
     }
 }

@@ -30,6 +30,7 @@ mod hex;
 mod linear;
 mod normal;
 mod occlusion;
+mod oklab;
 mod palette;
 mod plane;
 mod ramp;
@@ -44,4 +45,4 @@ pub use normal::{
 };
 pub use occlusion::{OcclusionOptions, ambient_occlusion, ambient_occlusion_of_part};
 pub use palette::Palette;
-pub use ramp::{ColorRamp, ColorStop, Interpolation, Outside};
+pub use ramp::{ColorRamp, ColorStop, Interpolation, Outside, RampSpace};

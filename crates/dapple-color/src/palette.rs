@@ -25,7 +25,7 @@ use crate::{ColorRamp, LinearRgb};
 )]
 #[non_exhaustive]
 pub enum Palette {
-    /// Black to white in linear light.
+    /// Black to white.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/palette-gray.md"))]
     Gray,
@@ -74,7 +74,7 @@ impl Palette {
         codes.map(|&codes| LinearRgb::from_srgb(codes)).collect()
     }
 
-    /// A linear ramp through the colors at equal distances from 0 to 1.
+    /// A ramp through the colors at equal distances from 0 to 1.
     #[must_use]
     pub fn ramp(self) -> ColorRamp {
         ColorRamp::even_unchecked(&self.colors())

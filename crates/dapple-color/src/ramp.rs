@@ -1,9 +1,11 @@
 //! Color ramps: from a number to a color.
 //!
 //! A ramp is a list of stops, each a position and a color, with positions that never decrease; two stops at one position
-//! make a hard edge, and the later one holds at the position itself. Colors between stops are mixed in linear light, as
-//! paints of light mix, and not in sRGB codes.
+//! make a hard edge, and the later one holds at the position itself. Colors between stops are mixed in a [`RampSpace`].
+//! The colors of the stops are brought into it when the ramp is made, so that Oklab costs a color no root.
 
+use crate::oklab::{linear_from_oklab, oklab_from_linear};
+use crate::srgb::{linear_from_srgb, srgb_from_linear};
 use crate::{ColorError, ColorErrorKind, LinearRgb};
 use dapple_raster::Raster;
 
@@ -36,6 +38,24 @@ pub enum Interpolation {
     Smooth,
 }
 
+/// The space in which a color ramp mixes the colors of two stops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum RampSpace {
+    /// Oklab (Ottosson 2020): equal steps look about equal, and the middle of two colors is halfway in lightness and hue.
+    /// Between two strong colors a part may be a little below 0 or above 1, which files cut off.
+    #[default]
+    Oklab,
+    /// The codes of sRGB, as most drawing programs mix. Parts below 0 are mixed as those above, with their sign.
+    Srgb,
+    /// Linear light, as lamps mix; for numbers that are no colors, and where black to white has to be a straight line.
+    Linear,
+}
+
 /// What lies before the first stop and after the last.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/outside.md"))]
@@ -59,11 +79,13 @@ pub enum Outside {
 /// # Examples
 ///
 /// ```
-/// use dapple_color::{ColorRamp, LinearRgb};
+/// use dapple_color::{ColorRamp, LinearRgb, RampSpace};
 ///
 /// let ramp = ColorRamp::from_hex(&["#000000", "#ffffff"])?;
-/// assert_eq!(ramp.at(0.25), LinearRgb::gray(0.25));
 /// assert_eq!(ramp.at(7.0), LinearRgb::WHITE);
+/// assert_eq!(ramp.at(0.5).to_srgb::<u8>(), [99; 3], "half as light as white");
+/// let ramp = ramp.with_space(RampSpace::Linear);
+/// assert_eq!(ramp.at(0.25), LinearRgb::gray(0.25), "a quarter of its light");
 /// # Ok::<(), dapple_color::ColorError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -74,6 +96,9 @@ pub enum Outside {
 )]
 pub struct ColorRamp {
     stops: Vec<ColorStop>,
+    /// The colors of the stops in the space in which they are mixed.
+    mixed: Vec<[f64; 3]>,
+    space: RampSpace,
     interpolation: Interpolation,
     outside: Outside,
 }
@@ -84,13 +109,15 @@ pub struct ColorRamp {
 struct RampData {
     stops: Vec<ColorStop>,
     #[serde(default)]
+    space: RampSpace,
+    #[serde(default)]
     interpolation: Interpolation,
     #[serde(default)]
     outside: Outside,
 }
 
 impl ColorRamp {
-    /// A ramp through stops, linear between them and clamped outside.
+    /// A ramp through stops, with straight lines in Oklab between them, and clamped outside.
     ///
     /// # Errors
     ///
@@ -99,11 +126,7 @@ impl ColorRamp {
     pub fn new(stops: impl Into<Vec<ColorStop>>) -> Result<Self, ColorError> {
         let stops = stops.into();
         check(&stops)?;
-        Ok(Self {
-            stops,
-            interpolation: Interpolation::default(),
-            outside: Outside::default(),
-        })
+        Ok(Self::unchecked(stops))
     }
 
     /// A ramp through colors at equal distances, the first at 0 and the last at 1.
@@ -117,11 +140,18 @@ impl ColorRamp {
 
     /// As [`even`](Self::even), for colors that are known to be finite and not none.
     pub(crate) fn even_unchecked(colors: &[LinearRgb]) -> Self {
-        Self {
-            stops: even_stops(colors),
+        Self::unchecked(even_stops(colors))
+    }
+
+    fn unchecked(stops: Vec<ColorStop>) -> Self {
+        let ramp = Self {
+            stops,
+            mixed: Vec::new(),
+            space: RampSpace::default(),
             interpolation: Interpolation::default(),
             outside: Outside::default(),
-        }
+        };
+        ramp.with_space(RampSpace::default())
     }
 
     /// A ramp through sRGB colors in hexadecimal at equal distances, the first at 0 and the last at 1.
@@ -150,6 +180,17 @@ impl ColorRamp {
         };
         let stops: Vec<ColorStop> = colors.iter().enumerate().map(stop).collect();
         Ok(Self::new(stops)?.with_interpolation(Interpolation::Stepped))
+    }
+
+    /// The same stops, mixed in another space.
+    #[must_use]
+    pub fn with_space(self, space: RampSpace) -> Self {
+        let colors = self.stops.iter().map(|stop| space.of_linear(stop.color));
+        Self {
+            mixed: colors.collect(),
+            space,
+            ..self
+        }
     }
 
     /// The same stops with another rule between them.
@@ -189,13 +230,26 @@ impl ColorRamp {
         let length = after.position * 0.5 - before.position * 0.5;
         let part = (value * 0.5 - before.position * 0.5) / length;
         match self.interpolation {
-            Interpolation::Linear => before.color.lerp(after.color, part),
+            Interpolation::Linear => self.mixture(count, part),
             Interpolation::Stepped => before.color,
-            Interpolation::Smooth => {
-                let part = part * part * (3.0 - 2.0 * part);
-                before.color.lerp(after.color, part)
-            }
+            Interpolation::Smooth => self.mixture(count, part * part * (3.0 - 2.0 * part)),
         }
+    }
+
+    /// The color a part of the way to a stop from the one before it.
+    fn mixture(&self, to: usize, part: f32) -> LinearRgb {
+        let from = to - 1;
+        let (before, after) = (self.stops[from].color, self.stops[to].color);
+        if self.space == RampSpace::Linear {
+            return before.lerp(after, part);
+        }
+        // The way there and back rounds, and the stops themselves are met.
+        if part == 0.0 || before == after {
+            return before;
+        }
+        let (before, after, part) = (self.mixed[from], self.mixed[to], f64::from(part));
+        let mix = |axis: usize| before[axis] * (1.0 - part) + after[axis] * part;
+        self.space.to_linear([mix(0), mix(1), mix(2)])
     }
 
     /// The colors of a raster of numbers, on all cores where the feature `rayon` is on.
@@ -223,6 +277,35 @@ impl ColorRamp {
             first as f32
         }
     }
+}
+
+impl RampSpace {
+    /// A color in this space.
+    fn of_linear(self, color: LinearRgb) -> [f64; 3] {
+        match self {
+            Self::Oklab => oklab_from_linear(color),
+            Self::Srgb => color
+                .to_array()
+                .map(|part| signed(part.into(), srgb_from_linear)),
+            Self::Linear => color.to_array().map(f64::from),
+        }
+    }
+
+    /// The color of a place of this space.
+    fn to_linear(self, parts: [f64; 3]) -> LinearRgb {
+        match self {
+            Self::Oklab => linear_from_oklab(parts),
+            Self::Srgb => parts
+                .map(|part| signed(part, linear_from_srgb) as f32)
+                .into(),
+            Self::Linear => parts.map(|part| part as f32).into(),
+        }
+    }
+}
+
+/// A curve of numbers that are not negative, continued to the others by its mirror image.
+fn signed(value: f64, curve: fn(f64) -> f64) -> f64 {
+    curve(value.abs()).copysign(value)
 }
 
 fn even_stops(colors: &[LinearRgb]) -> Vec<ColorStop> {
@@ -272,7 +355,8 @@ impl TryFrom<RampData> for ColorRamp {
     type Error = ColorError;
 
     fn try_from(data: RampData) -> Result<Self, ColorError> {
-        let ramp = Self::new(data.stops)?.with_interpolation(data.interpolation);
+        let ramp = Self::new(data.stops)?.with_space(data.space);
+        let ramp = ramp.with_interpolation(data.interpolation);
         Ok(ramp.with_outside(data.outside))
     }
 }
@@ -282,6 +366,7 @@ impl From<ColorRamp> for RampData {
     fn from(ramp: ColorRamp) -> Self {
         Self {
             stops: ramp.stops,
+            space: ramp.space,
             interpolation: ramp.interpolation,
             outside: ramp.outside,
         }

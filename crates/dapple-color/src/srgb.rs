@@ -109,8 +109,8 @@ impl Curve {
     }
 }
 
-/// The standard's curve from a code value to a linear one, both from 0 to 1.
-fn linear_from_srgb(value: f64) -> f64 {
+/// The standard's curve from a code value to a linear one, both from 0 to 1, and on beyond 1.
+pub(crate) fn linear_from_srgb(value: f64) -> f64 {
     if value <= 0.040_45 {
         value / 12.92
     } else {
@@ -118,8 +118,8 @@ fn linear_from_srgb(value: f64) -> f64 {
     }
 }
 
-/// The standard's curve from a linear value to a code value, both from 0 to 1.
-fn srgb_from_linear(value: f64) -> f64 {
+/// The standard's curve from a linear value to a code value, both from 0 to 1, and on beyond 1.
+pub(crate) fn srgb_from_linear(value: f64) -> f64 {
     if value <= 0.003_130_8 {
         value * 12.92
     } else {

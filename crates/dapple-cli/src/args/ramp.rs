@@ -10,7 +10,7 @@ pub(crate) struct RampArg {
     text: String,
     /// The colors, from low to high: at least one.
     pub(crate) colors: Vec<LinearRgb>,
-    /// A linear ramp through them.
+    /// A ramp through them, which is mixed in Oklab.
     pub(crate) ramp: ColorRamp,
 }
 

@@ -1,28 +1,33 @@
 //! `dapple bake`: the maps of recipes.
 
+mod batch;
+mod claim;
+mod documents;
+mod images;
+mod maps;
+mod presets;
 mod recipes;
 
 use crate::args::{OutputArgs, Region, Size, seed};
-use crate::baking::{self, MapFile, advise, read_images, read_recipe};
+use crate::baking::{advise, read_images, read_recipe, report};
 use crate::encode::Format;
-use crate::error::{Exit, Hint, report as report_error, usage};
+use crate::error::{Exit, Hint, usage};
 use crate::foresight::foresee;
-use crate::job::{Context, Job, eprintln_if_possible};
-use crate::output::OutputIdx;
+use crate::job::{Context, Job};
 use crate::preview::{self, Thing};
 use crate::progress::Progress;
-use crate::words::{Word, nearest, with_underscores};
-use anyhow::{Context as _, Error, Result};
+use crate::words::Word;
+use anyhow::{Error, Result};
+use batch::Batch;
+use claim::claim;
 use dapple::color::NormalY;
 use dapple::hash::Seed;
-use dapple::recipe::{
-    Bake, BakeMemory, BakeOptions, MapKind, Plan, Recipe, RecipeError, RecipeErrorKind,
-};
+use dapple::recipe::{Bake, BakeMemory, BakeOptions, Plan, Recipe, RecipeError, RecipeErrorKind};
 use dapple::tile::Map;
-use serde::{Serialize, Serializer};
-use serde_json::{Value, json};
+use maps::Maps;
+use presets::Preset;
+use serde::Serialize;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -35,18 +40,22 @@ Examples:
   dapple bake craters --maps height --size 4096x256 --banded -o wide.exr
   dapple bake rock ice marble -o all/ --size 256 --preview
   dapple bake 'my-*.toml' --keep-going --maps albedo --sheet -o mine/
+  dapple bake rock --preset unity -o Assets/Rock/
+  dapple bake rock -o rock.glb
+  dapple bake marble -o marble.mtlx
+  dapple bake mountains --maps height --size 2017 -o island.r16
 
 `dapple recipe --list` names the built-in recipes, and `dapple recipe rock` prints one, to
 begin your own with.
 
 Units: heights are from 0 to 1, and `relief` in the recipe says how many units of the plane
 a height of 1 stands for. Normals point out of the surface; occlusion is 1 where all of the
-sky is seen; curvature is 0.5 where it is flat. Albedo is sRGB in PNG and linear in EXR, and
-everything else is linear in both.";
+sky is seen; curvature is 0.5 where it is flat. Albedo is sRGB in PNG and linear in EXR and
+NumPy arrays, and everything else is linear in all. For programs that know meters, a unit is one.";
 
 /// Bake the maps of materials from recipes: height, normal, ao, curvature, albedo, roughness, metallic, orm.
 #[derive(clap::Args, Clone, Debug, Serialize)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", presets::table()))]
 pub(crate) struct Args {
     /// Built-in recipes, or files in TOML or JSON; `-` is standard input. A pattern such as 'rocks/*.toml' stands for the files
     /// that it matches, or for built-in recipes if there are none.
@@ -57,13 +66,13 @@ pub(crate) struct Args {
     #[arg(long, value_name = "WxH", default_value = "1024")]
     size: Size,
 
-    /// The maps, with commas between them, or all.
-    #[arg(
-        long,
-        value_name = "MAPS",
-        default_value = "height,normal,ao,albedo,roughness"
-    )]
-    maps: Maps,
+    /// The maps, with commas between them, or all. By default height, normal, ao, albedo and roughness.
+    #[arg(long, value_name = "MAPS")]
+    maps: Option<Maps>,
+
+    /// The images of a program: their names, what their channels hold, their bits, and where green points in normal maps.
+    #[arg(long, value_name = "PROGRAM", value_parser = Preset::parser(), conflicts_with_all = ["maps", "format"])]
+    preset: Option<&'static Preset>,
 
     /// Another seed than that of the recipe.
     #[arg(long, value_name = "N", value_parser = seed)]
@@ -74,7 +83,7 @@ pub(crate) struct Args {
     region: Option<Region>,
 
     /// Where green points in normal maps: up (opengl: Blender, Unity, Godot, glTF) or down (directx: Unreal). By default as
-    /// the recipe has it, which is up unless it says otherwise.
+    /// the preset or the recipe has it, which is up unless it says otherwise.
     #[arg(long, value_name = "WAY", value_parser = Word::<NormalY>::of(&["opengl", "directx"]))]
     normal_y: Option<NormalY>,
 
@@ -99,7 +108,7 @@ pub(crate) struct Args {
     #[arg(long, value_enum, value_name = "THING", num_args = 0..=1, require_equals = true, default_missing_value = "plane", help_heading = "Output")]
     preview: Option<Thing>,
 
-    /// The format; by default PNG with 16 bits, or EXR where the output ends in `.exr`.
+    /// The format; by default PNG with 16 bits, or by the ending of the output: EXR, a NumPy array, or raw heights.
     #[arg(long, value_enum, value_name = "FORMAT", help_heading = "Output")]
     format: Option<Format>,
 
@@ -108,53 +117,10 @@ pub(crate) struct Args {
     files: OutputArgs,
 }
 
-/// The maps that are baked, each once.
-#[derive(Clone, Debug)]
-struct Maps(Vec<MapKind>);
-
-impl FromStr for Maps {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        if with_underscores(text) == "all" {
-            return Ok(Self(MapKind::ALL.to_vec()));
-        }
-        let mut maps = Vec::new();
-        for name in text.split(',') {
-            let names = || MapKind::ALL.into_iter().map(MapKind::name);
-            let word = with_underscores(name);
-            let kind = MapKind::from_name(&word).ok_or_else(|| match nearest(&word, names()) {
-                Some(near) => format!("{name:?} is no map; did you mean {near}?"),
-                None => format!(
-                    "{name:?} is no map; there are {}, or all",
-                    names().collect::<Vec<_>>().join(", ")
-                ),
-            })?;
-            if maps.contains(&kind) {
-                return Err(format!("the map {} is asked for twice", kind.name()));
-            }
-            maps.push(kind);
-        }
-        Ok(Self(maps))
-    }
-}
-
-impl Serialize for Maps {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.0.iter().map(|kind| kind.name()))
-    }
-}
-
 /// A recipe with what its images are relative to.
 struct Work {
     recipe: Recipe,
     folder: PathBuf,
-}
-
-/// The files of a recipe.
-struct Claimed {
-    maps: Vec<MapFile>,
-    preview: Option<(OutputIdx, Format)>,
 }
 
 /// Runs it.
@@ -163,6 +129,7 @@ struct Claimed {
 ///
 /// Whatever went wrong.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    args.check_document()?;
     let names = recipes::expanded(&args.recipes)?;
     let files = args.files_for(names.len())?;
     let mut batch = Batch::new(names.len(), args.keep_going, context);
@@ -220,10 +187,10 @@ impl Work {
         let claimed = claim(args, files, recipe, &mut job)?;
         let images = read_images(recipe, &self.folder)?;
         let plan = Plan::new(recipe, &images, 0.0).map_err(|error| args.blame(error))?;
-        foresee(&plan, &args.options(), &claimed.maps, &job)?;
+        foresee(&plan, &args.options(), &claimed.images, &job)?;
         let bake =
             Bake::new(&plan, &args.options()).map_err(|error| advise(error).wrong_value())?;
-        baking::write(&mut job, bake, &claimed.maps, progress)?;
+        claimed.write(&mut job, bake, recipe, progress)?;
         if let (Some((output, format)), Some(thing)) = (claimed.preview, args.preview) {
             let picture = preview::picture(recipe, &images, thing)?;
             job.write_map(output, &Map::Color(picture), format)?;
@@ -239,17 +206,6 @@ struct Told<'a> {
     args: &'a Args,
     #[serde(rename = "baked")]
     recipe: &'a Recipe,
-}
-
-/// What programs that read the maps need to know.
-fn report(recipe: &Recipe) -> Value {
-    json!({
-        "name": recipe.name,
-        "seed": recipe.seed.0,
-        "extent": recipe.extent,
-        "repeats": recipe.wrap,
-        "relief": recipe.material.relief,
-    })
 }
 
 impl Args {
@@ -325,7 +281,8 @@ impl Args {
         if let Some(relief) = self.relief {
             recipe.material.relief = relief;
         }
-        if let Some(normal_y) = self.normal_y {
+        let preset = self.preset().map(|preset| preset.normal_y);
+        if let Some(normal_y) = self.normal_y.or(preset) {
             recipe.material.normal_y = normal_y;
         }
     }
@@ -343,117 +300,12 @@ impl Args {
         BakeOptions {
             size: self.size.0,
             region: self.region.map(Region::of_recipe),
-            maps: self.maps.0.clone(),
+            maps: self.map_kinds(),
             memory: if self.banded {
                 BakeMemory::Banded
             } else {
                 BakeMemory::Whole
             },
-        }
-    }
-}
-
-/// Claims a file for each map, and for all that goes with them: the output itself for a single one, unless that is a folder,
-/// and else `NAME_MAP.png`.
-fn claim(args: &Args, files: &OutputArgs, recipe: &Recipe, job: &mut Job<'_>) -> Result<Claimed> {
-    let mut parts = Vec::new();
-    for kind in &args.maps.0 {
-        parts.push(kind.name().to_owned());
-        parts.extend(args.sheet.then(|| format!("{}_2x2", kind.name())));
-    }
-    parts.extend(args.preview.map(|_| "preview".to_owned()));
-    let ending = args.format.map_or("png", Format::ending);
-    let targets = files.targets(&recipe.name, &parts, ending)?;
-    let mut outputs = Vec::new();
-    for target in &targets.files {
-        let format = baking::format(args.format, target)?;
-        outputs.push((job.claim(target)?, format));
-    }
-    job.claim_sidecar(&targets.main)?;
-    let mut outputs = outputs.into_iter();
-    let mut maps = Vec::new();
-    for &kind in &args.maps.0 {
-        let map = outputs.next();
-        let sheet = if args.sheet { outputs.next() } else { None };
-        maps.extend(map.map(|(output, format)| MapFile {
-            kind,
-            output,
-            sheet: sheet.map(|(output, _)| output),
-            format,
-        }));
-    }
-    let preview = outputs.next();
-    Ok(Claimed { maps, preview })
-}
-
-/// A run over several recipes, some of which may fail.
-struct Batch<'a> {
-    n_recipes: usize,
-    n_failed: usize,
-    keep_going: bool,
-    context: &'a Context,
-}
-
-impl<'a> Batch<'a> {
-    fn new(n_recipes: usize, keep_going: bool, context: &'a Context) -> Self {
-        Self {
-            n_recipes,
-            n_failed: 0,
-            keep_going,
-            context,
-        }
-    }
-
-    /// What a recipe gave, or nothing after an error that was told and does not end the others.
-    fn checked<T>(&mut self, name: &str, result: Result<T>) -> Result<Option<T>> {
-        if self.n_recipes == 1 {
-            return result.map(Some);
-        }
-        match result.with_context(|| format!("{name} was not baked")) {
-            Ok(value) => Ok(Some(value)),
-            Err(error) if self.keep_going => {
-                report_error(&error, &self.context.arguments);
-                self.n_failed += 1;
-                Ok(None)
-            }
-            Err(error) => Err(error),
-        }
-    }
-
-    /// Says how many were baked.
-    fn exit(&self) -> Exit {
-        if self.n_recipes > 1 && !self.context.quiet {
-            let n_baked = self.n_recipes - self.n_failed;
-            eprintln_if_possible(&format!("baked {n_baked} of {} recipes", self.n_recipes));
-        }
-        if self.n_failed > 0 {
-            Exit::Failed
-        } else {
-            Exit::Done
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Maps;
-
-    #[test]
-    fn maps_go_by_their_names_in_any_case() {
-        let names = |text: &str| -> Result<Vec<_>, String> {
-            let maps: Maps = text.parse()?;
-            Ok(maps.0.iter().map(|kind| kind.name()).collect())
-        };
-        assert_eq!(names("AO, BaseColor"), Ok(vec!["ao", "albedo"]));
-        assert_eq!(names("base-color"), names("albedo"));
-        assert_eq!(names("All").map(|maps| maps.len()), Ok(8));
-        for (wrong, part) in [
-            ("bumps", "roughness"),
-            ("heigth", "height?"),
-            ("ao,ao", "twice"),
-        ] {
-            let error = names(wrong).unwrap_err();
-            assert!(error.contains(part), "{wrong}: {error}");
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::args::{Extent, ImageArgs, Numbers};
 use crate::error::{Exit, Hint};
 use crate::field::{Field, FieldArgs, check_whole_cells, draw, extent_of};
 use crate::job::Context;
-use crate::words::{Word, nearest, with_underscores};
+use crate::words::{Word, unknown, with_underscores};
 use anyhow::Result;
 use dapple::hash::Seed;
 use dapple::recipe::{Images, Motion, Node, WorleyNode, WorleyValue};
@@ -227,12 +227,6 @@ impl Args {
 }
 
 fn value(text: &str) -> Result<WorleyValue, String> {
-    let word = with_underscores(text);
-    WorleyValue::from_name(&word).ok_or_else(|| {
-        let names = WorleyValue::names();
-        match nearest(&word, names.iter().copied()) {
-            Some(near) => format!("{text:?} is no value; did you mean {near}?"),
-            None => format!("{text:?} is no value; there are {}", names.join(", ")),
-        }
-    })
+    WorleyValue::from_name(&with_underscores(text))
+        .ok_or_else(|| unknown("value", text, &WorleyValue::names(), ""))
 }

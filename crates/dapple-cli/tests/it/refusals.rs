@@ -157,7 +157,7 @@ const SLIPS: [(&str, &str); 10] = [
     ("points --seed -1", "not negative"),
     (
         "blend rock.png grass.png,weigth=0.3 -o out.png",
-        "did you mean weight=",
+        "did you mean weight?",
     ),
 ];
 

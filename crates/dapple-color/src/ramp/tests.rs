@@ -1,6 +1,6 @@
 //! Ramps at their stops, between and outside of them, and with bad stops.
 
-use super::{ColorRamp, ColorStop, Interpolation, Outside};
+use super::{ColorRamp, ColorStop, Interpolation, Outside, RampSpace};
 use crate::{ColorErrorKind, LinearRgb};
 use dapple_raster::Raster;
 use proptest::prelude::*;
@@ -10,10 +10,13 @@ fn stop(position: f32, gray: f32) -> ColorStop {
     ColorStop { position, color }
 }
 
-/// Gray 0, 1 and 5 at 1, 2 and 4.
+/// Gray 0, 1 and 5 at 1, 2 and 4, in linear light.
 fn ramp() -> ColorRamp {
-    ColorRamp::new([stop(1.0, 0.0), stop(2.0, 1.0), stop(4.0, 5.0)]).unwrap()
+    let ramp = ColorRamp::new([stop(1.0, 0.0), stop(2.0, 1.0), stop(4.0, 5.0)]).unwrap();
+    ramp.with_space(RampSpace::Linear)
 }
+
+const SPACES: [RampSpace; 3] = [RampSpace::Oklab, RampSpace::Srgb, RampSpace::Linear];
 
 fn grays<const N: usize>(ramp: &ColorRamp, values: [f32; N]) -> [f32; N] {
     values.map(|value| ramp.at(value).r)
@@ -78,6 +81,88 @@ fn two_stops_at_one_position_make_an_edge() {
         let single = single.clone().with_outside(outside);
         assert_eq!(grays(&single, [-1.0, 0.5, 2.0]), [0.25; 3], "one color");
     }
+}
+
+#[test]
+fn every_space_mixes_as_it_is_defined() {
+    let [from, to] = [[200_u8, 40, 10], [20, 90, 250]].map(LinearRgb::from_srgb);
+    let of_space = |space| ColorRamp::even(&[from, to]).unwrap().with_space(space);
+    for step in 0..=16 {
+        let part = step as f32 / 16.0;
+        let at = |space| of_space(space).at(part);
+        assert_eq!(at(RampSpace::Linear), from.lerp(to, part));
+        // Codes of 8 bits, mixed as they are, within their rounding.
+        let codes = at(RampSpace::Srgb).to_srgb::<u8>();
+        for (code, [from, to]) in
+            codes
+                .into_iter()
+                .zip([[200.0, 20.0], [40.0, 90.0], [10.0, 250.0]])
+        {
+            let expected: f32 = from + (to - from) * part;
+            assert!(
+                (f32::from(code) - expected).abs() < 0.51,
+                "{code} and {expected}"
+            );
+        }
+        let [from, to, mixed] =
+            [from, to, at(RampSpace::Oklab)].map(crate::oklab::oklab_from_linear);
+        for axis in 0..3 {
+            let expected = from[axis] + (to[axis] - from[axis]) * f64::from(part);
+            // The color between is rounded to single precision.
+            assert!((mixed[axis] - expected).abs() < 1e-6, "{mixed:?} at {part}");
+        }
+    }
+    let middle = |space| of_space_of_gray(space).at(0.5).r;
+    assert!(
+        (middle(RampSpace::Oklab) - 0.125).abs() < 1e-7,
+        "half the lightness is an eighth of the light"
+    );
+    assert!(
+        (middle(RampSpace::Srgb) - 0.214_041_14).abs() < 1e-7,
+        "IEC 61966-2-1 at a half"
+    );
+    assert_eq!(middle(RampSpace::Linear), 0.5);
+}
+
+/// Black to white.
+fn of_space_of_gray(space: RampSpace) -> ColorRamp {
+    let ramp = ColorRamp::even(&[LinearRgb::BLACK, LinearRgb::WHITE]).unwrap();
+    ramp.with_space(space)
+}
+
+#[test]
+fn every_space_meets_the_stops_and_keeps_one_color() {
+    let colors = [[0.1, 0.7, 3.0], [-0.25, 0.5, 0.0], [-0.25, 0.5, 0.0]].map(LinearRgb::from);
+    for space in SPACES {
+        let ramp = ColorRamp::even(&colors).unwrap().with_space(space);
+        assert_eq!(
+            [0.0, 0.5, 0.6, 0.9, 1.0].map(|at| ramp.at(at)),
+            [colors[0], colors[1], colors[1], colors[1], colors[1]],
+            "{space:?}"
+        );
+        let near = ramp.at(0.5_f32.next_down()).to_array();
+        for (near, part) in near.into_iter().zip(colors[1].to_array()) {
+            // There and back by matrices of ten digits.
+            assert!((near - part).abs() < 1e-5, "{space:?}: {near} and {part}");
+        }
+    }
+}
+
+#[test]
+fn value_stability_ramp_spaces() {
+    let bits = SPACES.map(|space| {
+        let ramp = ColorRamp::from_hex(&["#204060", "#ffd080"]).unwrap();
+        ramp.with_space(space).at(0.3).to_array().map(f32::to_bits)
+    });
+    assert_eq!(
+        bits,
+        [
+            [0x3def_34b6, 0x3e14_fc5f, 0x3e24_b3f4],
+            [0x3dfe_fd8d, 0x3e17_275c, 0x3e12_68ec],
+            [0x3e9e_c6d4, 0x3e66_84c0, 0x3e16_282c]
+        ],
+        "{bits:?}"
+    );
 }
 
 #[test]
@@ -147,6 +232,7 @@ proptest! {
         grays in proptest::collection::vec(0.0_f32..1.0, 8),
         value in any::<f32>(),
         repeat in any::<bool>(),
+        space in proptest::sample::select(SPACES.to_vec()),
     ) {
         let mut positions = positions;
         positions.sort_by(f32::total_cmp);
@@ -154,10 +240,10 @@ proptest! {
         let outside = if repeat { Outside::Repeat } else { Outside::Clamp };
         for interpolation in [Interpolation::Linear, Interpolation::Stepped, Interpolation::Smooth] {
             let ramp = ColorRamp::new(stops.clone()).unwrap();
-            let ramp = ramp.with_interpolation(interpolation).with_outside(outside);
+            let ramp = ramp.with_interpolation(interpolation).with_outside(outside).with_space(space);
             let gray = ramp.at(value).r;
-            // Two products and a sum round up by at most 2^-23 of the whole.
-            prop_assert!((0.0..=1.000_001).contains(&gray), "{gray} at {value}");
+            // Two products and a sum round up by at most 2^-23 of the whole, and the matrices of Oklab have ten digits.
+            prop_assert!((-1e-8..=1.000_001).contains(&gray), "{gray} at {value}");
         }
     }
 }

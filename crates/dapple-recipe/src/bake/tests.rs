@@ -4,7 +4,7 @@ use crate::{
     Bake, BakeMemory, BakeOptions, Images, MapKind, MapRows, Picture, Plan, Recipe,
     RecipeErrorKind, Region,
 };
-use dapple_color::LinearRgb;
+use dapple_color::{ColorRamp, LinearRgb, RampSpace};
 use dapple_raster::{Raster, Wrap};
 use std::sync::Arc;
 
@@ -422,12 +422,40 @@ fn value_stability_of_a_bake_of_all_nodes() {
         0xa563_ddc3_bf97_1ef9,
         0x75d5_8c2d_b1c4_d469,
         0xf750_a94f_d589_15d7,
-        0xc6a4_1528_c65e_4225,
+        0xc80a_385a_d3f3_e264,
         0x6410_36c6_e89e_3875,
         0x869a_c710_6856_dc78,
         0xa705_f2df_dbc7_0888,
     ];
     assert_eq!(hashes, expected, "the bits of the maps");
+}
+
+#[test]
+fn a_ramp_mixes_in_the_space_that_it_names_and_else_in_oklab() {
+    for (space, expected) in [
+        ("", RampSpace::Oklab),
+        ("space = \"oklab\"", RampSpace::Oklab),
+        ("space = \"srgb\"", RampSpace::Srgb),
+        ("space = \"linear\"", RampSpace::Linear),
+    ] {
+        let text = format!(
+            "dapple = 1\n[nodes.a.ramp]\ninput = 0.3\ncolors = [\"#00f\", \"#ff0\"]\n{space}\n[material]\nalbedo = \"a\"\n"
+        );
+        let plan = plan(&text);
+        let options = BakeOptions {
+            maps: vec![MapKind::Albedo],
+            ..options([2, 2])
+        };
+        let maps = Bake::new(&plan, &options).unwrap().whole_maps().unwrap();
+        let ramp = ColorRamp::from_hex(&["#00f", "#ff0"]).unwrap();
+        let color = ramp.with_space(expected).at(0.3);
+        let map = MapRows::Color(Raster::filled([2, 2], color).unwrap());
+        assert_eq!(maps, [(MapKind::Albedo, map)], "{space}");
+        let code = Recipe::from_toml(&text).unwrap().to_rust().unwrap();
+        let call = format!(".with_space(color::RampSpace::{expected:?})");
+        let is_usual = expected == RampSpace::default();
+        assert_eq!(code.contains(&call), !is_usual, "{code}");
+    }
 }
 
 #[test]

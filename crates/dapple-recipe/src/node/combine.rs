@@ -1,7 +1,7 @@
 //! Nodes that bring several together, and those that see a whole picture.
 
 use crate::{Input, NodeSeed};
-use dapple_color::{Interpolation, LinearRgb, Outside, Palette};
+use dapple_color::{Interpolation, LinearRgb, Outside, Palette, RampSpace};
 use dapple_tile::{Disturbance, MatchBorders, Method, Mixing, Weighting};
 use serde::{Deserialize, Serialize};
 
@@ -52,6 +52,9 @@ pub struct Ramped {
     /// The number at which each color is; at equal distances from 0 to 1 by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub positions: Vec<f32>,
+    /// The space in which two colors are mixed; Oklab by default.
+    #[serde(default)]
+    pub space: RampSpace,
     /// What lies between two colors; a line by default.
     #[serde(default)]
     pub interpolation: Interpolation,

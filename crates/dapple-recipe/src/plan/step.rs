@@ -413,6 +413,7 @@ fn ramp(node: &crate::Ramped) -> Result<ColorRamp, RecipeError> {
         return conflict("a ramp has as many `positions` as colors, or none");
     };
     Ok(ramp
+        .with_space(node.space)
         .with_interpolation(node.interpolation)
         .with_outside(node.outside))
 }

@@ -3,7 +3,7 @@
 use crate::args::{Alpha, Size};
 use crate::error::{Hint, usage};
 use crate::input::{self, Kind, Loaded};
-use crate::words::{nearest, with_underscores};
+use crate::words::{slip, with_underscores};
 use anyhow::{Context as _, Result};
 use dapple::raster::Raster;
 use dapple::recipe::MapKind;
@@ -312,11 +312,7 @@ fn is_key(key: &str) -> bool {
 /// Refuses a key that is a slip of one that means something; others are names of maps.
 fn check_key(key: &str) -> Result<(), String> {
     let maps = MapKind::ALL.into_iter().map(MapKind::name);
-    let known: Vec<_> = ["weight"].into_iter().chain(maps).collect();
-    match nearest(key, known.iter().copied()) {
-        Some(near) if near != key => Err(format!("there is no key {key}=; did you mean {near}=?")),
-        _ => Ok(()),
-    }
+    slip("key", key, ["weight"].into_iter().chain(maps)).map_or(Ok(()), Err)
 }
 
 /// A number, or the name of a mask.

@@ -156,18 +156,19 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
         "glb" => Product::Glb,
         "obj" => Product::Obj,
         "ply" => Product::Ply,
-        "png" | "exr" => Product::Texture,
+        "png" | "exr" | "npy" | "r16" => Product::Texture,
         "" if target == Target::Stdout => Product::Glb,
         ending => {
             let error = usage(format!("{target}: nothing is written as {ending:?}"));
-            return Err(error.hint("let the name end in .glb, .obj, .ply, .png or .exr"));
+            return Err(error.hint("let the name end in .glb, .obj, .ply, .png, .exr or .npy"));
         }
     };
     let format = match product {
         Product::Texture => Format::choose(args.image.format, &target, Format::Png16)?,
         _ => args.image.format.unwrap_or(Format::Png8),
     };
-    if format == Format::Exr && product != Product::Texture {
+    let is_png = matches!(format, Format::Png8 | Format::Png16);
+    if !is_png && product != Product::Texture {
         return Err(usage("textures of models are PNG").hint("add --format png8 or png16"));
     }
     if product == Product::Ply && !args.map.is_empty() {

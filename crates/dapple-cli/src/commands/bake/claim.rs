@@ -1,0 +1,151 @@
+//! The files of a recipe: claimed before the work begins, and written when it is done.
+
+use super::Args;
+use super::documents::{glb, mtlx};
+use super::presets::Document;
+use crate::args::{OutputArgs, Targets};
+use crate::baking::{self, MapFile};
+use crate::encode::Format;
+use crate::error::{Hint, usage};
+use crate::job::Job;
+use crate::layers::{Image, Layers};
+use crate::output::{OutputIdx, Target};
+use crate::progress::Progress;
+use anyhow::Result;
+use dapple::recipe::{Bake, Recipe};
+
+/// The files of a recipe.
+pub(super) struct Claimed {
+    pub(super) images: Vec<Image>,
+    /// A file for each image, unless a document has them in it.
+    files: Vec<MapFile>,
+    document: Option<(OutputIdx, Document)>,
+    pub(super) preview: Option<(OutputIdx, Format)>,
+}
+
+/// Claims a file for each image, and for all that goes with them: the output itself for a single one, unless that is a folder,
+/// and else `NAME_MAP.png`.
+pub(super) fn claim(
+    args: &Args,
+    files: &OutputArgs,
+    recipe: &Recipe,
+    job: &mut Job<'_>,
+) -> Result<Claimed> {
+    let Targets { main, files } = targets(args, files, recipe)?;
+    let mut places = files.into_iter();
+    let mut claimed = Claimed {
+        images: Vec::new(),
+        files: Vec::new(),
+        document: None,
+        preview: None,
+    };
+    if let Some(document) = args.document()
+        && let Some(target) = places.next()
+    {
+        check_ending(&target, document)?;
+        claimed.document = Some((job.claim(&target)?, document));
+    }
+    for (_, layers, asked) in args.images() {
+        if args.has_images_in_it() {
+            let format = asked.unwrap_or(Format::Png8);
+            claimed.images.push(Image { layers, format });
+            continue;
+        }
+        let Some(target) = places.next() else { break };
+        let target = match claimed.document {
+            Some(_) => target.with_ending("png"),
+            None => target,
+        };
+        let image = image(layers, asked, &target)?;
+        let output = job.claim(&target)?;
+        let sheet = args.sheet.then(|| places.next()).flatten();
+        let sheet = sheet.map(|sheet| job.claim(&sheet)).transpose()?;
+        claimed.images.push(image);
+        claimed.files.push(MapFile {
+            image,
+            output,
+            sheet,
+        });
+    }
+    if let Some(target) = places.next() {
+        claimed.preview = Some(claim_preview(args, target, job)?);
+    }
+    job.claim_sidecar(&main)?;
+    Ok(claimed)
+}
+
+/// The names of all files: the document, each image with its sheet, and the preview.
+fn targets(args: &Args, files: &OutputArgs, recipe: &Recipe) -> Result<Targets> {
+    let document = args.document();
+    // A document is the output itself.
+    let mut parts: Vec<_> = document.iter().map(|_| String::new()).collect();
+    let images = args.images();
+    for (part, ..) in images.iter().filter(|_| !args.has_images_in_it()) {
+        parts.push((*part).to_owned());
+        parts.extend(args.sheet.then(|| format!("{part}_2x2")));
+    }
+    parts.extend(args.preview.map(|_| "preview".to_owned()));
+    let ending = match document {
+        Some(document) => document.ending(),
+        None => args.format.map_or("png", Format::ending),
+    };
+    let prefix = args.preset().map_or("", |preset| preset.prefix);
+    files.targets(&format!("{prefix}{}", recipe.name), &parts, ending)
+}
+
+/// An image in the format of its file.
+fn image(layers: Layers, asked: Option<Format>, target: &Target) -> Result<Image> {
+    let format = baking::format(asked, target)?;
+    format.check(layers.content(), target)?;
+    Ok(Image { layers, format })
+}
+
+/// Claims the picture in light, which is a PNG where the maps are no images.
+fn claim_preview(args: &Args, target: Target, job: &mut Job<'_>) -> Result<(OutputIdx, Format)> {
+    let target = match target.ending().as_str() {
+        "png" | "exr" => target,
+        _ => target.with_ending("png"),
+    };
+    let asked = args
+        .format
+        .filter(|format| format.ending() == target.ending());
+    let format = baking::format(asked, &target)?;
+    Ok((job.claim(&target)?, format))
+}
+
+/// Refuses a name that is none of such a document.
+fn check_ending(target: &Target, document: Document) -> Result<()> {
+    let ending = document.ending();
+    if *target == Target::Stdout || target.ending() == ending {
+        return Ok(());
+    }
+    let error = usage(format!("{target} is not a name for a .{ending}"));
+    Err(error.hint(format!(
+        "let it end in .{ending}, or in a slash for a folder"
+    )))
+}
+
+impl Claimed {
+    /// Writes the images, and the document that is made of them.
+    pub(super) fn write(
+        &self,
+        job: &mut Job<'_>,
+        bake: Bake<'_>,
+        recipe: &Recipe,
+        progress: &Progress,
+    ) -> Result<()> {
+        match self.document {
+            None => baking::write(job, bake, &self.files, progress),
+            Some((output, Document::Glb)) => {
+                let images = baking::encode(bake, &self.images, progress)?;
+                job.write(output, &glb(recipe, images)?)
+            }
+            Some((output, Document::Mtlx)) => {
+                baking::write(job, bake, &self.files, progress)?;
+                let name = |file: &MapFile| (file.image.layers, job.target(file.output).name());
+                let names: Vec<_> = self.files.iter().map(name).collect();
+                job.write(output, mtlx(recipe, &names).as_bytes())
+            }
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Materials in one file: a plane of glTF, and a document of MaterialX.
+//!
+//! References: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022); Smythe, Stone et al., *MaterialX
+//! Specification* and *MaterialX Standard Nodes*, version 1.38, 2021. A unit of the plane is a meter in both.
+
+use crate::layers::Layers;
+use anyhow::{Result, anyhow};
+use dapple::mesh::io::gltf;
+use dapple::mesh::{EncodedImage, Material, Mesh, Model};
+use dapple::points::glam::{DVec2, DVec3};
+use dapple::recipe::{MapKind, Recipe};
+
+/// A plane as large as the tile, level and seen from above (+y), with v toward +z, and the images of the preset: base color,
+/// occlusion with roughness and metallic, normals.
+pub(super) fn glb(recipe: &Recipe, images: Vec<Vec<u8>>) -> Result<Vec<u8>> {
+    let images = images.into_iter().map(EncodedImage::new);
+    let images = images.collect::<Result<Vec<_>, _>>()?;
+    let [base_color, packed, normal] =
+        <[_; 3]>::try_from(images).map_err(|_| anyhow!("a plane of glTF has three images"))?;
+    let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(DVec2::from);
+    let extent = DVec2::from(recipe.extent);
+    let position = |uv: DVec2| {
+        let at = (uv - 0.5) * extent;
+        DVec3::new(at.x, 0.0, at.y)
+    };
+    let faces = [[0, 2, 1], [1, 2, 3]];
+    let mut model = Model::from(Mesh::new(corners.map(position).to_vec(), &faces)?);
+    model.uvs = Some(
+        faces
+            .map(|face| face.map(|corner| corners[corner as usize]))
+            .to_vec(),
+    );
+    model.material = Material {
+        base_color: Some(base_color),
+        normal: Some(normal),
+        occlusion: Some(packed.clone()),
+        metallic_roughness: Some(packed),
+        ..Material::default()
+    };
+    Ok(gltf::write(&model)?)
+}
+
+/// What a map is in a document of MaterialX.
+struct Wire {
+    kind: MapKind,
+    /// The name of its image.
+    name: &'static str,
+    /// The type of its image, and of the input of the surface.
+    type_name: &'static str,
+    color_space: &'static str,
+    /// The input of the surface that it goes to; the height goes to the displacement.
+    input: Option<&'static str>,
+}
+
+const fn wire(
+    kind: MapKind,
+    name: &'static str,
+    type_name: &'static str,
+    input: Option<&'static str>,
+) -> Wire {
+    let color_space = match kind {
+        MapKind::Albedo => "srgb_texture",
+        _ => "raw",
+    };
+    Wire {
+        kind,
+        name,
+        type_name,
+        color_space,
+        input,
+    }
+}
+
+const WIRES: [Wire; 5] = [
+    wire(MapKind::Albedo, "base_color", "color3", Some("base_color")),
+    wire(
+        MapKind::Roughness,
+        "roughness",
+        "float",
+        Some("specular_roughness"),
+    ),
+    wire(MapKind::Metallic, "metallic", "float", Some("metalness")),
+    wire(MapKind::Normal, "normal", "vector3", Some("normal")),
+    wire(MapKind::Height, "height", "float", None),
+];
+
+/// A standard surface with an image for each map, by the names of their files, and a displacement in meters where there is a
+/// relief.
+pub(super) fn mtlx(recipe: &Recipe, files: &[(Layers, String)]) -> String {
+    let relief = recipe.material.relief;
+    let mut graph = String::new();
+    let mut outputs = String::new();
+    let mut inputs = String::new();
+    for (layers, file) in files {
+        let is_of = |wire: &&Wire| *layers == Layers::Map(wire.kind);
+        let Some(wire) = WIRES.iter().find(is_of) else {
+            continue;
+        };
+        graph += &image_node(wire, file);
+        let Wire {
+            name, type_name, ..
+        } = wire;
+        outputs += &format!(
+            "    <output name=\"{name}_output\" type=\"{type_name}\" nodename=\"{name}\" />\n"
+        );
+        if let Some(input) = wire.input {
+            inputs += &format!(
+                "    <input name=\"{input}\" type=\"{type_name}\" nodegraph=\"maps\" output=\"{name}_output\" />\n"
+            );
+        }
+    }
+    let (displacement, shader) = match relief == 0.0 {
+        true => (String::new(), ""),
+        false => (displacement(relief), DISPLACEMENT_INPUT),
+    };
+    let name = identifier(&recipe.name);
+    format!(
+        r#"<?xml version="1.0"?>
+<materialx version="1.38" colorspace="lin_rec709">
+  <nodegraph name="maps">
+{graph}{outputs}  </nodegraph>
+  <standard_surface name="surface" type="surfaceshader">
+    <input name="base" type="float" value="1" />
+{inputs}  </standard_surface>
+{displacement}  <surfacematerial name="material_{name}" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="surface" />
+{shader}  </surfacematerial>
+</materialx>
+"#
+    )
+}
+
+/// The input of a material that its displacement goes to.
+const DISPLACEMENT_INPUT: &str = "    <input name=\"displacementshader\" type=\"displacementshader\" nodename=\"displacement\" />\n";
+
+/// The image of a map, and what makes a normal of it.
+fn image_node(wire: &Wire, file: &str) -> String {
+    let Wire {
+        name,
+        type_name,
+        color_space,
+        ..
+    } = wire;
+    let is_normal = wire.kind == MapKind::Normal;
+    let image = if is_normal { "normal_image" } else { name };
+    let file = escaped(file);
+    let mut text = format!(
+        r#"    <image name="{image}" type="{type_name}">
+      <input name="file" type="filename" value="{file}" colorspace="{color_space}" />
+      <input name="uaddressmode" type="string" value="periodic" />
+      <input name="vaddressmode" type="string" value="periodic" />
+    </image>
+"#
+    );
+    if is_normal {
+        text += &format!(
+            r#"    <normalmap name="{name}" type="vector3">
+      <input name="in" type="vector3" nodename="{image}" />
+    </normalmap>
+"#
+        );
+    }
+    text
+}
+
+/// The height, moved by so many meters for a 1.
+fn displacement(relief: f64) -> String {
+    format!(
+        r#"  <displacement name="displacement" type="displacementshader">
+    <input name="displacement" type="float" nodegraph="maps" output="height_output" />
+    <input name="scale" type="float" value="{relief}" unittype="distance" unit="meter" />
+  </displacement>
+"#
+    )
+}
+
+/// A name as MaterialX takes it: letters of ASCII, digits and `_`.
+fn identifier(name: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    name.chars().map(plain).collect()
+}
+
+/// A text as the value of an attribute.
+fn escaped(text: &str) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;");
+    text.replace('"', "&quot;")
+}

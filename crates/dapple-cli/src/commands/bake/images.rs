@@ -1,0 +1,96 @@
+//! Which images are made of a recipe.
+
+use super::Args;
+use super::presets::{Document, Preset, PresetImage};
+use crate::encode::Format;
+use crate::error::{Hint, usage};
+use crate::layers::Layers;
+use anyhow::Result;
+use dapple::color::NormalY;
+use dapple::recipe::MapKind;
+use std::path::Path;
+
+/// The maps if none are asked for.
+const USUAL: [MapKind; 5] = [
+    MapKind::Height,
+    MapKind::Normal,
+    MapKind::Occlusion,
+    MapKind::Albedo,
+    MapKind::Roughness,
+];
+
+impl Args {
+    /// The preset, named or by the ending of the output.
+    pub(super) fn preset(&self) -> Option<&'static Preset> {
+        let ending = self.files.output.as_deref().and_then(Path::extension);
+        let ending = ending.unwrap_or_default().to_string_lossy().to_lowercase();
+        self.preset.or_else(|| Preset::of_ending(&ending))
+    }
+
+    /// The document that is made of the images, if one is.
+    pub(super) fn document(&self) -> Option<Document> {
+        self.preset().and_then(|preset| preset.document)
+    }
+
+    /// Whether the images have no files of their own, since the document holds them.
+    pub(super) fn has_images_in_it(&self) -> bool {
+        self.document() == Some(Document::Glb)
+    }
+
+    /// Refuses what a document cannot be.
+    ///
+    /// # Errors
+    ///
+    /// If such an option was given.
+    pub(super) fn check_document(&self) -> Result<()> {
+        let Some(document) = self.document() else {
+            return Ok(());
+        };
+        let ending = document.ending();
+        let in_the_way = [
+            ("--maps", self.maps.is_some()),
+            ("--format", self.format.is_some()),
+            ("--region", self.region.is_some()),
+            ("--sheet", self.sheet),
+            (
+                "--normal-y directx",
+                self.normal_y == Some(NormalY::DirectX),
+            ),
+        ];
+        match in_the_way.iter().find(|(_, is_there)| *is_there) {
+            None => Ok(()),
+            Some((option, _)) => Err(usage(format!(
+                "a .{ending} is a whole material, without {option}"
+            ))
+            .hint("leave it out, or write images with --preset gltf or blender")),
+        }
+    }
+
+    /// The images that are made: the part of the name that says what each is, its channels, and its format if a preset has
+    /// one.
+    pub(super) fn images(&self) -> Vec<(&'static str, Layers, Option<Format>)> {
+        if let Some(preset) = self.preset() {
+            let images = preset.images.iter();
+            let of_preset = |PresetImage { part, image }: &PresetImage| {
+                (*part, image.layers, Some(image.format))
+            };
+            return images.map(of_preset).collect();
+        }
+        let maps = self.maps.as_ref().map_or(USUAL.as_slice(), |maps| &maps.0);
+        let of_map = |&kind: &MapKind| (kind.name(), Layers::Map(kind), self.format);
+        maps.iter().map(of_map).collect()
+    }
+
+    /// The maps that the images are made of, each once.
+    pub(super) fn map_kinds(&self) -> Vec<MapKind> {
+        let mut kinds: Vec<MapKind> = Vec::new();
+        for (_, layers, _) in self.images() {
+            for kind in layers.kinds() {
+                if !kinds.contains(&kind) {
+                    kinds.push(kind);
+                }
+            }
+        }
+        kinds
+    }
+}

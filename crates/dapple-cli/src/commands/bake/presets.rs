@@ -1,0 +1,276 @@
+//! What programs take: which images, what their channels hold, and how they are written.
+//!
+//! References: each program's own documentation, beside its row in [`PRESETS`].
+
+use crate::encode::Format;
+use crate::layers::{Channel, Image, Layers};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use dapple::color::NormalY;
+use dapple::recipe::MapKind;
+use serde::{Serialize, Serializer};
+use std::fmt::Write as _;
+
+/// The images of a material as a program takes them.
+#[derive(Debug, PartialEq)]
+pub(super) struct Preset {
+    pub(super) name: &'static str,
+    /// What takes them, for the help.
+    about: &'static str,
+    /// What the names of its files begin with in a folder.
+    pub(super) prefix: &'static str,
+    pub(super) normal_y: NormalY,
+    pub(super) images: &'static [PresetImage],
+    pub(super) document: Option<Document>,
+}
+
+/// An image of a preset.
+#[derive(Debug, PartialEq)]
+pub(super) struct PresetImage {
+    /// What its name has after that of the material: `NAME_PART.png`.
+    pub(super) part: &'static str,
+    pub(super) image: Image,
+}
+
+/// A file that puts the images together to a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Document {
+    /// A plane of glTF 2.0, with the images in it.
+    Glb,
+    /// A MaterialX document, with the images beside it.
+    Mtlx,
+}
+
+impl Document {
+    /// The ending of its name.
+    pub(super) fn ending(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Mtlx => "mtlx",
+        }
+    }
+}
+
+/// An image with 8 bits for each channel.
+const fn eight(part: &'static str, layers: Layers) -> PresetImage {
+    let format = Format::Png8;
+    PresetImage {
+        part,
+        image: Image { layers, format },
+    }
+}
+
+/// An image with 16 bits for each channel.
+const fn sixteen(part: &'static str, layers: Layers) -> PresetImage {
+    let format = Format::Png16;
+    PresetImage {
+        part,
+        image: Image { layers, format },
+    }
+}
+
+/// Metallic, occlusion, where details are shown, and smoothness.
+const MASK: Layers = Layers::Rgba([
+    Channel::Of(MapKind::Metallic),
+    Channel::Of(MapKind::Occlusion),
+    Channel::Always(1.0),
+    Channel::OneLess(MapKind::Roughness),
+]);
+
+/// Metallic and smoothness.
+const METALLIC_SMOOTHNESS: Layers = Layers::Rgba([
+    Channel::Of(MapKind::Metallic),
+    Channel::Of(MapKind::Metallic),
+    Channel::Of(MapKind::Metallic),
+    Channel::OneLess(MapKind::Roughness),
+]);
+
+/// The images of glTF, beside each other or in a document.
+const GLTF: &[PresetImage] = &[
+    eight("baseColor", Layers::Map(MapKind::Albedo)),
+    eight("occlusionRoughnessMetallic", Layers::Map(MapKind::Orm)),
+    eight("normal", Layers::Map(MapKind::Normal)),
+];
+
+/// All presets, in the order of the help.
+pub(super) static PRESETS: [Preset; 7] = [
+    // Unity Manual, "Assign a channel-packed texture to a URP material" and "Lit Shader"; High Definition RP, "Mask and
+    // detail maps". The built-in pipeline and URP read smoothness from the alpha of the metallic map.
+    Preset {
+        name: "unity",
+        about: "Unity: the mask map of HDRP and URP, and metallic with smoothness of the built-in pipeline",
+        prefix: "",
+        normal_y: NormalY::OpenGl,
+        images: &[
+            eight("BaseMap", Layers::Map(MapKind::Albedo)),
+            eight("Normal", Layers::Map(MapKind::Normal)),
+            eight("MaskMap", MASK),
+            eight("MetallicSmoothness", METALLIC_SMOOTHNESS),
+            eight("Occlusion", Layers::Map(MapKind::Occlusion)),
+            sixteen("Height", Layers::Map(MapKind::Height)),
+        ],
+        document: None,
+    },
+    // Unreal Engine documentation, "Normal Maps" (green points down), "Recommended Asset Naming Conventions" (`T_`).
+    Preset {
+        name: "unreal",
+        about: "Unreal Engine: occlusion, roughness and metallic in one, green of normals down",
+        prefix: "T_",
+        normal_y: NormalY::DirectX,
+        images: &[
+            eight("BaseColor", Layers::Map(MapKind::Albedo)),
+            eight("Normal", Layers::Map(MapKind::Normal)),
+            eight("ORM", Layers::Map(MapKind::Orm)),
+            sixteen("Height", Layers::Map(MapKind::Height)),
+        ],
+        document: None,
+    },
+    // Godot documentation, "Standard Material 3D and ORM Material 3D"; "Importing images" (OpenGL normals).
+    Preset {
+        name: "godot",
+        about: "Godot: an ORMMaterial3D",
+        prefix: "",
+        normal_y: NormalY::OpenGl,
+        images: &[
+            eight("albedo", Layers::Map(MapKind::Albedo)),
+            eight("normal", Layers::Map(MapKind::Normal)),
+            eight("orm", Layers::Map(MapKind::Orm)),
+            sixteen("height", Layers::Map(MapKind::Height)),
+        ],
+        document: None,
+    },
+    // Khronos Group, "glTF 2.0 Specification", 3.9 "Materials".
+    Preset {
+        name: "gltf",
+        about: "The textures of a glTF material",
+        prefix: "",
+        normal_y: NormalY::OpenGl,
+        images: GLTF,
+        document: None,
+    },
+    // The same, in one file; 4.4 "Binary glTF".
+    Preset {
+        name: "glb",
+        about: "A plane of glTF with these textures in one file; also -o NAME.glb",
+        prefix: "",
+        normal_y: NormalY::OpenGl,
+        images: GLTF,
+        document: Some(Document::Glb),
+    },
+    // Blender Manual, "Principled BSDF", "Normal Map Node", and "Node Wrangler", whose Principled Texture Setup finds
+    // images by these parts of their names.
+    Preset {
+        name: "blender",
+        about: "Blender: an image for each input, by names that Node Wrangler finds",
+        prefix: "",
+        normal_y: NormalY::OpenGl,
+        images: &[
+            eight("basecolor", Layers::Map(MapKind::Albedo)),
+            sixteen("roughness", Layers::Map(MapKind::Roughness)),
+            sixteen("metallic", Layers::Map(MapKind::Metallic)),
+            sixteen("normal", Layers::Map(MapKind::Normal)),
+            sixteen("height", Layers::Map(MapKind::Height)),
+            sixteen("ao", Layers::Map(MapKind::Occlusion)),
+        ],
+        document: None,
+    },
+    // "MaterialX Specification" and "MaterialX Standard Nodes", 1.38: `standard_surface`, `normalmap`, `displacement`.
+    Preset {
+        name: "materialx",
+        about: "A MaterialX standard_surface, NAME.mtlx, and its images; also -o NAME.mtlx",
+        prefix: "",
+        normal_y: NormalY::OpenGl,
+        images: &[
+            eight("basecolor", Layers::Map(MapKind::Albedo)),
+            sixteen("roughness", Layers::Map(MapKind::Roughness)),
+            sixteen("metallic", Layers::Map(MapKind::Metallic)),
+            sixteen("normal", Layers::Map(MapKind::Normal)),
+            sixteen("height", Layers::Map(MapKind::Height)),
+        ],
+        document: Some(Document::Mtlx),
+    },
+];
+
+impl Preset {
+    /// Reads a preset by its name.
+    pub(super) fn parser() -> impl TypedValueParser<Value = &'static Self> {
+        let values = PRESETS.iter();
+        let values = values.map(|preset| PossibleValue::new(preset.name).help(preset.about));
+        PossibleValuesParser::new(values).try_map(|name| {
+            let is_named = |preset: &&Self| preset.name.eq_ignore_ascii_case(&name);
+            PRESETS
+                .iter()
+                .find(is_named)
+                .ok_or("there is no such preset")
+        })
+    }
+
+    /// The preset of a document with this ending.
+    pub(super) fn of_ending(ending: &str) -> Option<&'static Self> {
+        let writes = |document: Document| document.ending() == ending;
+        PRESETS
+            .iter()
+            .find(|preset| preset.document.is_some_and(writes))
+    }
+}
+
+impl Serialize for &'static Preset {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.name.serialize(serializer)
+    }
+}
+
+/// The images of all presets, for the help.
+pub(super) fn table() -> String {
+    let mut text = "Presets (see --preset):\n".to_owned();
+    for preset in &PRESETS {
+        let green = match preset.normal_y {
+            NormalY::OpenGl => "up",
+            NormalY::DirectX => "down",
+        };
+        let _ = writeln!(text, "  {}, green of normals {green}", preset.name);
+        for PresetImage { part, image } in preset.images {
+            let file = match preset.document {
+                Some(Document::Glb) => (*part).to_owned(),
+                _ => format!("{}NAME_{part}.png", preset.prefix),
+            };
+            let (_, depth) = image.format.depth();
+            let _ = writeln!(text, "    {file}: {}, {depth}", image.layers);
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Document, PRESETS, Preset, table};
+
+    #[test]
+    fn presets_have_names_and_parts_of_their_own() {
+        for (index, preset) in PRESETS.iter().enumerate() {
+            let others = &PRESETS[index + 1..];
+            assert!(
+                others.iter().all(|other| other.name != preset.name),
+                "{}",
+                preset.name
+            );
+            for (index, image) in preset.images.iter().enumerate() {
+                let others = &preset.images[index + 1..];
+                assert!(
+                    others.iter().all(|other| other.part != image.part),
+                    "{}",
+                    image.part
+                );
+            }
+        }
+        let of_ending = |ending| Preset::of_ending(ending).and_then(|preset| preset.document);
+        assert_eq!(of_ending("glb"), Some(Document::Glb));
+        assert_eq!(of_ending("mtlx"), Some(Document::Mtlx));
+        assert_eq!(of_ending("png"), None);
+    }
+
+    #[test]
+    fn the_readme_has_the_table_of_presets() {
+        let readme = include_str!("../../../README.md");
+        assert!(readme.contains(&table()), "it should hold:\n{}", table());
+    }
+}

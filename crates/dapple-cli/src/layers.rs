@@ -1,0 +1,204 @@
+//! What the channels of an image hold: a map, or several maps packed into one image.
+
+use crate::encode::Format;
+use anyhow::{Result, anyhow};
+use dapple::image::{Content, ImageError, RowWriter};
+use dapple::raster::Raster;
+use dapple::recipe::{Band, MapKind, MapRows};
+use dapple::tile::repeat;
+use std::borrow::Cow;
+use std::fmt;
+use std::io::{Seek, Write};
+
+/// An image of a material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Image {
+    pub(crate) layers: Layers,
+    pub(crate) format: Format,
+}
+
+/// What the channels of an image hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Layers {
+    /// A map with all of its channels.
+    Map(MapKind),
+    /// Red, green, blue and alpha, each for itself.
+    Rgba([Channel; 4]),
+}
+
+/// What a channel holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Channel {
+    /// A map of numbers.
+    Of(MapKind),
+    /// One less a map of numbers.
+    OneLess(MapKind),
+    /// The same number everywhere.
+    Always(f32),
+}
+
+/// Some rows of an image.
+pub(crate) enum LayerRows<'a> {
+    Map(Cow<'a, MapRows>),
+    Rgba(Raster<[f32; 4]>),
+}
+
+impl Layers {
+    /// The maps that it is made of.
+    pub(crate) fn kinds(&self) -> Vec<MapKind> {
+        match self {
+            Self::Map(kind) => vec![*kind],
+            Self::Rgba(channels) => channels.iter().filter_map(Channel::kind).collect(),
+        }
+    }
+
+    /// What kind of image it is.
+    pub(crate) fn content(&self) -> Content {
+        match self {
+            Self::Map(MapKind::Normal) => Content::Normal,
+            Self::Map(MapKind::Albedo) => Content::Color,
+            Self::Map(MapKind::Orm) => Content::Packed,
+            Self::Map(_) => Content::Gray,
+            Self::Rgba(_) => Content::PackedFour,
+        }
+    }
+
+    /// How many numbers a pixel has.
+    pub(crate) fn n_channels(&self) -> u64 {
+        match self.content() {
+            Content::Gray => 1,
+            Content::Color | Content::Normal | Content::Packed => 3,
+            Content::ColorAlpha | Content::PackedFour => 4,
+        }
+    }
+
+    /// The rows of a band, which has all maps that it is made of.
+    pub(crate) fn rows<'a>(&self, band: &'a Band) -> Result<LayerRows<'a>> {
+        match self {
+            Self::Map(kind) => Ok(LayerRows::Map(Cow::Borrowed(map_of(*kind, band)?))),
+            Self::Rgba(channels) => {
+                let size = band.maps.first().map_or([0; 2], |(_, rows)| rows.size());
+                let mut pixels = vec![[0.0; 4]; size[0] as usize * size[1] as usize];
+                for (index, channel) in channels.iter().enumerate() {
+                    let numbers = channel.kind().map(|kind| numbers_of(kind, band));
+                    let numbers = numbers.transpose()?.map(Raster::pixels);
+                    for (at, pixel) in pixels.iter_mut().enumerate() {
+                        pixel[index] = channel.value(numbers.map(|numbers| numbers[at]));
+                    }
+                }
+                Ok(LayerRows::Rgba(Raster::from_vec(size, pixels)?))
+            }
+        }
+    }
+}
+
+impl Channel {
+    fn kind(&self) -> Option<MapKind> {
+        match self {
+            Self::Of(kind) | Self::OneLess(kind) => Some(*kind),
+            Self::Always(_) => None,
+        }
+    }
+
+    /// Its value where the map has this number.
+    fn value(self, number: Option<f32>) -> f32 {
+        match self {
+            Self::Of(_) => number.unwrap_or_default(),
+            Self::OneLess(_) => 1.0 - number.unwrap_or_default(),
+            Self::Always(value) => value,
+        }
+    }
+}
+
+/// As help texts have it: `albedo in sRGB`, or `R metallic, G ao, B 1, A 1 - roughness`.
+impl fmt::Display for Layers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Map(MapKind::Albedo) => f.write_str("albedo in sRGB"),
+            Self::Map(MapKind::Orm) => f.write_str("R ao, G roughness, B metallic"),
+            Self::Map(kind) => f.write_str(kind.name()),
+            Self::Rgba(channels) => {
+                let [r, g, b, a] = channels;
+                write!(f, "R {r}, G {g}, B {b}, A {a}")
+            }
+        }
+    }
+}
+
+impl fmt::Display for Channel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Of(kind) => f.write_str(kind.name()),
+            Self::OneLess(kind) => write!(f, "1 - {}", kind.name()),
+            Self::Always(value) => write!(f, "{value}"),
+        }
+    }
+}
+
+impl LayerRows<'_> {
+    /// Writes them as the next rows of an image with this content.
+    pub(crate) fn write<W: Write + Seek>(
+        &self,
+        writer: &mut RowWriter<W>,
+    ) -> Result<(), ImageError> {
+        match self {
+            Self::Rgba(rows) => writer.write_packed_four(rows.view()),
+            Self::Map(rows) => match rows.as_ref() {
+                MapRows::Gray(rows) => writer.write_gray(rows.view()),
+                MapRows::Color(rows) => writer.write_color(rows.view()),
+                MapRows::Normal(rows) => writer.write_normals(rows.view()),
+                MapRows::Packed(rows) => writer.write_packed(rows.view()),
+            },
+        }
+    }
+
+    /// A range of numbers, made as wide as the finite numbers of these rows need.
+    pub(crate) fn range(&self, range: [f32; 2]) -> [f32; 2] {
+        match self {
+            Self::Map(rows) => rows.range(range),
+            Self::Rgba(rows) => {
+                let numbers = rows
+                    .pixels()
+                    .iter()
+                    .flatten()
+                    .filter(|number| number.is_finite());
+                numbers.fold(range, |[min, max], &number| {
+                    [min.min(number), max.max(number)]
+                })
+            }
+        }
+    }
+
+    /// The rows with a copy of them to their right.
+    pub(crate) fn beside_themselves(&self) -> Result<LayerRows<'static>> {
+        fn twice<T: Copy + Send + Sync>(raster: &Raster<T>) -> Result<Raster<T>> {
+            let [width, height] = raster.size();
+            Ok(repeat(raster, [width.saturating_mul(2), height])?)
+        }
+        let rows = match self {
+            Self::Rgba(rows) => return Ok(LayerRows::Rgba(twice(rows)?)),
+            Self::Map(rows) => match rows.as_ref() {
+                MapRows::Gray(rows) => MapRows::Gray(twice(rows)?),
+                MapRows::Color(rows) => MapRows::Color(twice(rows)?),
+                MapRows::Normal(rows) => MapRows::Normal(twice(rows)?),
+                MapRows::Packed(rows) => MapRows::Packed(twice(rows)?),
+            },
+        };
+        Ok(LayerRows::Map(Cow::Owned(rows)))
+    }
+}
+
+/// The rows of a map that was asked for.
+fn map_of(kind: MapKind, band: &Band) -> Result<&MapRows> {
+    let found = band.maps.iter().find(|(other, _)| *other == kind);
+    let (_, rows) = found.ok_or_else(|| anyhow!("the map {} was not baked", kind.name()))?;
+    Ok(rows)
+}
+
+/// The rows of a map that is one number at each pixel.
+fn numbers_of(kind: MapKind, band: &Band) -> Result<&Raster<f32>> {
+    match map_of(kind, band)? {
+        MapRows::Gray(rows) => Ok(rows),
+        _ => Err(anyhow!("the map {} has several channels", kind.name())),
+    }
+}

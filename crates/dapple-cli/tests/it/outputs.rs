@@ -1,0 +1,487 @@
+//! What other programs take: presets, documents, arrays and raw heights.
+
+use crate::support::{Folder, assert_done, assert_refused, stdout};
+use dapple::image::{Limits, PngPixels, decode_png, read_image};
+use dapple::mesh::io::gltf;
+use dapple::raster::Raster;
+use std::fs;
+
+/// A recipe in which every map varies and differs from the others.
+const VARIED: &str = r##"
+dapple = 1
+seed = 5
+extent = [2.0, 1.0]
+
+[nodes.cells.worley]
+frequency = 3.0
+
+[nodes.stones.levels]
+input = "cells"
+from = [0.0, 0.8]
+
+[nodes.rough.levels]
+input = "cells"
+from = [0.0, 2.0]
+to = [0.9, 0.2]
+
+[nodes.metal.wavelet]
+frequency = 4.0
+
+[nodes.shine.levels]
+input = "metal"
+from = [-1.0, 1.0]
+
+[nodes.paint.ramp]
+input = "stones"
+colors = ["#203040", "#e0a060"]
+
+[material]
+height = "stones"
+relief = 0.25
+albedo = "paint"
+roughness = "rough"
+metallic = "shine"
+normal_y = "directx"
+"##;
+
+const SIZE: &str = "48x24";
+
+/// A folder with the recipe.
+fn folder(name: &str) -> Folder {
+    let folder = Folder::new(name);
+    fs::write(folder.path("varied.toml"), VARIED).unwrap();
+    folder
+}
+
+/// The channels of a PNG as 16 bits, one after the other; those of 8 bits 257-fold, and gray as one.
+fn channels(folder: &Folder, name: &str) -> Vec<Vec<u16>> {
+    fn split<const N: usize>(raster: &Raster<[u16; N]>) -> Vec<Vec<u16>> {
+        let channel = |at: usize| raster.pixels().iter().map(|pixel| pixel[at]).collect();
+        (0..N).map(channel).collect()
+    }
+    let bytes = fs::read(folder.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let wide = |code: u8| u16::from(code) * 257;
+    match decode_png(&bytes, &Limits::default()).unwrap().pixels {
+        PngPixels::Gray8(raster) => split(&raster.map(|&code| [wide(code)])),
+        PngPixels::Gray16(raster) => split(&raster.map(|&code| [code])),
+        PngPixels::Rgb8(raster) => split(&raster.map(|codes| codes.map(wide))),
+        PngPixels::Rgb16(raster) => split(&raster),
+        PngPixels::Rgba8(raster) => split(&raster.map(|codes| codes.map(wide))),
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// The channels of a map, baked on its own.
+fn map(folder: &Folder, name: &str, normal_y: &str, format: &str) -> Vec<Vec<u16>> {
+    let file = format!("own_{name}_{normal_y}_{format}.png");
+    if !folder.path(&file).exists() {
+        let run = [
+            "bake",
+            "varied.toml",
+            "--size",
+            SIZE,
+            "--maps",
+            name,
+            "--normal-y",
+            normal_y,
+            "--format",
+            format,
+            "-o",
+            &file,
+        ];
+        assert_done(&folder.run(&run), name);
+    }
+    channels(folder, &file)
+}
+
+/// What presets write, as their engines document it: the file, the bits, and for each channel its map and which of its
+/// channels. `!` before a map is one less it, and `1` is white.
+const EXPECTED: [(&str, &str, &[(&str, &str, &str)]); 5] = [
+    (
+        "unity",
+        "opengl",
+        &[
+            ("varied_BaseMap", "png8", "albedo.0 albedo.1 albedo.2"),
+            ("varied_Normal", "png8", "normal.0 normal.1 normal.2"),
+            ("varied_MaskMap", "png8", "metallic.0 ao.0 1 !roughness.0"),
+            (
+                "varied_MetallicSmoothness",
+                "png8",
+                "metallic.0 metallic.0 metallic.0 !roughness.0",
+            ),
+            ("varied_Occlusion", "png8", "ao.0"),
+            ("varied_Height", "png16", "height.0"),
+        ],
+    ),
+    (
+        "unreal",
+        "directx",
+        &[
+            ("T_varied_BaseColor", "png8", "albedo.0 albedo.1 albedo.2"),
+            ("T_varied_Normal", "png8", "normal.0 normal.1 normal.2"),
+            ("T_varied_ORM", "png8", "ao.0 roughness.0 metallic.0"),
+            ("T_varied_Height", "png16", "height.0"),
+        ],
+    ),
+    (
+        "godot",
+        "opengl",
+        &[
+            ("varied_albedo", "png8", "albedo.0 albedo.1 albedo.2"),
+            ("varied_normal", "png8", "normal.0 normal.1 normal.2"),
+            ("varied_orm", "png8", "ao.0 roughness.0 metallic.0"),
+            ("varied_height", "png16", "height.0"),
+        ],
+    ),
+    (
+        "gltf",
+        "opengl",
+        &[
+            ("varied_baseColor", "png8", "albedo.0 albedo.1 albedo.2"),
+            ("varied_normal", "png8", "normal.0 normal.1 normal.2"),
+            (
+                "varied_occlusionRoughnessMetallic",
+                "png8",
+                "ao.0 roughness.0 metallic.0",
+            ),
+        ],
+    ),
+    (
+        "blender",
+        "opengl",
+        &[
+            ("varied_basecolor", "png8", "albedo.0 albedo.1 albedo.2"),
+            ("varied_roughness", "png16", "roughness.0"),
+            ("varied_metallic", "png16", "metallic.0"),
+            ("varied_normal", "png16", "normal.0 normal.1 normal.2"),
+            ("varied_height", "png16", "height.0"),
+            ("varied_ao", "png16", "ao.0"),
+        ],
+    ),
+];
+
+#[test]
+fn presets_write_the_files_and_channels_of_their_programs() {
+    let folder = folder("presets");
+    for (preset, normal_y, files) in EXPECTED {
+        let output = format!("{preset}/");
+        let run = [
+            "bake",
+            "varied.toml",
+            "--size",
+            SIZE,
+            "--preset",
+            preset,
+            "-o",
+            &output,
+        ];
+        assert_done(&folder.run(&run), preset);
+        let mut names: Vec<_> = files
+            .iter()
+            .map(|(file, ..)| format!("{file}.png"))
+            .collect();
+        names.sort();
+        let mut written: Vec<_> = fs::read_dir(folder.path(preset))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        written.sort();
+        assert_eq!(written, names, "{preset}");
+        for (file, format, expected) in files {
+            let found = channels(&folder, &format!("{preset}/{file}.png"));
+            let expected: Vec<_> = expected.split(' ').collect();
+            assert_eq!(
+                found.len(),
+                expected.len(),
+                "{preset}: the channels of {file}"
+            );
+            for (found, expected) in found.iter().zip(expected) {
+                check_channel(&folder, found, expected, normal_y, format);
+            }
+        }
+    }
+}
+
+/// Fails unless a channel holds what it should.
+fn check_channel(folder: &Folder, found: &[u16], expected: &str, normal_y: &str, format: &str) {
+    if expected == "1" {
+        assert!(found.iter().all(|&code| code == u16::MAX), "white");
+        return;
+    }
+    let (name, channel) = expected.trim_start_matches('!').split_once('.').unwrap();
+    let map = &map(folder, name, normal_y, format)[channel.parse::<usize>().unwrap()];
+    let range = map.iter().max().unwrap() - map.iter().min().unwrap();
+    assert!(range > 2000, "{name} varies, or nothing is tested: {range}");
+    if expected.starts_with('!') {
+        // A half is rounded up on both ways, which is one code of 8 bits.
+        let is_near = |(&found, &code): (&u16, &u16)| found.abs_diff(u16::MAX - code) <= 257;
+        assert!(found.iter().zip(map).all(is_near), "{expected}");
+    } else {
+        assert_eq!(found, map, "{expected}");
+    }
+}
+
+#[test]
+fn presets_and_documents_say_what_does_not_go_with_them() {
+    let folder = folder("conflicts");
+    let run = |more: &str| {
+        let words = ["bake", "varied.toml", "--size", "16"];
+        let words: Vec<_> = words.into_iter().chain(more.split(' ')).collect();
+        folder.run(&words)
+    };
+    assert_refused(
+        &run("--preset unity --maps ao -o a/"),
+        2,
+        "--maps",
+        "maps of a preset",
+    );
+    assert_refused(&run("--preset unitty -o a/"), 2, "unity", "a slip");
+    assert_refused(
+        &run("-o a.glb --maps ao"),
+        2,
+        "--maps",
+        "maps of a document",
+    );
+    assert_refused(
+        &run("-o a.glb --sheet"),
+        2,
+        "--sheet",
+        "a sheet of a document",
+    );
+    assert_refused(
+        &run("-o a.mtlx --normal-y directx"),
+        2,
+        "--normal-y directx",
+        "normals",
+    );
+    assert_refused(&run("--preset glb -o a.png"), 2, ".glb", "another ending");
+    assert_refused(&run("--preset unity -o a.exr"), 2, "PNG", "another format");
+    assert_eq!(folder.names(), ["varied.toml"], "nothing is left");
+}
+
+#[test]
+fn a_glb_is_a_plane_with_the_whole_material() {
+    let folder = folder("glb");
+    let run = [
+        "bake",
+        "varied.toml",
+        "--size",
+        SIZE,
+        "-o",
+        "v.glb",
+        "--preview",
+    ];
+    assert_done(&folder.run(&run), "glb");
+    assert_eq!(folder.names(), ["v.glb", "v_preview.png", "varied.toml"]);
+    let run = [
+        "bake",
+        "varied.toml",
+        "--size",
+        SIZE,
+        "--preset",
+        "gltf",
+        "-o",
+        "own/",
+    ];
+    assert_done(&folder.run(&run), "gltf");
+    let model = gltf::read(&fs::read(folder.path("v.glb")).unwrap()).unwrap();
+    let own = |part: &str| Some(fs::read(folder.path(&format!("own/varied_{part}.png"))).unwrap());
+    let bytes = |image: &Option<dapple::mesh::EncodedImage>| {
+        image.as_ref().map(|image| image.bytes().to_vec())
+    };
+    let material = &model.material;
+    assert_eq!(bytes(&material.base_color), own("baseColor"));
+    assert_eq!(bytes(&material.normal), own("normal"));
+    assert_eq!(
+        bytes(&material.metallic_roughness),
+        own("occlusionRoughnessMetallic")
+    );
+    assert_eq!(material.occlusion, material.metallic_roughness);
+    // The tile is 2 by 1 meters; u goes along x, v along z, and it is seen from above.
+    let uvs = model.uvs.as_ref().unwrap();
+    for (face, uvs) in model.mesh.faces().iter().zip(uvs) {
+        let corners = face.map(|vertex| model.mesh.positions()[vertex.index()]);
+        for (corner, uv) in corners.iter().zip(uvs) {
+            assert_eq!(corner.to_array(), [2.0 * uv.x - 1.0, 0.0, uv.y - 0.5]);
+        }
+        assert!(
+            (corners[1] - corners[0]).cross(corners[2] - corners[0]).y > 0.0,
+            "it looks up"
+        );
+    }
+}
+
+#[test]
+fn a_document_of_materialx_names_its_images_and_their_color_spaces() {
+    let folder = folder("mtlx");
+    let run = ["bake", "varied.toml", "--size", SIZE, "-o", "a&b.mtlx"];
+    assert_done(&folder.run(&run), "mtlx");
+    let parts = ["basecolor", "height", "metallic", "normal", "roughness"];
+    let mut names: Vec<_> = parts.iter().map(|part| format!("a&b_{part}.png")).collect();
+    names.extend(["a&b.mtlx".to_owned(), "varied.toml".to_owned()]);
+    names.sort();
+    assert_eq!(folder.names(), names);
+    let text = fs::read_to_string(folder.path("a&b.mtlx")).unwrap();
+    for part in parts {
+        let space = if part == "basecolor" {
+            "srgb_texture"
+        } else {
+            "raw"
+        };
+        let file = format!("value=\"a&amp;b_{part}.png\" colorspace=\"{space}\"");
+        assert!(text.contains(&file), "{file} in {text}");
+    }
+    let scale = "name=\"scale\" type=\"float\" value=\"0.25\" unittype=\"distance\" unit=\"meter\"";
+    assert!(text.contains(scale), "{text}");
+    let flat = [
+        "bake",
+        "varied.toml",
+        "--size",
+        SIZE,
+        "--relief",
+        "0",
+        "-o",
+        "flat.mtlx",
+    ];
+    assert_done(&folder.run(&flat), "without a relief");
+    let text = fs::read_to_string(folder.path("flat.mtlx")).unwrap();
+    assert!(!text.contains("displacement"), "{text}");
+}
+
+#[test]
+fn an_array_has_the_numbers_of_an_exr_also_in_bands() {
+    let folder = folder("npy");
+    let bake = |more: &[&str]| {
+        let words = [
+            "bake",
+            "varied.toml",
+            "--size",
+            "1500x700",
+            "--maps",
+            "albedo",
+        ];
+        assert_done(&folder.run(&[&words[..], more].concat()), "npy");
+    };
+    bake(&["-o", "a.npy"]);
+    bake(&["-o", "b.npy", "--banded"]);
+    bake(&["-o", "a.exr"]);
+    let bytes = fs::read(folder.path("a.npy")).unwrap();
+    assert!(bytes == fs::read(folder.path("b.npy")).unwrap(), "in bands");
+    let exr = read_image(folder.path("a.exr"), &Limits::default()).unwrap();
+    let numbers = exr.color().unwrap().into_pixels().into_iter();
+    let numbers: Vec<u8> = numbers
+        .flat_map(|color| color.to_array())
+        .flat_map(f32::to_le_bytes)
+        .collect();
+    let (header, data) = bytes.split_at(128);
+    let shape = "'shape': (700, 1500, 3)";
+    assert!(
+        String::from_utf8_lossy(header).contains(shape),
+        "{header:?}"
+    );
+    assert!(data == numbers, "the numbers");
+}
+
+#[test]
+fn raw_heights_have_the_codes_of_a_png_and_a_json_file_with_their_size() {
+    let folder = folder("r16");
+    for (output, banded) in [
+        ("a.r16", None),
+        ("b.r16", Some("--banded")),
+        ("a.png", None),
+    ] {
+        let run = [
+            "bake",
+            "varied.toml",
+            "--size",
+            "33x17",
+            "--maps",
+            "height",
+            "-o",
+            output,
+        ];
+        assert_done(&folder.run(&[&run[..], banded.as_slice()].concat()), output);
+    }
+    let bytes = fs::read(folder.path("a.r16")).unwrap();
+    assert_eq!(bytes, fs::read(folder.path("b.r16")).unwrap());
+    let codes: Vec<u8> = channels(&folder, "a.png")[0]
+        .iter()
+        .flat_map(|code| code.to_le_bytes())
+        .collect();
+    assert_eq!(bytes, codes);
+    let json = fs::read_to_string(folder.path("a.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let raw = [&json["width"], &json["height"], &json["bpp"]];
+    assert_eq!(raw, [33, 17, 16], "as Unreal reads it");
+    let report = &json["report"];
+    assert_eq!([&report["meters_per_unit"], &report["relief"]], [1.0, 0.25]);
+    assert_eq!(report["extent"], serde_json::json!([2.0, 1.0]));
+    // In a folder the JSON file has the name of the heights.
+    let run = [
+        "bake",
+        "varied.toml",
+        "--size",
+        "9",
+        "--maps",
+        "height",
+        "--format",
+        "r16",
+        "-o",
+        "out/",
+    ];
+    assert_done(&folder.run(&run), "a folder");
+    assert!(
+        folder.path("out/varied_height.json").is_file(),
+        "beside the heights"
+    );
+    let run = [
+        "bake",
+        "varied.toml",
+        "--size",
+        "9",
+        "--maps",
+        "albedo",
+        "-o",
+        "c.r16",
+    ];
+    assert_refused(&folder.run(&run), 2, "one number", "colors");
+}
+
+#[test]
+fn every_command_that_draws_writes_arrays_and_raw_heights() {
+    let folder = Folder::with_inputs("draws");
+    for command in [
+        "worley",
+        "pups turbulence",
+        "wavelet",
+        "tile height.png",
+        "blend mask.png cracks.png,weight=0.5",
+        "synth mask.png --size 16",
+    ] {
+        for ending in ["npy", "r16"] {
+            let output = format!("{}.{ending}", command.replace([' ', '.', ',', '='], "-"));
+            let mut words: Vec<_> = command.split(' ').collect();
+            if ["worley", "pups", "wavelet"].contains(&words[0]) {
+                words.extend(["--size", "16"]);
+            }
+            words.extend(["-o", &output]);
+            assert_done(&folder.run(&words), &output);
+            assert!(folder.path(&output).is_file(), "{output}");
+            let sidecar = folder.path(&output).with_extension("json");
+            assert_eq!(sidecar.is_file(), ending == "r16", "{output}");
+            let _ = fs::remove_file(sidecar);
+        }
+    }
+}
+
+#[test]
+fn the_help_has_a_line_for_each_image_of_each_preset() {
+    let folder = Folder::new("preset-help");
+    let help = stdout(&folder.run(&["help", "bake"]));
+    for (_, _, files) in EXPECTED {
+        for (file, ..) in files {
+            let file = file.replace("varied", "NAME");
+            assert!(help.contains(&format!("{file}.png")), "{file}");
+        }
+    }
+}

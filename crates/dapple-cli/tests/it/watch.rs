@@ -1,0 +1,85 @@
+//! Baking again at every save.
+
+use crate::support::Folder;
+use dapple::image::{Limits, read_image};
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+/// How long a bake of a save may take. It takes some tenths of a second, and more where other tests run.
+const DEADLINE: Duration = Duration::from_secs(60);
+
+/// A recipe whose height is the same everywhere.
+fn flat(height: &str) -> String {
+    format!("dapple = 1\n\n[material]\nheight = {height}\n")
+}
+
+/// The command while it watches; it ends with this.
+struct Watching(Child);
+
+impl Drop for Watching {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Whether a file is an image of this size and gray.
+fn holds(path: &Path, size: [u32; 2], gray: f32) -> bool {
+    let Ok(image) = read_image(path, &Limits::default()) else {
+        return false;
+    };
+    // Half a step of 16 bits.
+    let is_near = |value: &f32| (value - gray).abs() < 0.5 / 65535.0;
+    image.size() == size
+        && image
+            .gray()
+            .is_ok_and(|image| image.pixels().iter().all(is_near))
+}
+
+/// Waits for an image, and fails with what is missing.
+#[expect(clippy::disallowed_methods, reason = "another program is waited for")]
+fn wait_for(watching: &mut Watching, path: &Path, gray: f32, what: &str) {
+    let start = Instant::now();
+    while !holds(path, [300, 200], gray) {
+        let ended = watching.0.try_wait().unwrap();
+        assert!(ended.is_none(), "{what}: it ended: {ended:?}");
+        let found = read_image(path, &Limits::default()).map(|image| {
+            let first = image.gray().map(|gray| gray.pixels()[0]);
+            (image.size(), first)
+        });
+        assert!(
+            start.elapsed() < DEADLINE,
+            "{what}: after {DEADLINE:?}, {} is not 300 × 200 pixels of {gray}, but {found:?}",
+            path.display()
+        );
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
+fn every_save_is_baked_and_a_mistake_leaves_the_files() {
+    let folder = Folder::new("watch");
+    let (recipe, height) = (folder.path("own.toml"), folder.path("out/own_height.png"));
+    fs::write(&recipe, flat("0.25")).unwrap();
+    let words = [
+        "watch", "own.toml", "-o", "out/", "--size", "300x200", "--maps", "height", "--quiet",
+    ];
+    let child = folder
+        .command(&words)
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut watching = Watching(child);
+    wait_for(&mut watching, &height, 0.25, "the first bake");
+
+    fs::write(&recipe, flat("0.5")).unwrap();
+    wait_for(&mut watching, &height, 0.5, "a save");
+
+    // A program that writes aside and renames.
+    fs::write(&recipe, "height = what").unwrap();
+    fs::write(folder.path("aside"), flat("0.75")).unwrap();
+    fs::rename(folder.path("aside"), &recipe).unwrap();
+    wait_for(&mut watching, &height, 0.75, "a save after a mistake");
+}

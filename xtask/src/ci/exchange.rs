@@ -1,0 +1,127 @@
+//! The step `exchange`: materials for other programs, given to the programs that judge them.
+//!
+//! A plane of glTF goes to Khronos' validator, a document of MaterialX to the library of its authors, an array to NumPy. Each
+//! is tried where it is at hand, and said to be skipped where it is not: node with the package `gltf-validator`, and Python
+//! with `MaterialX` and `numpy`. The environment variables `NODE_PATH` and `PYTHON` say where they are, if not in the usual
+//! places.
+
+use anyhow::Context;
+use xshell::{Cmd, Shell, cmd};
+
+/// Validates a GLB file: errors and warnings fail.
+const VALIDATE_GLB: &str = "
+const { validateBytes } = require('gltf-validator');
+const bytes = new Uint8Array(require('fs').readFileSync(process.argv[1]));
+// Tangents are left to those who show it, as the specification has it (3.7.2.1).
+const options = { ignoredIssues: ['MESH_PRIMITIVE_GENERATED_TANGENT_SPACE'] };
+validateBytes(bytes, options).then(report => {
+  const { numErrors, numWarnings, messages } = report.issues;
+  console.log(`glTF: ${numErrors} errors, ${numWarnings} warnings`);
+  if (numErrors + numWarnings > 0) { console.log(messages); process.exit(1); }
+});
+";
+
+/// Validates a MaterialX document, and makes a shader of its material.
+const VALIDATE_MTLX: &str = "
+import sys, MaterialX as mx
+from MaterialX import PyMaterialXGenShader as shader, PyMaterialXGenGlsl as glsl
+path = mx.getDefaultDataSearchPath()
+library = mx.createDocument()
+mx.loadLibraries(mx.getDefaultDataLibraryFolders(), path, library)
+document = mx.createDocument()
+mx.readFromXmlFile(document, sys.argv[1])
+document.importLibrary(library)
+valid, message = document.validate()
+assert valid, message
+generator = glsl.GlslShaderGenerator.create()
+colors = shader.DefaultColorManagementSystem.create(generator.getTarget())
+colors.loadLibrary(library)
+generator.setColorManagementSystem(colors)
+context = shader.GenContext(generator)
+context.registerSourceCodeSearchPath(path)
+[material] = shader.findRenderableElements(document)
+source = generator.generate('material', material, context).getSourceCode(shader.PIXEL_STAGE)
+call = next(line for line in source.splitlines() if line.strip().startswith('NG_standard_surface'))
+for name in ['base_color_out_cm_out', 'roughness_out', 'metallic_out', 'normal_out']:
+    assert ' ' + name + ',' in call, (name, call)
+assert 'NG_srgb_texture_to_lin_rec709_color3(base_color_out' in source
+print('MaterialX: valid, with a shader of', len(source.splitlines()), 'lines')
+";
+
+/// Reads an array.
+const READ_NPY: &str = "
+import sys, numpy
+array = numpy.load(sys.argv[1], allow_pickle=False)
+assert array.dtype == numpy.float32 and array.shape == (40, 64, 3), (array.dtype, array.shape)
+assert array.flags['C_CONTIGUOUS'] and numpy.isfinite(array).all() and array.std() > 0
+print('NumPy:', array.shape, array.dtype)
+";
+
+/// A program that judges a file.
+struct Judge {
+    /// What has to be there, for the message.
+    needs: &'static str,
+    /// What is put before the code on the command line.
+    program: Vec<String>,
+    /// Whether it is there: code that fails otherwise.
+    probe: &'static str,
+    code: &'static str,
+    file: &'static str,
+}
+
+/// Bakes a material for each judge that is there, and asks it.
+pub(super) fn exchange(shell: &Shell) -> anyhow::Result<()> {
+    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let python = || vec![python.clone(), "-c".to_owned()];
+    let judges = [
+        Judge {
+            needs: "node with gltf-validator",
+            program: vec!["node".to_owned(), "-e".to_owned()],
+            probe: "require('gltf-validator')",
+            code: VALIDATE_GLB,
+            file: "rock.glb",
+        },
+        Judge {
+            needs: "Python with MaterialX",
+            program: python(),
+            probe: "import MaterialX",
+            code: VALIDATE_MTLX,
+            file: "rock.mtlx",
+        },
+        Judge {
+            needs: "Python with NumPy",
+            program: python(),
+            probe: "import numpy",
+            code: READ_NPY,
+            file: "rock.npy",
+        },
+    ];
+    let folder = shell.create_temp_dir()?;
+    for judge in &judges {
+        let probe = judge.command(shell, judge.probe).quiet().ignore_status();
+        let found = probe.ignore_stdout().ignore_stderr().output();
+        if !found.is_ok_and(|output| output.status.success()) {
+            crate::say(&format!("skipped: there is no {}", judge.needs));
+            continue;
+        }
+        let file = folder.path().join(judge.file);
+        let bake = cmd!(
+            shell,
+            "cargo run --quiet --package dapple-cli -- bake rock --size 64x40 --quiet -o {file}"
+        );
+        let maps = judge.file.ends_with(".npy").then_some(["--maps", "normal"]);
+        bake.quiet().args(maps.into_iter().flatten()).run()?;
+        let asked = judge.command(shell, judge.code).arg(&file).quiet().run();
+        asked.with_context(|| format!("{} refused {}", judge.needs, judge.file))?;
+    }
+    Ok(())
+}
+
+impl Judge {
+    fn command<'a>(&self, shell: &'a Shell, code: &str) -> Cmd<'a> {
+        let [program, options @ ..] = self.program.as_slice() else {
+            return shell.cmd("false");
+        };
+        shell.cmd(program).args(options).arg(code)
+    }
+}
