@@ -30,7 +30,7 @@ pub struct Options {
     pub center: CoarserCenter,
     /// Which way neighborhoods on surfaces go on away from their site; by default as the field does.
     pub axes: Axes,
-    /// How much worse a match may be that continues the source of a neighboring site; by default a factor of 2.
+    /// How much worse a match may be that continues the source of a neighboring site; by default as the exemplar asks for.
     pub coherence: Coherence,
     /// How evenly the pixels of the exemplar are used, from 0 to 1000, by default 1.
     ///
@@ -47,7 +47,7 @@ pub struct Options {
 /// In text it is `auto` or a number.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/coherence.md"))]
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Coherence {
     /// A factor of 2; but for a regular exemplar, one whose [`Exemplar::regularity`] is above 0.9, the least distance wins in
@@ -62,6 +62,7 @@ pub enum Coherence {
     /// again: the squares of a checker run together where the sweep begins.
     ///
     /// Measuring the regularity takes some tens of milliseconds.
+    #[default]
     Auto,
     /// It wins if its squared distance is at most 1 + this times the least; in passes that read no coarser level, where no
     /// later one can mend what does not fit together, 1 + half of this times. Finite and at least 0; at 0 the least always
@@ -122,7 +123,7 @@ impl Default for Options {
             schedule: None,
             center: CoarserCenter::Exact,
             axes: Axes::Followed,
-            coherence: Coherence::Factor(2.0),
+            coherence: Coherence::default(),
             evenness: 1.0,
         }
     }
