@@ -36,7 +36,7 @@ pub(crate) fn run<G: Ground>(
     callback: Callback<'_>,
 ) -> Result<Vec<Vec<u32>>, SynthError> {
     let passes = options.passes()?.passes;
-    let coherence = options.coherence.factor(&pyramid.levels()[0]);
+    let coherence = options.coherence.factors(&pyramid.levels()[0]);
     let mut levels: Vec<Vec<AtomicU32>> = Vec::new();
     levels.resize_with(pyramid.levels().len(), Vec::new);
     let mut kept = Kept::default();

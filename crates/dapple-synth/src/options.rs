@@ -30,7 +30,7 @@ pub struct Options {
     pub center: CoarserCenter,
     /// Which way neighborhoods on surfaces go on away from their site; by default as the field does.
     pub axes: Axes,
-    /// How much worse a match may be that continues the source of a neighboring site; by default a factor of 2.
+    /// How much worse a match may be that continues the source of a neighboring site; by default as the exemplar asks for.
     pub coherence: Coherence,
     /// How evenly the pixels of the exemplar are used, from 0 to 1000, by default 1.
     ///
@@ -47,15 +47,22 @@ pub struct Options {
 /// In text it is `auto` or a number.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/coherence.md"))]
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Coherence {
-    /// A factor of 0 for a regular exemplar, one whose [`Exemplar::regularity`] is above 0.9, and of 2 for any other.
+    /// A factor of 2; but for a regular exemplar, one whose [`Exemplar::regularity`] is above 0.9, the least distance wins in
+    /// passes that read a coarser level.
     ///
     /// Where the exemplar has what fits, as hooks that interlock and courses of bricks, the least distance finds it, and
     /// with 2 the texture tears instead. In photographs no detail occurs twice, and the least distance blurs it away: leaves
-    /// keep 0.65 of their standard deviation with 0, and 0.87 with 2. Patches of one color that are larger than a
-    /// neighborhood, as the squares of a checker, may run together on a mesh with 0: look, and take 2 then.
+    /// keep 0.65 of their standard deviation with 0, and 0.87 with 2.
+    ///
+    /// In passes that read no coarser level the factor is 1 for any exemplar, as with a coherence of 2. There the sweep begins
+    /// among random colors, and their averages resemble only a few pixels of the exemplar. With 0 those are taken again and
+    /// again: the squares of a checker run together where the sweep begins.
+    ///
+    /// Measuring the regularity takes some tens of milliseconds.
+    #[default]
     Auto,
     /// It wins if its squared distance is at most 1 + this times the least; in passes that read no coarser level, where no
     /// later one can mend what does not fit together, 1 + half of this times. Finite and at least 0; at 0 the least always
@@ -63,13 +70,25 @@ pub enum Coherence {
     Factor(f32),
 }
 
+/// How much worse a match may be that continues the source of a neighboring site, at least 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CoherenceFactors {
+    /// In passes that read no coarser level.
+    pub(crate) initial: f32,
+    /// In passes that read one.
+    pub(crate) finer: f32,
+}
+
 impl Coherence {
-    /// The factor for an exemplar.
-    pub(crate) fn factor(self, exemplar: &Exemplar) -> f32 {
-        match self {
-            Self::Auto if exemplar.regularity() > REGULAR => 0.0,
-            Self::Auto => 2.0,
-            Self::Factor(factor) => factor,
+    /// The factors for an exemplar.
+    pub(crate) fn factors(self, exemplar: &Exemplar) -> CoherenceFactors {
+        let (factor, is_least) = match self {
+            Self::Auto => (2.0, exemplar.regularity() > REGULAR),
+            Self::Factor(factor) => (factor, false),
+        };
+        CoherenceFactors {
+            initial: 0.5 * factor,
+            finer: if is_least { 0.0 } else { factor },
         }
     }
 }
@@ -104,7 +123,7 @@ impl Default for Options {
             schedule: None,
             center: CoarserCenter::Exact,
             axes: Axes::Followed,
-            coherence: Coherence::Factor(2.0),
+            coherence: Coherence::default(),
             evenness: 1.0,
         }
     }
@@ -172,7 +191,7 @@ impl Options {
 
 #[cfg(test)]
 mod tests {
-    use super::{Coherence, Options};
+    use super::{Coherence, CoherenceFactors, Options};
     use crate::{Edges, Exemplar, synthesize_plane};
     use dapple_hash::{Seed, hash2, unit_f32};
     use dapple_raster::Raster;
@@ -181,13 +200,19 @@ mod tests {
     fn coherence_follows_from_the_regularity_of_the_exemplar() {
         let noise =
             |x: u32, y: u32| unit_f32((hash2(Seed(3), [x.into(), y.into()], 0) >> 32) as u32);
-        for (period, factor) in [(16, 0.0), (48, 2.0)] {
+        for (period, finer) in [(16, 0.0), (48, 2.0)] {
             let plane = Raster::from_fn([48, 48], |x, y| noise(x % period, y % period)).unwrap();
             let exemplar = Exemplar::from_planes(&[(&plane, 1.0)], Edges::Wrap).unwrap();
-            let [auto, same, other] = [
+            let expected = CoherenceFactors {
+                initial: 1.0,
+                finer,
+            };
+            let found = Coherence::Auto.factors(&exemplar);
+            assert_eq!(found, expected, "period {period}");
+            let [auto, coherent, least] = [
                 Coherence::Auto,
-                Coherence::Factor(factor),
-                Coherence::Factor(2.0 - factor),
+                Coherence::Factor(2.0),
+                Coherence::Factor(0.0),
             ]
             .map(|coherence| {
                 let options = Options {
@@ -196,8 +221,8 @@ mod tests {
                 };
                 synthesize_plane(&exemplar, [32; 2], [Edges::Cut; 2], &options).unwrap()
             });
-            assert!(auto == same, "period {period}: as {factor}");
-            assert!(auto != other, "period {period}: not as {}", 2.0 - factor);
+            assert_eq!(auto == coherent, finer == 2.0, "period {period}: as 2");
+            assert!(auto != least, "period {period}: not as 0 on all levels");
         }
     }
 

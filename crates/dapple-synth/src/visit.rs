@@ -6,6 +6,7 @@ use crate::ground::{Ground, Painted, Rows, Samples, Square};
 use crate::kept::Kept;
 use crate::matcher::Query;
 use crate::neighborhood::{Pass, Reads, Shape};
+use crate::options::CoherenceFactors;
 use crate::{Candidates, Exemplar, Matcher, MatcherMemory, Options, Pyramid, SynthError};
 use core::sync::atomic::Ordering;
 
@@ -71,13 +72,13 @@ struct State<'a> {
 }
 
 impl<'a, G: Ground> Visit<'a, G> {
-    /// Prepares a pass, with the coherence as a factor.
+    /// Prepares a pass.
     pub(crate) fn new(
         ground: &'a G,
         pyramid: &'a Pyramid,
         pass: &Pass,
         options: &Options,
-        coherence: f32,
+        coherence: CoherenceFactors,
     ) -> Result<Self, SynthError> {
         let candidates = Candidates::for_options(pyramid, pass, options)?;
         let exemplar = &pyramid.levels()[pass.level];
@@ -92,8 +93,8 @@ impl<'a, G: Ground> Visit<'a, G> {
             [same, coarser].map(|half| half.map_or(0, |half| half.half)),
         );
         let (coherence, evenness) = match coarser {
-            None => (0.5 * coherence, options.evenness),
-            Some(_) => (coherence, 0.0),
+            None => (coherence.initial, options.evenness),
+            Some(_) => (coherence.finer, 0.0),
         };
         Ok(Self {
             ground,

@@ -108,8 +108,8 @@ pub(super) struct MatchArgs {
     #[arg(long, value_name = "N", default_value_t = 3)]
     levels: usize,
 
-    /// How much worse a match may be that continues what lies beside it, at least 0: higher copies larger pieces; by
-    /// default 2, or 0 with --paper.
+    /// How much worse a match may be that continues what lies beside it, at least 0: higher copies larger pieces. By
+    /// default auto, which is 2, or 0 on finer levels where the example is regular; 0 with --paper.
     #[arg(long, value_name = "auto|N")]
     coherence: Option<Coherence>,
 

@@ -23,7 +23,7 @@ struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=16384))]
     size: u32,
 
-    /// Makes pictures of 1024 pixels, in which the surfaces have as many points as in their paper: some minutes.
+    /// Makes pictures of 1024 pixels: some minutes.
     #[arg(long, conflicts_with = "size")]
     full: bool,
 

@@ -8,7 +8,7 @@ use dapple_gallery::{Own, Picture};
 use dapple_image::{Depth, Limits, read_image, write_color_png};
 use dapple_synth::mesh::HierarchyOptions;
 use dapple_synth::mesh::io::{read_model, write_model};
-use dapple_synth::{Coherence, Direction, Edges, Options};
+use dapple_synth::{Coherence, Direction, Edges};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -40,8 +40,8 @@ pub(crate) struct OwnArguments {
     levels: usize,
 
     /// How much worse a match may be that continues its neighbors; 0 as in the paper.
-    #[arg(long, value_name = "auto|K", requires = "mesh")]
-    coherence: Option<Coherence>,
+    #[arg(long, value_name = "auto|K", default_value = "auto", requires = "mesh")]
+    coherence: Coherence,
 }
 
 /// Renders the mesh from four sides and writes it with its texture map.
@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: &OwnArguments, size: u32, out: &Path) -> Result<()>
             n_levels: arguments.levels,
             ..HierarchyOptions::default()
         },
-        coherence: arguments.coherence.unwrap_or(Options::default().coherence),
+        coherence: arguments.coherence,
         map_side: 2048,
     };
     let textured = own.render(size)?;

@@ -1,8 +1,8 @@
 //! Six models with their textures, each shown with the exemplar that it was synthesized from: a ray, an octopus, a rounded
 //! animal, three blended tori, a zebra and an elephant.
 //!
-//! Points, levels and exemplar sizes are those of table 1 in a figure of 1024 pixels (`--full`); smaller figures have fewer
-//! points and triangles. Models and exemplars are procedural stand-ins for the paper's. The texture is baked to a map of right
+//! Points, levels and exemplar sizes are those of table 1 in a figure of 512 pixels; smaller figures have fewer points and
+//! triangles. Models and exemplars are procedural stand-ins for the paper's. The texture is baked to a map of right
 //! triangles on the model, which has 14,000 of them.
 
 use super::stage::lit;
@@ -16,13 +16,13 @@ use dapple_raster::Raster;
 pub(super) const FIGURE: Figure = Figure {
     number: "5",
     parameters: &[
-        ("points", "256,000 (ray: 64,000) at 1024 pixels"),
+        ("points", "256,000 (ray: 64,000)"),
         ("levels", "3: ray, octopus, bunny; 4: tori, zebra, elephant"),
         (
             "coherence, evenness",
-            "2 for the ray, whose squares run together with 0, else auto (0, and 2 for puzzle pieces); 1; 0 in the paper",
+            "auto (2 for puzzle pieces, for all others 2 in the first pass and then 0); 1; 0 in the paper",
         ),
-        ("texture map", "two pixels of the map for one of the figure"),
+        ("texture map", "2048²"),
     ],
     source: source!(),
     render,

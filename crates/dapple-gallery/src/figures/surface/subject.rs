@@ -10,14 +10,14 @@ use dapple_synth::mesh::{HierarchyOptions, Mesh, MeshError, models};
 use dapple_synth::{Coherence, Direction};
 use glam::DVec3;
 
-/// The size of a figure from which on a subject has as many sites as the paper's.
-const FULL_SIZE: u32 = 1024;
+/// The size of a figure from which on a subject has as many sites as the paper's: that of the page.
+const FULL_SIZE: u32 = 512;
 /// The triangles of a model at full size, of which the paper has 10 to 20 thousand, and the fewest.
 const TRIANGLES: [f64; 2] = [14_000.0, 2000.0];
 /// The fewest sites.
 const SITES_MIN: f64 = 1024.0;
 /// The texels of a texture map's side for a pixel of the figure.
-const TEXELS: u32 = 2;
+const TEXELS: u32 = 4;
 
 /// A model that gets a texture.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,6 @@ pub(crate) struct Subject {
     /// Sites of the finest level at full size, and levels: those of table 1.
     n_sites: usize,
     n_levels: usize,
-    coherence: Coherence,
     /// Positions, and the directions there that are the texture's down.
     directions: &'static [[DVec3; 2]],
     pub(crate) view: View,
@@ -45,7 +44,6 @@ pub(crate) const RAY: Subject = Subject {
     exemplar: "wiggly checker",
     n_sites: 64_000,
     n_levels: 3,
-    coherence: Coherence::Factor(2.0),
     directions: &[
         [DVec3::new(0.15, 0.1, 0.75), DVec3::new(0.9, 0.0, -0.6)],
         [DVec3::new(-0.15, 0.1, 0.75), DVec3::new(-0.9, 0.0, -0.6)],
@@ -69,7 +67,6 @@ const OCTOPUS: Subject = Subject {
     exemplar: "suckers",
     n_sites: 256_000,
     n_levels: 3,
-    coherence: Coherence::Auto,
     directions: &[
         [DVec3::new(0.0, 0.5, 0.4), DVec3::NEG_Y],
         [DVec3::new(0.0, 0.5, -0.6), DVec3::NEG_Y],
@@ -96,7 +93,6 @@ const BUNNY: Subject = Subject {
     exemplar: "scales",
     n_sites: 256_000,
     n_levels: 3,
-    coherence: Coherence::Auto,
     directions: &[
         [models::bunny::LEFT_EAR, DVec3::NEG_Y],
         [DVec3::new(-0.25, 1.05, -0.05), DVec3::NEG_Y],
@@ -121,7 +117,6 @@ pub(crate) const TORI: Subject = Subject {
     exemplar: "woven hooks",
     n_sites: 256_000,
     n_levels: 4,
-    coherence: Coherence::Auto,
     directions: &[
         [DVec3::new(0.55, 0.55, 0.2), DVec3::new(-1.0, 1.0, 0.0)],
         [DVec3::new(-0.55, -0.55, 0.2), DVec3::new(1.0, -1.0, 0.0)],
@@ -144,7 +139,6 @@ const ZEBRA: Subject = Subject {
     exemplar: "text",
     n_sites: 256_000,
     n_levels: 4,
-    coherence: Coherence::Auto,
     directions: &[
         [models::zebra::BACK, DVec3::X],
         [DVec3::new(0.4, 0.0, 0.0), DVec3::NEG_Y],
@@ -165,7 +159,6 @@ const ELEPHANT: Subject = Subject {
     exemplar: "puzzle pieces",
     n_sites: 256_000,
     n_levels: 4,
-    coherence: Coherence::Auto,
     directions: &[
         [models::elephant::BACK, DVec3::NEG_Z],
         [models::elephant::FOREHEAD, DVec3::new(0.0, -1.0, 0.5)],
@@ -222,7 +215,7 @@ impl Subject {
             edges,
             directions: self.directions(),
             sites: self.sites(size),
-            coherence: self.coherence,
+            coherence: Coherence::Auto,
             map_side: (TEXELS * size).max(512),
         };
         job.run()
@@ -234,3 +227,6 @@ fn part(size: u32) -> f64 {
     let side = f64::from(size) / f64::from(FULL_SIZE);
     (side * side).min(1.0)
 }
+
+#[cfg(test)]
+mod tests;

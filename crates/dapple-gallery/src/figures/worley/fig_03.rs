@@ -1,69 +1,65 @@
-//! The hull of a space ship: F1 with the Manhattan metric, not fractal, in steps. Its regions are rigidly rectangular, and
-//! still random, and leave right-angled channels between them.
+//! The hull of a space ship: F1 with the Manhattan metric, not fractal. Its regions are rigidly rectangular and still random,
+//! and between them are right-angled channels. The hull rises in steps, which are in its mesh, so that they cast shadows in the
+//! light of a low sun.
 //!
-//! The corners of the regions point along the axes, so the texture is turned by an eighth of a turn. Each face of the hull
-//! shows a slice that is parallel to it.
+//! The corners of the regions point along the axes, so the texture is turned by an eighth of a turn. Each panel of the hull
+//! has a slice that is parallel to it.
 
-use super::hull::{axes, hull};
+use super::hull::{Panel, hull};
 use super::photo;
 use crate::figure::source;
-use crate::{Figure, Panel};
+use crate::{Figure, Panel as Picture};
 use dapple_color::LinearRgb;
-use dapple_preview::{Camera, Light, Material, Object, Scene, Shape, Surface};
-use dapple_worley::{Combination, Metric, Profile, Worley3, hash::Seed};
+use dapple_preview::{Camera, Light, Material, Object, Scene, Shape};
+use dapple_worley::{Metric, Worley3, hash::Seed};
 use glam::DVec3;
 
 pub(super) const FIGURE: Figure = Figure {
     number: "3",
     parameters: &[
         ("metric", "Manhattan"),
-        ("steps", "where F1 is 0.25, 0.4, 0.55 and 0.7"),
-        ("height of a step", "0.025"),
+        ("steps", "up where F1 is below 0.68, 0.5, 0.33 and 0.17"),
+        (
+            "heights of the steps",
+            "0.035, 0.03, 0.025, 0.02; a cell is 0.42 wide",
+        ),
     ],
     source: source!(),
     render,
 };
 
-/// Where F1 has a step.
-const LEVELS: [f32; 4] = [0.25, 0.4, 0.55, 0.7];
-/// How many units of the ship a step is high.
-const STEP: f64 = 0.025;
+/// Where the hull has a step up, in F1, and how high it is.
+const STEPS: [(f32, f64); 4] = [(0.68, 0.035), (0.5, 0.03), (0.33, 0.025), (0.17, 0.02)];
 /// Cells per unit of the ship.
-const FREQUENCY: f64 = 2.2;
+const FREQUENCY: f64 = 2.4;
+/// A step of the mesh at the distance 1, in pixels of a picture that were there about 1 unit wide.
+const GRID: f64 = 3.0;
 
-fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
-    let plates = Worley3::new(Seed(33))
-        .with_metric(Metric::Manhattan)?
-        .combine(Combination::F1);
-    let step = Profile::channels(0.03)?;
-    let look = |surface: &Surface| {
-        let [u, v, n] = axes(surface.geometric_normal);
-        let eighth = 0.5_f64.sqrt();
-        let [a, b] = [(u + v) * eighth, (v - u) * eighth];
-        let at = surface.position * FREQUENCY;
-        let at = DVec3::new(at.dot(a), at.dot(b), at.dot(n) + 0.3);
-        let value = plates.value(at);
-        let slope = LEVELS
-            .iter()
-            .map(|level| -f64::from(step.slope(level - value)))
-            .sum::<f64>();
-        let height = LEVELS
-            .iter()
-            .map(|level| step.height(level - value))
-            .sum::<f32>();
-        let gradient = plates.gradient(at) * (slope * FREQUENCY * STEP);
-        Material::matte(LinearRgb::gray(0.16 + 0.08 * height))
-            .with_bump(a * gradient.x + b * gradient.y)
-            .with_specular(0.12, 16.0)
+fn render(size: u32) -> anyhow::Result<Vec<Picture>> {
+    let cells = Worley3::new(Seed(33)).with_metric(Metric::Manhattan)?;
+    let height = |panel: &Panel, at: DVec3| {
+        let [u, v, n] = panel.axes();
+        let [a, b] = [u + v, v - u].map(DVec3::normalize);
+        let at = at * FREQUENCY;
+        let [nearest] = cells.sample(DVec3::new(at.dot(a), at.dot(b), at.dot(n) + 0.3));
+        let steps = STEPS.iter().filter(|(f1, _)| nearest.distance < *f1);
+        steps.map(|(_, height)| height).sum()
     };
+    let mesh = hull(GRID / f64::from(size), height)?;
+    let paint = LinearRgb::new(0.4, 0.42, 0.45);
+    let look = |_: &_| Material::matte(paint).with_specular(0.08, 12.0);
     let camera =
-        Camera::look_at(DVec3::new(-5.3, 3.3, -7.2), DVec3::new(-0.2, 0.3, -0.7)).with_fov(0.52);
+        Camera::look_at(DVec3::new(1.9, 2.3, 0.6), DVec3::new(0.5, 0.75, -6.0)).with_fov(0.62);
     let scene = Scene::new(camera)
-        .with_object(Object::new(Shape::mesh(hull()?), look))
+        .with_object(Object::new(Shape::mesh(mesh), look))
         .with_light(Light::directional(
-            DVec3::new(-1.8, 1.1, -0.25),
-            LinearRgb::gray(1.45),
+            DVec3::new(1.0, 0.55, -0.5),
+            LinearRgb::new(1.75, 1.68, 1.55),
         ))
-        .with_ambient(LinearRgb::gray(0.04));
+        .with_light(Light::directional(
+            DVec3::new(-0.6, 0.5, 1.0),
+            LinearRgb::new(0.05, 0.07, 0.11),
+        ))
+        .with_ambient(LinearRgb::new(0.025, 0.028, 0.035));
     Ok(vec![photo(&scene, [size, size * 5 / 8])?])
 }

@@ -1,58 +1,131 @@
-//! The hull of a space ship, as a mesh: wedges on top of each other, and a bridge at the stern.
+//! The hull of a space ship as a mesh: rectangular panels, each raised by a height at every point of a fine grid.
 
 use dapple_preview::{Mesh, PreviewError};
 use glam::DVec3;
 
-/// A slab between two wedges: for the lower and the upper one the height, half the width at the nose and at the stern,
-/// and where nose and stern are along z.
-type Slab = [[f64; 5]; 2];
-
-const SLABS: [Slab; 7] = [
-    // The hull below and above its rim.
-    [[-0.7, 0.05, 0.9, -2.2, 3.0], [-0.06, 0.08, 2.2, -4.5, 3.2]],
-    [[-0.06, 0.05, 2.1, -4.4, 3.1], [0.06, 0.05, 2.1, -4.4, 3.1]],
-    [[0.06, 0.08, 2.2, -4.5, 3.2], [0.55, 0.05, 1.0, -2.4, 3.0]],
-    // Decks.
-    [[0.5, 0.1, 0.85, -1.2, 2.9], [0.8, 0.08, 0.75, -0.9, 2.8]],
-    [[0.75, 0.3, 0.55, 0.9, 2.7], [1.1, 0.25, 0.45, 1.1, 2.6]],
-    // The neck and the bridge.
-    [[1.05, 0.18, 0.22, 1.9, 2.5], [1.4, 0.14, 0.18, 2.0, 2.45]],
-    [[1.4, 0.6, 0.6, 1.95, 2.5], [1.68, 0.5, 0.5, 2.05, 2.4]],
+/// The cross-section of the hull as x and y, from one side over the deck to the other. Nobody sees it from below.
+const SECTION: [[f64; 2]; 8] = [
+    [-2.3, -0.2],
+    [-2.3, 0.25],
+    [-0.9, 0.75],
+    [-0.9, 0.95],
+    [0.9, 0.95],
+    [0.9, 0.75],
+    [2.3, 0.25],
+    [2.3, -0.2],
 ];
 
-/// The hull, about 8 units long with its nose at -z, with flat faces.
-pub(super) fn hull() -> Result<Mesh, PreviewError> {
+/// Where the hull begins and ends along z. The eye is near the origin, and looks along it.
+const LENGTH: [f64; 2] = [-1.2, -26.0];
+
+/// The blocks of the bridge: the middle of the base of each, and half of its size.
+const BLOCKS: [[[f64; 3]; 2]; 4] = [
+    [[0.0, 0.95, -12.0], [0.75, 0.25, 4.0]],
+    [[0.0, 1.45, -12.6], [0.5, 0.3, 2.2]],
+    [[0.0, 2.05, -13.0], [0.22, 0.25, 0.6]],
+    [[0.0, 2.55, -13.0], [0.8, 0.17, 0.42]],
+];
+
+/// The part of the heights that the small panels of the bridge have.
+const BRIDGE_RELIEF: f64 = 0.5;
+
+/// How wide the border of a panel is that stays low: heights of panels side by side do not meet.
+const BORDER: f64 = 0.04;
+
+/// A rectangle: a corner, and the edges from there. Seen from outside, the second is to the left of the first.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Panel {
+    corner: DVec3,
+    edges: [DVec3; 2],
+    /// What heights are multiplied by.
+    relief: f64,
+}
+
+impl Panel {
+    /// Unit vectors along both edges and out of the panel.
+    pub(super) fn axes(&self) -> [DVec3; 3] {
+        let [u, v] = self.edges.map(DVec3::normalize);
+        [u, v, u.cross(v)]
+    }
+
+    /// How far the point at these parts of the edges is from the border.
+    fn from_border(&self, parts: [f64; 2]) -> f64 {
+        let [u, v] = self.edges.map(DVec3::length);
+        let side = |part: f64, length: f64| part.min(1.0 - part) * length;
+        side(parts[0], u).min(side(parts[1], v))
+    }
+}
+
+/// All panels: those along the hull, and five of each block.
+fn panels() -> Vec<Panel> {
+    let [front, back] = LENGTH;
+    let mut panels = Vec::new();
+    for ends in SECTION.windows(2) {
+        let [from, to] = [ends[0], ends[1]].map(|[x, y]| DVec3::new(x, y, front));
+        panels.push(Panel {
+            corner: from,
+            edges: [DVec3::Z * (back - front), to - from],
+            relief: 1.0,
+        });
+    }
+    for [base, half] in BLOCKS {
+        let [x, y, z] = half;
+        let (base, up) = (DVec3::from(base), DVec3::Y * (2.0 * y));
+        let corner = base + DVec3::new(-x, 0.0, z);
+        let [right, back] = [DVec3::X * (2.0 * x), DVec3::NEG_Z * (2.0 * z)];
+        let sides = [
+            (corner, [right, up]),
+            (corner + back, [-back, up]),
+            (corner + right, [back, up]),
+            (corner + up, [right, back]),
+            (corner, [back, right]),
+        ];
+        panels.extend(sides.map(|(corner, edges)| Panel {
+            corner,
+            edges,
+            relief: BRIDGE_RELIEF,
+        }));
+    }
+    panels
+}
+
+/// The hull, raised by the `height` of a panel at a position on it. A step of the grids is `step` times the distance from the
+/// origin, but no finer than at the distance 1.
+pub(super) fn hull(step: f64, height: impl Fn(&Panel, DVec3) -> f64) -> Result<Mesh, PreviewError> {
     let mut positions = Vec::new();
     let mut triangles = Vec::new();
-    for slab in SLABS {
+    for panel in panels() {
         let first = positions.len() as u32;
-        for [y, nose, stern, front, back] in slab {
-            let corners = [(-nose, front), (nose, front), (stern, back), (-stern, back)];
-            positions.extend(corners.map(|(x, z)| DVec3::new(x, y, z)));
+        let [across, down] = panel.edges.map(|edge| lines(panel.corner, edge, step));
+        let out = panel.axes()[2] * panel.relief;
+        for &v in &down {
+            for &u in &across {
+                let at = panel.corner + panel.edges[0] * u + panel.edges[1] * v;
+                let inside = panel.from_border([u, v]) > BORDER;
+                let raised = if inside { height(&panel, at) } else { 0.0 };
+                positions.push(at + out * raised);
+            }
         }
-        let quads = [
-            [0, 1, 2, 3],
-            [4, 7, 6, 5],
-            [0, 4, 5, 1],
-            [1, 5, 6, 2],
-            [2, 6, 7, 3],
-            [3, 7, 4, 0],
-        ];
-        for [a, b, c, d] in quads.map(|quad| quad.map(|corner| first + corner)) {
-            triangles.extend([[a, b, c], [a, c, d]]);
+        let width = across.len() as u32;
+        for row in 1..down.len() as u32 {
+            for column in 1..width {
+                let d = first + row * width + column;
+                let [a, b, c] = [d - width - 1, d - width, d - 1];
+                triangles.extend([[a, b, d], [a, d, c]]);
+            }
         }
     }
     Mesh::flat(&positions, &triangles)
 }
 
-/// Two directions along a face and the one out of it, for a slice of a solid texture: along the length of the ship if
-/// the face is more level than upright, and along its height if not.
-pub(super) fn axes(normal: DVec3) -> [DVec3; 3] {
-    let along = if normal.y.abs() > 0.5 {
-        DVec3::Z
-    } else {
-        DVec3::Y
-    };
-    let across = normal.cross(along).normalize_or(DVec3::X);
-    [across, normal.cross(across), normal]
+/// The lines of a grid along an edge, as parts of it: the farther from the eye the farther apart.
+fn lines(corner: DVec3, edge: DVec3, step: f64) -> Vec<f64> {
+    let mut lines = vec![0.0];
+    let mut part = 0.0;
+    while part < 1.0 {
+        let distance = (corner + edge * part).length().max(1.0);
+        part = (part + step * distance / edge.length()).min(1.0);
+        lines.push(part);
+    }
+    lines
 }

@@ -1,7 +1,8 @@
 //! Whether the measure behind [`Coherence::Auto`](dapple_synth::Coherence) agrees with eyes.
 //!
 //! Textures of 256² pixels were made from each exemplar with a coherence of 0 and of 2, and the choices below were written
-//! down before there was a measure. Where neither looks better it says so.
+//! down before there was a measure. Where neither looks better it says so. What was better with 0 was so, too, with 0 only in
+//! the passes that read a coarser level.
 
 #![expect(clippy::disallowed_methods, reason = "photographs are read here")]
 
@@ -15,7 +16,7 @@ use std::path::Path;
 /// What looks better.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Better {
-    /// A coherence of 0: with 2 the texture has tears.
+    /// A coherence of 0, on finer levels: with 2 the texture has tears.
     Least,
     /// A coherence of 2: with 0 detail blurs away or shapes melt.
     Coherent,

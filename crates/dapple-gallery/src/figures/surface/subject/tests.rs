@@ -1,0 +1,48 @@
+//! The squares of the ray, which run together where the sweep begins if the least distance wins everywhere.
+
+use super::RAY;
+use dapple_synth::mesh::Surface;
+use dapple_synth::{Coherence, Exemplar, Options, Synthesizer};
+
+/// How far around a site there are two colors, in spacings: nearly the width of a square, 10.7. The middle of a square of the
+/// exemplar is at most 8 from its edges.
+const RADIUS: f64 = 10.0;
+
+/// The part of the sites that have one color all around.
+fn part_of_one_color(synthesizer: &Synthesizer, values: &[f32]) -> f64 {
+    let hierarchy = synthesizer.hierarchy();
+    let level = &hierarchy.levels()[0];
+    let is_of_one_color = |site: usize| {
+        let mut colors = [false; 2];
+        let at = hierarchy.sites().positions()[site];
+        level.grid().visit(at, RADIUS * level.spacing(), |near| {
+            colors[usize::from(values[3 * near.index()] > 0.5)] = true;
+        });
+        colors != [true; 2]
+    };
+    let n_sites = hierarchy.sites().len();
+    let count = (0..n_sites).filter(|&site| is_of_one_color(site)).count();
+    count as f64 / n_sites as f64
+}
+
+#[test]
+fn squares_of_the_ray_do_not_run_together() {
+    let surface = Surface::new((RAY.model)(4000).unwrap()).unwrap();
+    let ray = Synthesizer::new(surface, &RAY.directions(), &RAY.sites(512)).unwrap();
+    let (image, edges) = RAY.image().unwrap();
+    let exemplar = Exemplar::new(&image, edges).unwrap();
+    let [auto, least] = [Coherence::Auto, Coherence::Factor(0.0)].map(|coherence| {
+        let options = Options {
+            coherence,
+            ..Options::default()
+        };
+        let texture = ray.synthesize(&exemplar, &options).unwrap();
+        part_of_one_color(&ray, texture.values(0))
+    });
+    println!("of one color: {auto} with auto, {least} with 0");
+    assert!(
+        auto < 0.001,
+        "{auto} of the sites are in areas of one color"
+    );
+    assert!(least > 0.005, "the test sees no area of one color: {least}");
+}
