@@ -123,7 +123,7 @@ impl Pixel for f32 {
     const CONTENT: Content = Content::Gray;
     type Eight = u8;
     type Sixteen = u16;
-    type Numbers = [f32; 1];
+    type Numbers = [Self; 1];
 
     #[inline(always)]
     fn eight(&self) -> u8 {
@@ -141,7 +141,7 @@ impl Pixel for f32 {
     }
 
     #[inline(always)]
-    fn numbers(&self) -> [f32; 1] {
+    fn numbers(&self) -> [Self; 1] {
         [*self]
     }
 }
