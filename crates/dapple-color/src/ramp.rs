@@ -3,6 +3,8 @@
 //! A ramp is a list of stops, each a position and a color, with positions that never decrease; two stops at one position
 //! make a hard edge, and the later one holds at the position itself. Colors between stops are mixed in a [`RampSpace`].
 //! The colors of the stops are brought into it when the ramp is made, so that Oklab costs a color no root.
+//!
+//! Reference: our own; the space Oklab has its own in `oklab.rs`.
 
 use crate::oklab::{linear_from_oklab, oklab_from_linear};
 use crate::srgb::{linear_from_srgb, srgb_from_linear};

@@ -94,9 +94,12 @@ fn map(folder: &Folder, name: &str, normal_y: &str, format: &str) -> Vec<Vec<u16
     channels(folder, &file)
 }
 
+/// A file without its ending, its format, and its channels.
+type File = (&'static str, &'static str, &'static str);
+
 /// What presets write, as their engines document it: the file, the bits, and for each channel its map and which of its
 /// channels. `!` before a map is one less it, and `1` is white.
-const EXPECTED: [(&str, &str, &[(&str, &str, &str)]); 5] = [
+const EXPECTED: [(&str, &str, &[File]); 5] = [
     (
         "unity",
         "opengl",

@@ -173,7 +173,7 @@ impl Tiles<'_> {
                 let side = self.materials[0][0].size();
                 let period = [0, 1].map(|axis| {
                     let tiles = size[axis] / side[axis];
-                    (size[axis] % side[axis] == 0).then_some(tiles)
+                    size[axis].is_multiple_of(side[axis]).then_some(tiles)
                 });
                 let tiles = self.corners(share)?.with_period(period)?;
                 tiles.render(seed, [0, 0], size)

@@ -1,6 +1,6 @@
 //! The hull of a space ship: F1 with the Manhattan metric, not fractal. Its regions are rigidly rectangular and still random,
-//! and between them are right-angled channels. The hull rises in steps, which are in its mesh, so that they cast shadows in the
-//! light of a low sun.
+//! and make right-angled channels. The hull sinks in steps, which are in its mesh, so that they cast shadows in the light of a
+//! low sun; on the bridge they rise.
 //!
 //! The corners of the regions point along the axes, so the texture is turned by an eighth of a turn. Each panel of the hull
 //! has a slice that is parallel to it.
@@ -18,9 +18,9 @@ pub(super) const FIGURE: Figure = Figure {
     number: "3",
     parameters: &[
         ("metric", "Manhattan"),
-        ("steps", "up where F1 is below 0.68, 0.5, 0.33 and 0.17"),
+        ("steps", "where F1 is 0.68, 0.5, 0.33 and 0.17"),
         (
-            "heights of the steps",
+            "depths of the steps",
             "0.035, 0.03, 0.025, 0.02; a cell is 0.42 wide",
         ),
     ],
@@ -28,7 +28,7 @@ pub(super) const FIGURE: Figure = Figure {
     render,
 };
 
-/// Where the hull has a step up, in F1, and how high it is.
+/// Below which F1 there is another step, and how deep it is.
 const STEPS: [(f32, f64); 4] = [(0.68, 0.035), (0.5, 0.03), (0.33, 0.025), (0.17, 0.02)];
 /// Cells per unit of the ship.
 const FREQUENCY: f64 = 2.4;
@@ -37,15 +37,15 @@ const GRID: f64 = 3.0;
 
 fn render(size: u32) -> anyhow::Result<Vec<Picture>> {
     let cells = Worley3::new(Seed(33)).with_metric(Metric::Manhattan)?;
-    let height = |panel: &Panel, at: DVec3| {
+    let relief = |panel: &Panel, at: DVec3| {
         let [u, v, n] = panel.axes();
         let [a, b] = [u + v, v - u].map(DVec3::normalize);
         let at = at * FREQUENCY;
         let [nearest] = cells.sample(DVec3::new(at.dot(a), at.dot(b), at.dot(n) + 0.3));
         let steps = STEPS.iter().filter(|(f1, _)| nearest.distance < *f1);
-        steps.map(|(_, height)| height).sum()
+        steps.map(|(_, depth)| depth).sum()
     };
-    let mesh = hull(GRID / f64::from(size), height)?;
+    let mesh = hull(GRID / f64::from(size), relief)?;
     let paint = LinearRgb::new(0.4, 0.42, 0.45);
     let look = |_: &_| Material::matte(paint).with_specular(0.08, 12.0);
     let camera =

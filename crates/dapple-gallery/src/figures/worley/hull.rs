@@ -1,18 +1,18 @@
-//! The hull of a space ship as a mesh: rectangular panels, each raised by a height at every point of a fine grid.
+//! The hull of a space ship as a mesh: rectangular panels, each with a relief at every point of a fine grid.
 
 use dapple_preview::{Mesh, PreviewError};
 use glam::DVec3;
 
 /// The cross-section of the hull as x and y, from one side over the deck to the other. Nobody sees it from below.
 const SECTION: [[f64; 2]; 8] = [
-    [-2.3, -0.2],
-    [-2.3, 0.25],
-    [-0.9, 0.75],
-    [-0.9, 0.95],
-    [0.9, 0.95],
-    [0.9, 0.75],
-    [2.3, 0.25],
     [2.3, -0.2],
+    [2.3, 0.25],
+    [0.9, 0.75],
+    [0.9, 0.95],
+    [-0.9, 0.95],
+    [-0.9, 0.75],
+    [-2.3, 0.25],
+    [-2.3, -0.2],
 ];
 
 /// Where the hull begins and ends along z. The eye is near the origin, and looks along it.
@@ -26,10 +26,10 @@ const BLOCKS: [[[f64; 3]; 2]; 4] = [
     [[0.0, 2.55, -13.0], [0.8, 0.17, 0.42]],
 ];
 
-/// The part of the heights that the small panels of the bridge have.
-const BRIDGE_RELIEF: f64 = 0.5;
+/// How much the panels of the hull and of the bridge rise for each unit of the relief: channels and blocks.
+const RELIEF: [f64; 2] = [-1.0, 0.5];
 
-/// How wide the border of a panel is that stays low: heights of panels side by side do not meet.
+/// How wide the border of a panel is that stays flat, so that panels side by side meet.
 const BORDER: f64 = 0.04;
 
 /// A rectangle: a corner, and the edges from there. Seen from outside, the second is to the left of the first.
@@ -37,8 +37,8 @@ const BORDER: f64 = 0.04;
 pub(super) struct Panel {
     corner: DVec3,
     edges: [DVec3; 2],
-    /// What heights are multiplied by.
-    relief: f64,
+    /// How much it rises for each unit of the relief.
+    rise: f64,
 }
 
 impl Panel {
@@ -49,7 +49,7 @@ impl Panel {
     }
 
     /// How far the point at these parts of the edges is from the border.
-    fn from_border(&self, parts: [f64; 2]) -> f64 {
+    fn border_distance(&self, parts: [f64; 2]) -> f64 {
         let [u, v] = self.edges.map(DVec3::length);
         let side = |part: f64, length: f64| part.min(1.0 - part) * length;
         side(parts[0], u).min(side(parts[1], v))
@@ -65,7 +65,7 @@ fn panels() -> Vec<Panel> {
         panels.push(Panel {
             corner: from,
             edges: [DVec3::Z * (back - front), to - from],
-            relief: 1.0,
+            rise: RELIEF[0],
         });
     }
     for [base, half] in BLOCKS {
@@ -83,27 +83,27 @@ fn panels() -> Vec<Panel> {
         panels.extend(sides.map(|(corner, edges)| Panel {
             corner,
             edges,
-            relief: BRIDGE_RELIEF,
+            rise: RELIEF[1],
         }));
     }
     panels
 }
 
-/// The hull, raised by the `height` of a panel at a position on it. A step of the grids is `step` times the distance from the
+/// The hull with the `relief` of a panel at a position on it. A step of the grids is `step` times the distance from the
 /// origin, but no finer than at the distance 1.
-pub(super) fn hull(step: f64, height: impl Fn(&Panel, DVec3) -> f64) -> Result<Mesh, PreviewError> {
+pub(super) fn hull(step: f64, relief: impl Fn(&Panel, DVec3) -> f64) -> Result<Mesh, PreviewError> {
     let mut positions = Vec::new();
     let mut triangles = Vec::new();
     for panel in panels() {
         let first = positions.len() as u32;
         let [across, down] = panel.edges.map(|edge| lines(panel.corner, edge, step));
-        let out = panel.axes()[2] * panel.relief;
+        let out = panel.axes()[2] * panel.rise;
         for &v in &down {
             for &u in &across {
                 let at = panel.corner + panel.edges[0] * u + panel.edges[1] * v;
-                let inside = panel.from_border([u, v]) > BORDER;
-                let raised = if inside { height(&panel, at) } else { 0.0 };
-                positions.push(at + out * raised);
+                let inside = panel.border_distance([u, v]) > BORDER;
+                let height = if inside { relief(&panel, at) } else { 0.0 };
+                positions.push(at + out * height);
             }
         }
         let width = across.len() as u32;
