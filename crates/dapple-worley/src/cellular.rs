@@ -56,7 +56,7 @@ where
     #[must_use]
     pub fn value(&self, position: impl Into<Vector<N>>) -> f32 {
         let place = Place::new(position.into().into());
-        place.map_or(f32::NAN, |place| self.tone.at(&self.worley, place))
+        place.map_or(f32::NAN, |place| self.tone.at(&self.worley, &place))
     }
 
     /// The values at as many positions.
@@ -73,7 +73,7 @@ where
     pub fn gradient(&self, position: impl Into<Vector<N>>) -> Vector<N> {
         let place = Place::new(position.into().into());
         let gradient = place.map_or([f32::NAN; N], |place| {
-            self.tone.gradient_at(&self.worley, place)
+            self.tone.gradient_at(&self.worley, &place)
         });
         Vector::<N>::from(gradient.map(f64::from))
     }
@@ -134,9 +134,9 @@ where
 
     pub(crate) fn outputs<'v>(
         &self,
-        picture: &Picture<'_, N>,
+        picture: &Picture<'_>,
         out: RasterViewMut<'v, f32>,
-    ) -> Vec<Output<'v, N>> {
+    ) -> Vec<Output<'v>> {
         let values = Values {
             tone: self.tone,
             weight: None,

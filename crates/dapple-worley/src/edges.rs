@@ -1,6 +1,5 @@
 //! The distance to the edge of the Voronoi cell at each position, as a texture.
 
-use crate::render::render_edges;
 use crate::{Axes, Metric, Plane, Space, Vector, Worley};
 use dapple_raster::glam::DVec2;
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
@@ -62,7 +61,8 @@ where
         out: RasterViewMut<'_, f32>,
     ) -> Result<(), RasterError> {
         window.check_size(out.size())?;
-        render_edges(&self.worley, plane, window, out)
+        let picture = self.worley.feature_picture(plane, window);
+        picture.basis.render_edges(&picture, out)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Pictures of the nearest feature points: distances, vectors, ids; and of gradients.
 
+use crate::doors::Doors as _;
 use crate::render::{Output, Picture};
 use crate::search::Hit;
 use crate::sink::Tone;
@@ -46,31 +47,11 @@ impl<const N: usize> Default for FeatureView<'_, N> {
 
 /// The rows of a band, for one of the nearest points; empty where nothing is wanted.
 #[derive(Debug, Default)]
-pub(crate) struct FeatureRows<'a, const N: usize> {
+pub(crate) struct FeatureRows<'a> {
     pub(crate) distance: Vec<&'a mut [f32]>,
-    pub(crate) vector: Vec<&'a mut [[f32; N]]>,
+    /// The parts of the vectors one after the other.
+    pub(crate) vector: Vec<&'a mut [f32]>,
     pub(crate) id: Vec<&'a mut [u64]>,
-}
-
-impl<const N: usize> FeatureRows<'_, N> {
-    /// Puts one pixel.
-    pub(crate) fn put(
-        &mut self,
-        [column, row]: [usize; 2],
-        distance: f32,
-        vector: [f32; N],
-        id: u64,
-    ) {
-        if let Some(out) = self.distance.get_mut(row) {
-            out[column] = distance;
-        }
-        if let Some(out) = self.vector.get_mut(row) {
-            out[column] = vector;
-        }
-        if let Some(out) = self.id.get_mut(row) {
-            out[column] = id;
-        }
-    }
 }
 
 impl<const N: usize> Worley<N>
@@ -102,7 +83,7 @@ where
         }
         let picture = self.feature_picture(plane, window);
         let n_bands = picture.n_bands();
-        let mut bands: Vec<Vec<FeatureRows<'_, N>>> = Vec::new();
+        let mut bands: Vec<Vec<FeatureRows<'_>>> = Vec::new();
         bands.resize_with(n_bands, Vec::new);
         for view in &mut views {
             let mut distance = picture.bands(view.distance.take());
@@ -111,7 +92,7 @@ where
             for band in &mut bands {
                 band.push(FeatureRows {
                     distance: distance.next().unwrap_or_default(),
-                    vector: vector.next().unwrap_or_default(),
+                    vector: vector.next().map(flattened).unwrap_or_default(),
                     id: id.next().unwrap_or_default(),
                 });
             }
@@ -122,12 +103,12 @@ where
 
     pub(crate) fn feature_picture<'a>(
         &'a self,
-        plane: &'a Plane<N>,
+        plane: &Plane<N>,
         window: &'a Window,
-    ) -> Picture<'a, N> {
+    ) -> Picture<'a> {
         Picture {
-            worley: self,
-            plane,
+            basis: Axes::basis(self),
+            section: plane.section(),
             window,
             frequency: 1.0,
         }
@@ -155,17 +136,20 @@ where
         window.check_size(out.size())?;
         let picture = self.worley.feature_picture(plane, window);
         let bands = picture.bands(Some(out));
-        picture.render(
-            bands
-                .map(|rows| Output::Gradients(self.tone, rows))
-                .collect(),
-        );
+        let bands = bands.map(|rows| Output::Gradients(self.tone, flattened(rows)));
+        picture.render(bands.collect());
         Ok(())
     }
 }
 
+/// Rows of vectors as rows of their parts.
+pub(crate) fn flattened<const N: usize>(rows: Vec<&mut [[f32; N]]>) -> Vec<&mut [f32]> {
+    rows.into_iter().map(|row| row.as_flattened_mut()).collect()
+}
+
 impl Tone {
     /// The gradient, from the ways from the nearest points.
+    #[inline]
     pub(crate) fn gradient<const N: usize>(
         &self,
         metric: crate::Metric,
@@ -187,7 +171,7 @@ impl Tone {
     pub(crate) fn gradient_at<const N: usize>(
         &self,
         worley: &Worley<N>,
-        place: crate::fixed::Place<N>,
+        place: &crate::fixed::Place<N>,
     ) -> [f32; N]
     where
         Axes: Space<N>,

@@ -19,10 +19,16 @@ pub(crate) const FARTHEST: f64 = (1_u64 << 62) as f64;
 
 /// A position: the cell that it is in, and the steps from the cell's lower corner, `0..STEPS`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Place<const N: usize> {
+pub struct Place<const N: usize> {
     pub(crate) cell: [i64; N],
     pub(crate) steps: [i32; N],
 }
+
+/// A place in a space with any number of axes; those that it does not have are zero.
+pub(crate) type FlatPlace = Place<MOST_AXES>;
+
+/// The most axes of a space.
+pub(crate) const MOST_AXES: usize = 4;
 
 impl<const N: usize> Place<N> {
     /// The place of a position in cells, or nothing if a coordinate is not finite or further out than 2^62.

@@ -9,6 +9,7 @@
 //! the period of the first octave and no octave more often.
 
 use crate::cellular::measure_range;
+use crate::doors::Doors as _;
 use crate::fixed::Place;
 use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
@@ -200,7 +201,7 @@ where
             let Some(place) = octave.place(position) else {
                 return f32::NAN;
             };
-            sum += self.tone.at(&octave.worley, place) * octave.weight;
+            sum += self.tone.at(&octave.worley, &place) * octave.weight;
         }
         self.value_of(sum)
     }
@@ -242,7 +243,7 @@ where
             let Some(place) = octave.place(position) else {
                 return Vector::<N>::from([f64::NAN; N]);
             };
-            let gradient = self.tone.gradient_at(&octave.worley, place);
+            let gradient = self.tone.gradient_at(&octave.worley, &place);
             let slope =
                 f64::from(octave.weight * self.range.weights.coefficients()[0]) * octave.frequency;
             for axis in 0..N {
@@ -290,8 +291,8 @@ where
             };
             let stack = slices.iter_mut().map(|(plane, out)| {
                 let picture = Picture {
-                    worley: &octave.worley,
-                    plane,
+                    basis: Axes::basis(&octave.worley),
+                    section: plane.section(),
                     window,
                     frequency: octave.frequency,
                 };

@@ -21,7 +21,7 @@ pub(crate) const IDS: u32 = 1 << 31;
 
 /// Feature points in unit cells, by seed.
 #[derive(Clone, Debug)]
-pub(crate) struct Lattice<const N: usize> {
+pub struct Lattice<const N: usize> {
     /// The hash that every cell's begins with.
     pub(crate) root: CellHash,
     pub(crate) counts: PoissonCounts,
@@ -114,12 +114,6 @@ impl<const N: usize> Lattice<N> {
             return *DENSITIES.start();
         }
         density.clamp(*DENSITIES.start(), *DENSITIES.end())
-    }
-
-    /// The id of a point.
-    #[inline]
-    pub(crate) fn id(&self, name: Name) -> u64 {
-        name.hash.at(IDS + name.index)
     }
 }
 

@@ -58,10 +58,10 @@ mod radial;
 mod ranges;
 mod scattered;
 mod set;
-#[cfg(feature = "slices")]
 mod slice;
 mod voronoi;
 
+mod doors;
 mod fixed;
 mod lattice;
 mod search;
@@ -89,7 +89,6 @@ pub use profile::Profile;
 pub use radial::{Radial, RadialCells};
 pub use scatter::Scatter;
 pub use set::FeatureSet;
-#[cfg(feature = "slices")]
 pub use slice::Slice;
 pub use space::{Axes, Space, Vector};
 pub use worley::{CellPoint, Feature, LIMIT, RESOLUTION, Worley, Worley2, Worley3, Worley4};

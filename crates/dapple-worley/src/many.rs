@@ -10,11 +10,11 @@
 
 use crate::fixed::{STEP, STEPS};
 use crate::lattice::{IDS, Lattice, SixteenCells};
-use crate::metric::Norm;
+use crate::metric::{Exact, Measure as _};
 use crate::places::{LANES, Places, Words, cells_by_distance, digit, load, store};
-use crate::{Axes, Space, Vector};
+use crate::{LIMIT, Metric, Worley};
 use dapple_hash::CellHashes;
-use fearless_simd::{f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
+use fearless_simd::{Level, dispatch, f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
 
 /// The positions of a group.
 pub(crate) const GROUP: usize = 4 * LANES;
@@ -24,9 +24,9 @@ pub(crate) const NOTHING: u32 = f32::MAX.to_bits();
 
 /// Where to search, and how the low bits of a key are used.
 #[derive(Clone, Copy)]
-pub(crate) struct Search<'a, M, const N: usize> {
+struct Search<'a, const N: usize> {
     lattice: &'a Lattice<N>,
-    norm: M,
+    exact: Exact,
     /// How many bits hold the index of a point in its cell; above are the two bits of each axis.
     index_bits: u32,
     /// All of these bits.
@@ -34,8 +34,13 @@ pub(crate) struct Search<'a, M, const N: usize> {
 }
 
 /// A group of positions, and the memory to search for their nearest points.
-pub(crate) struct Group<const N: usize, const K: usize> {
-    positions: [[f64; GROUP]; N],
+#[derive(Debug)]
+pub struct Group<const N: usize> {
+    /// How many of the nearest points are looked for: 1, 2 or 4.
+    depth: usize,
+    /// The positions, and how many there are.
+    pub(crate) positions: [[f64; GROUP]; N],
+    pub(crate) len: usize,
     /// Which positions have a place, as bits.
     has_place: u64,
     cells: [[[u32; GROUP]; 2]; N],
@@ -43,14 +48,14 @@ pub(crate) struct Group<const N: usize, const K: usize> {
     near: [Near; MOST_NEAR],
     visits: Visits,
     /// The keys of the nearest points so far.
-    best: [[u32; GROUP]; K],
+    best: [[u32; GROUP]; LIMIT],
     /// The smallest key of all others.
     next: [u32; GROUP],
-    points: [Points<N>; K],
+    points: [Points<N>; LIMIT],
 }
 
 /// The own cells of a register, or the neighbors that are on the nearer sides.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Near {
     words: [[u32; LANES]; 2],
     counts: [u32; LANES],
@@ -62,6 +67,7 @@ struct Near {
 const MOST_NEAR: usize = 1 << 4;
 
 /// The farther neighbors that are still to be visited.
+#[derive(Debug)]
 struct Visits {
     /// Each is a neighbor and, from [`PLACE_SHIFT`] on, a place of the group.
     list: [u32; FULL + (MOST_FAR + 1) * LANES],
@@ -78,7 +84,7 @@ const FULL: usize = 512;
 const MOST_FAR: usize = 81 - MOST_NEAR;
 
 /// One of the nearest points of each place of a group.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Points<const N: usize> {
     /// In cells.
     pub(crate) distances: [f32; GROUP],
@@ -87,22 +93,25 @@ pub(crate) struct Points<const N: usize> {
     pub(crate) ids: [u64; GROUP],
 }
 
-impl<'a, M: Norm, const N: usize> Search<'a, M, N> {
-    pub(crate) fn new(norm: M, lattice: &'a Lattice<N>) -> Self {
+impl<'a, const N: usize> Search<'a, N> {
+    fn new(worley: &'a Worley<N>) -> Self {
+        let lattice = &worley.lattice;
         let index_bits = u32::BITS - lattice.counts.range().end().leading_zeros();
         Self {
             lattice,
-            norm,
+            exact: Exact(worley.metric),
             index_bits,
             code_mask: (1 << (2 * N as u32 + index_bits)) - 1,
         }
     }
 }
 
-impl<const N: usize, const K: usize> Group<N, K> {
-    pub(crate) const fn new() -> Self {
+impl<const N: usize> Group<N> {
+    pub(crate) const fn new(depth: usize) -> Self {
         Self {
+            depth,
             positions: [[0.0; GROUP]; N],
+            len: 0,
             has_place: 0,
             cells: [[[0; GROUP]; 2]; N],
             steps: [[0; GROUP]; N],
@@ -115,94 +124,95 @@ impl<const N: usize, const K: usize> Group<N, K> {
                 list: [0; FULL + (MOST_FAR + 1) * LANES],
                 len: 0,
             },
-            best: [[NOTHING; GROUP]; K],
+            best: [[NOTHING; GROUP]; LIMIT],
             next: [NOTHING; GROUP],
             points: [Points {
                 distances: [0.0; GROUP],
                 vectors: [[0.0; GROUP]; N],
                 ids: [0; GROUP],
-            }; K],
+            }; LIMIT],
         }
     }
 
     /// The nearest points that the last search found, nearest first.
-    pub(crate) fn points(&self) -> &[Points<N>; K] {
-        &self.points
+    pub(crate) fn points(&self) -> &[Points<N>] {
+        &self.points[..self.depth]
     }
 
-    /// Finds the nearest points of up to a group of positions, and tells for which of them they hold, as bits.
+    /// Finds the nearest points of the positions, and tells for which of them they hold, as bits.
+    pub(crate) fn search(&mut self, worley: &Worley<N>, level: Level) -> u64 {
+        // These are searched one at a time in any case.
+        let is_scalar = matches!(worley.metric, Metric::Minkowski(_));
+        if is_scalar || worley.lattice.density.is_some() {
+            return 0;
+        }
+        let search = Search::new(worley);
+        match self.depth {
+            1 => dispatch!(level, simd => self.search_with::<_, 1>(simd, search)),
+            2 => dispatch!(level, simd => self.search_with::<_, 2>(simd, search)),
+            _ => dispatch!(level, simd => self.search_with::<_, LIMIT>(simd, search)),
+        }
+    }
+
     #[inline(always)]
-    pub(crate) fn search<S: Simd, M: Norm>(
-        &mut self,
-        simd: S,
-        search: Search<'_, M, N>,
-        positions: &[Vector<N>],
-    ) -> u64
-    where
-        Axes: Space<N>,
-    {
-        for (place, &position) in positions.iter().enumerate() {
-            let position: [f64; N] = position.into();
-            for axis in 0..N {
-                self.positions[axis][place] = position[axis];
-            }
-        }
-        let n_registers = positions.len().div_ceil(LANES);
+    fn search_with<S: Simd, const K: usize>(&mut self, simd: S, search: Search<'_, N>) -> u64 {
         // Where sixteen lanes are several registers of the processor, these are in step already.
-        if <S::u32s as SimdBase<S>>::LEN < LANES {
-            return self.search_in_step::<S, M, 1>(simd, search, n_registers);
+        if const { <S::u32s as SimdBase<S>>::LEN < LANES } {
+            return self.search_in_step::<S, K, 1>(simd, search);
         }
-        self.search_in_step::<S, M, 4>(simd, search, n_registers)
+        self.search_in_step::<S, K, 4>(simd, search)
     }
 
     /// The same, where hashes are made for `C` registers at a time.
     #[inline(always)]
-    fn search_in_step<S: Simd, M: Norm, const C: usize>(
+    fn search_in_step<S: Simd, const K: usize, const C: usize>(
         &mut self,
         simd: S,
-        search: Search<'_, M, N>,
-        n_registers: usize,
+        search: Search<'_, N>,
     ) -> u64 {
+        let n_registers = self.len.div_ceil(LANES);
         self.has_place = 0;
         for register in 0..n_registers {
-            self.visit_near::<S, M, C>(simd, search, register);
+            self.visit_near::<S, K, C>(simd, search, register);
             if register + 1 == n_registers || self.visits.len > FULL {
                 while self.visits.len > 0 {
-                    self.visit_far(simd, search);
+                    self.visit_far::<S, K>(simd, search);
                 }
             }
         }
         let mut holds = 0;
         for register in 0..n_registers {
-            holds |= self.holds(simd, search, register) << (register * LANES);
+            holds |= self.holds::<S, K>(simd, search, register) << (register * LANES);
         }
         // The memory has registers past the last one, too; what is in them does not matter.
         for first in (0..n_registers * K).step_by(C) {
-            self.finish::<S, M, C>(simd, search, first);
+            self.finish::<S, K, C>(simd, search, first);
         }
         holds & self.has_place
     }
 
     /// Visits the nearer neighbors of a register, and puts the others on the list.
     #[inline(always)]
-    fn visit_near<S: Simd, M: Norm, const C: usize>(
+    fn visit_near<S: Simd, const K: usize, const C: usize>(
         &mut self,
         simd: S,
-        search: Search<'_, M, N>,
+        search: Search<'_, N>,
         register: usize,
     ) {
         let (places, has_place) = Places::new(simd, &self.positions, register);
         self.has_place |= has_place << (register * LANES);
         places.store(&mut self.cells, &mut self.steps, register);
         self.hash_near::<S, C>(simd, search.lattice, &places);
-        let gaps = gaps(simd, search.norm, &places);
+        let gaps = gaps(simd, search.exact, &places);
         let numbers = u32x16::from_slice(simd, &ASCENDING) + (register * LANES) as u32;
         let mut found = Found::<S, K>::new(simd);
         for &neighbor in cells_by_distance::<N>() {
             let neighbor = u32::from(neighbor);
             let mut gap = gaps[N - 1][digit(neighbor, N - 1)];
             for axis in (0..N - 1).rev() {
-                gap = search.norm.joins(gaps[axis][digit(neighbor, axis)], gap);
+                gap = search
+                    .exact
+                    .accumulate(gaps[axis][digit(neighbor, axis)], gap);
             }
             let reach = (found.best[K - 1] | search.code_mask).bitcast::<f32x16<S>>();
             let matters = gap.simd_le(reach);
@@ -272,7 +282,7 @@ impl<const N: usize, const K: usize> Group<N, K> {
 
     /// Visits up to sixteen cells of the list.
     #[inline(always)]
-    fn visit_far<S: Simd, M: Norm>(&mut self, simd: S, search: Search<'_, M, N>) {
+    fn visit_far<S: Simd, const K: usize>(&mut self, simd: S, search: Search<'_, N>) {
         let (visits, n_visits) = self.visits.take();
         let mut cells = [[[0; LANES]; 2]; N];
         let mut steps = [[0; LANES]; N];
@@ -308,17 +318,17 @@ impl<const N: usize, const K: usize> Group<N, K> {
             let lane = matters.trailing_zeros() as usize;
             let place = place(visits[lane]);
             for best in &best {
-                self.insert(place, best[lane]);
+                self.insert::<K>(place, best[lane]);
             }
-            self.insert(place, next[lane]);
+            self.insert::<K>(place, next[lane]);
             matters &= matters - 1;
         }
     }
 
     /// Sorts the key of a point in.
     #[inline(always)]
-    fn insert(&mut self, place: usize, mut coded: u32) {
-        for best in &mut self.best {
+    fn insert<const K: usize>(&mut self, place: usize, mut coded: u32) {
+        for best in &mut self.best[..K] {
             let larger = best[place].max(coded);
             best[place] = best[place].min(coded);
             coded = larger;
@@ -328,11 +338,16 @@ impl<const N: usize, const K: usize> Group<N, K> {
 
     /// The lanes of a register whose nearest points are known for certain, as bits.
     #[inline(always)]
-    fn holds<S: Simd, M: Norm>(&self, simd: S, search: Search<'_, M, N>, register: usize) -> u64 {
+    fn holds<S: Simd, const K: usize>(
+        &self,
+        simd: S,
+        search: Search<'_, N>,
+        register: usize,
+    ) -> u64 {
         let mask = search.code_mask;
         let last = load(simd, &self.best[K - 1], register) | mask;
         let places = Places::load(simd, &self.cells, &self.steps, register);
-        let border = border(simd, search.norm, &places);
+        let border = border(simd, search.exact, &places);
         let mut holds = last.bitcast::<f32x16<S>>().simd_lt(border);
         for rank in 0..K {
             let after = if rank + 1 < K {
@@ -349,10 +364,10 @@ impl<const N: usize, const K: usize> Group<N, K> {
     /// Looks up `C` registers of the nearest points, from one on: first all ranks of the first register, then of the
     /// second, and so on.
     #[inline(always)]
-    fn finish<S: Simd, M: Norm, const C: usize>(
+    fn finish<S: Simd, const K: usize, const C: usize>(
         &mut self,
         simd: S,
-        search: Search<'_, M, N>,
+        search: Search<'_, N>,
         first: usize,
     ) {
         let lattice = search.lattice;
@@ -378,7 +393,7 @@ impl<const N: usize, const K: usize> Group<N, K> {
         for i in 0..C {
             let (register, rank) = ((first + i) / K, (first + i) % K);
             let vector = vector(&cells[i].origins, &points[i]);
-            self.points[rank].put(search.norm, register, vector, ids[i]);
+            self.points[rank].put(search.exact, register, vector, ids[i]);
         }
     }
 }
@@ -386,9 +401,9 @@ impl<const N: usize, const K: usize> Group<N, K> {
 impl<const N: usize> Points<N> {
     /// Puts a register of points: their vectors in steps, and the high and low words of their ids.
     #[inline(always)]
-    fn put<S: Simd, M: Norm>(
+    fn put<S: Simd>(
         &mut self,
-        norm: M,
+        exact: Exact,
         register: usize,
         mut vector: [f32x16<S>; N],
         [high, low]: Words<S>,
@@ -401,7 +416,8 @@ impl<const N: usize> Points<N> {
             first.store_slice(&mut self.vectors[axis][from..middle]);
             second.store_slice(&mut self.vectors[axis][middle..to]);
         }
-        norm.distances(norm.keys(vector))
+        exact
+            .distances(exact.keys(vector))
             .store_slice(&mut self.distances[from..to]);
         let [first, second] = [low.zip_low(high), low.zip_high(high)];
         let [first, second]: [u64x8<S>; 2] = [first.bitcast(), second.bitcast()];
@@ -457,9 +473,9 @@ impl<S: Simd, const K: usize> Found<S, K> {
     /// Looks at the points of a cell in each lane, where the places are seen from it, and their codes without index; no
     /// cell has more points than `most`.
     #[inline(always)]
-    fn look<M: Norm, const N: usize>(
+    fn look<const N: usize>(
         &mut self,
-        search: Search<'_, M, N>,
+        search: Search<'_, N>,
         points: &SixteenCells<S>,
         origins: &[i32x16<S>; N],
         codes: u32x16<S>,
@@ -469,7 +485,7 @@ impl<S: Simd, const K: usize> Found<S, K> {
         for index in 0..most {
             let index = u32x16::splat(simd, index);
             let point: [_; N] = points.steps(index, search.lattice.jitter);
-            let key = search.norm.keys(vector(origins, &point));
+            let key = search.exact.keys(vector(origins, &point));
             let coded = (key.bitcast::<u32x16<S>>() & !search.code_mask) | (codes | index);
             let is_there = points.counts.simd_gt(index);
             let mut coded = is_there.select(coded, u32x16::splat(simd, NOTHING));
@@ -498,30 +514,30 @@ fn vector<S: Simd, const N: usize>(
 
 /// For each axis, the terms of the distances to the own cell, the nearer and the other neighbor, in steps.
 #[inline(always)]
-fn gaps<S: Simd, M: Norm, const N: usize>(
+fn gaps<S: Simd, const N: usize>(
     simd: S,
-    norm: M,
+    exact: Exact,
     places: &Places<S, N>,
 ) -> [[f32x16<S>; 3]; N] {
     let mut gaps = [[f32x16::splat(simd, 0.0); 3]; N];
     for axis in 0..N {
         let below = places.steps[axis];
         let above = i32x16::splat(simd, STEPS) - below;
-        gaps[axis][1] = norm.terms(below.min(above).to_float());
-        gaps[axis][2] = norm.terms(below.max(above).to_float());
+        let [near, far] = [below.min(above).to_float(), below.max(above).to_float()];
+        [gaps[axis][1], gaps[axis][2]] = exact.terms([near, far]);
     }
     gaps
 }
 
 /// Beyond the neighbors, keys are no smaller than this, in steps.
 #[inline(always)]
-fn border<S: Simd, M: Norm, const N: usize>(simd: S, norm: M, places: &Places<S, N>) -> f32x16<S> {
+fn border<S: Simd, const N: usize>(simd: S, exact: Exact, places: &Places<S, N>) -> f32x16<S> {
     let mut nearest = i32x16::splat(simd, STEPS);
     for axis in 0..N {
         let above = i32x16::splat(simd, STEPS) - places.steps[axis];
         nearest = nearest.min(places.steps[axis]).min(above);
     }
-    norm.terms((nearest + STEPS).to_float())
+    exact.terms([(nearest + STEPS).to_float()])[0]
 }
 
 /// The bits of the neighbors that are not on the nearer side, along any axis.

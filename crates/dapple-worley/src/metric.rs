@@ -1,11 +1,11 @@
 //! What distance means: Euclidean, Manhattan, Chebyshev and Minkowski.
 //!
 //! Worley proposes the Manhattan metric for rigid rectangular regions ("A Cellular Texture Basis Function", SIGGRAPH
-//! 1996, <https://doi.org/10.1145/237170.237267>). All four are joined from one term for each axis, so that a picture
+//! 1996, <https://doi.org/10.1145/237170.237267>). All four accumulate one term for each axis, so that a picture
 //! can compute the terms of a column and of a row once. While searching, points are compared by the *key*, which
 //! grows with the distance and is cheaper: the square, for the Euclidean metric.
 //!
-//! Terms are joined from the last axis to the first, in this order everywhere, so that the bits agree.
+//! Terms are accumulated from the last axis to the first, in this order everywhere, so that the bits agree.
 
 use crate::{WorleyError, WorleyErrorKind};
 use fearless_simd::{f32x16, prelude::*};
@@ -50,14 +50,16 @@ impl Metric {
     }
 
     /// The length of a vector.
+    #[inline]
     #[must_use]
     pub fn length<const N: usize>(self, vector: [f32; N]) -> f32 {
-        with_norm!(self, norm => norm.distance(norm.key(vector)))
+        self.distance(self.key(vector))
     }
 
     /// The gradient of the length at a vector; zero where the vector is.
     ///
     /// Its parts lie in `[-1, 1]`. For [`Metric::Chebyshev`] it points along the longest axis, the first of several.
+    #[inline]
     #[must_use]
     pub fn gradient<const N: usize>(self, vector: [f32; N]) -> [f32; N] {
         let length = self.length(vector);
@@ -92,247 +94,272 @@ fn sign(part: f32) -> f32 {
     }
 }
 
-/// A metric that is known when the code is compiled.
-///
-/// Keys are never below zero, and they do not shrink when a difference grows; [`LOOSE`](Self::LOOSE) says how far
-/// rounding may break that.
-pub(crate) trait Norm: Copy + Send + Sync {
+// A metric is the sum, or the largest, of one *term* for each axis. That is the *key* of a vector, which is compared in
+// place of the distance: the squared distance, for the Euclidean metric. Keys are never below zero, and they do not shrink
+// when a difference grows; `looseness` says how far rounding may break that.
+impl Metric {
     /// What a key is multiplied by before it serves as a bound.
-    const LOOSE: f32 = 1.0;
+    #[inline]
+    pub(crate) fn looseness(self) -> f32 {
+        match self {
+            // `powf` is good to an ulp or two, so larger differences can have smaller powers by as much; this is 80 ulps.
+            Self::Minkowski(_) => 1.000_01,
+            _ => 1.0,
+        }
+    }
 
-    /// Whether terms are joined by adding them, each rounded once at most.
-    const IS_SUM: bool = false;
+    /// Whether a key is the sum of terms that are rounded once at most.
+    #[inline(always)]
+    pub(crate) fn is_exact_sum(self) -> bool {
+        matches!(self, Self::Euclidean | Self::Manhattan)
+    }
 
-    fn term(self, difference: f32) -> f32;
-    fn join(self, term: f32, rest: f32) -> f32;
-    fn distance(self, key: f32) -> f32;
-    fn terms<S: Simd, V: SimdFloat<S, Element = f32>>(self, difference: V) -> V;
-    fn joins<S: Simd, V: SimdFloat<S, Element = f32>>(self, term: V, rest: V) -> V;
-    fn distances<S: Simd>(self, key: f32x16<S>) -> f32x16<S>;
+    /// The term of a difference along one axis, which is also the key of a vector along that axis.
+    #[inline(always)]
+    pub(crate) fn term(self, difference: f32) -> f32 {
+        match self {
+            Self::Euclidean => difference * difference,
+            Self::Manhattan | Self::Chebyshev => difference.abs(),
+            Self::Minkowski(p) => power(difference, p),
+        }
+    }
 
     /// The key of a vector.
     #[inline(always)]
-    fn key<const N: usize>(self, differences: [f32; N]) -> f32 {
+    pub(crate) fn key<const N: usize>(self, differences: [f32; N]) -> f32 {
         let mut key = self.term(differences[N - 1]);
         for axis in (0..N - 1).rev() {
-            key = self.join(self.term(differences[axis]), key);
+            let term = self.term(differences[axis]);
+            key = match self {
+                Self::Chebyshev if term > key => term,
+                Self::Chebyshev => key,
+                _ => term + key,
+            };
         }
         key
     }
+
+    /// The distance that has a key.
+    #[inline(always)]
+    pub(crate) fn distance(self, key: f32) -> f32 {
+        match self {
+            Self::Euclidean => key.sqrt(),
+            Self::Manhattan | Self::Chebyshev => key,
+            Self::Minkowski(p) => root(key, p),
+        }
+    }
+
+    /// A bound that holds for exact keys, made to hold for rounded ones.
+    #[inline]
+    pub(crate) fn tightened(self, bound: f32) -> f32 {
+        bound / self.looseness()
+    }
+}
+
+/// A metric as loops over registers have it.
+pub(crate) trait Measure: Copy {
+    /// The terms of the differences in several registers.
+    fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
+        self,
+        differences: [V; C],
+    ) -> [V; C];
+
+    /// Takes one more term into the keys of a register.
+    fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V;
+
+    /// The distances that have these keys.
+    fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S>;
 
     /// The keys of sixteen vectors.
     #[inline(always)]
     fn keys<S: Simd, const N: usize>(self, differences: [f32x16<S>; N]) -> f32x16<S> {
-        let mut key = self.terms(differences[N - 1]);
+        let terms = self.terms(differences);
+        let mut key = terms[N - 1];
         for axis in (0..N - 1).rev() {
-            key = self.joins(self.terms(differences[axis]), key);
+            key = self.accumulate(terms[axis], key);
         }
         key
     }
+}
 
-    /// See [`IS_SUM`](Self::IS_SUM).
+/// A metric that is not Minkowski's: what calls a function for its terms leaves no registers to a loop.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exact(pub(crate) Metric);
+
+impl Measure for Exact {
     #[inline(always)]
-    fn is_sum(self) -> bool {
-        Self::IS_SUM
+    fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
+        self,
+        mut differences: [V; C],
+    ) -> [V; C] {
+        if matches!(self.0, Metric::Euclidean) {
+            for i in 0..C {
+                differences[i] *= differences[i];
+            }
+        } else {
+            for i in 0..C {
+                differences[i] = differences[i].abs();
+            }
+        }
+        differences
     }
 
-    /// The key of a vector of this length along one axis.
     #[inline(always)]
-    fn key_along_one_axis(self, length: f32) -> f32 {
-        self.term(length)
+    fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
+        if matches!(self.0, Metric::Chebyshev) {
+            terms.max(keys)
+        } else {
+            terms + keys
+        }
     }
 
-    /// A bound that holds for exact keys, made to hold for rounded ones.
     #[inline(always)]
-    fn tightened(self, bound: f32) -> f32 {
-        bound / Self::LOOSE
+    fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
+        if matches!(self.0, Metric::Euclidean) {
+            keys.sqrt()
+        } else {
+            keys
+        }
     }
 }
 
-#[derive(Clone, Copy)]
-pub(crate) struct Euclidean;
+/// The Euclidean or the Manhattan metric: terms are added up.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Additive(pub(crate) Metric);
 
-impl Norm for Euclidean {
-    const IS_SUM: bool = true;
-
+impl Measure for Additive {
     #[inline(always)]
-    fn term(self, difference: f32) -> f32 {
-        difference * difference
+    fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
+        self,
+        differences: [V; C],
+    ) -> [V; C] {
+        Exact(self.0).terms(differences)
     }
 
     #[inline(always)]
-    fn join(self, term: f32, rest: f32) -> f32 {
-        term + rest
+    fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
+        terms + keys
     }
 
     #[inline(always)]
-    fn distance(self, key: f32) -> f32 {
-        key.sqrt()
-    }
-
-    #[inline(always)]
-    fn terms<S: Simd, V: SimdFloat<S, Element = f32>>(self, difference: V) -> V {
-        difference * difference
-    }
-
-    #[inline(always)]
-    fn joins<S: Simd, V: SimdFloat<S, Element = f32>>(self, term: V, rest: V) -> V {
-        term + rest
-    }
-
-    #[inline(always)]
-    fn distances<S: Simd>(self, key: f32x16<S>) -> f32x16<S> {
-        key.sqrt()
+    fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
+        Exact(self.0).distances(keys)
     }
 }
 
-#[derive(Clone, Copy)]
-pub(crate) struct Manhattan;
+/// The Euclidean metric, where a loop is so short that asking for it takes time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Squares;
 
-impl Norm for Manhattan {
-    const IS_SUM: bool = true;
-
+impl Measure for Squares {
     #[inline(always)]
-    fn term(self, difference: f32) -> f32 {
-        difference.abs()
+    fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
+        self,
+        differences: [V; C],
+    ) -> [V; C] {
+        Exact(Metric::Euclidean).terms(differences)
     }
 
     #[inline(always)]
-    fn join(self, term: f32, rest: f32) -> f32 {
-        term + rest
+    fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
+        terms + keys
     }
 
     #[inline(always)]
-    fn distance(self, key: f32) -> f32 {
-        key
-    }
-
-    #[inline(always)]
-    fn terms<S: Simd, V: SimdFloat<S, Element = f32>>(self, difference: V) -> V {
-        difference.abs()
-    }
-
-    #[inline(always)]
-    fn joins<S: Simd, V: SimdFloat<S, Element = f32>>(self, term: V, rest: V) -> V {
-        term + rest
-    }
-
-    #[inline(always)]
-    fn distances<S: Simd>(self, key: f32x16<S>) -> f32x16<S> {
-        key
+    fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
+        keys.sqrt()
     }
 }
 
-#[derive(Clone, Copy)]
-pub(crate) struct Chebyshev;
+/// The Chebyshev metric: the largest term counts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Longest;
 
-impl Norm for Chebyshev {
+impl Measure for Longest {
     #[inline(always)]
-    fn term(self, difference: f32) -> f32 {
-        difference.abs()
+    fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
+        self,
+        differences: [V; C],
+    ) -> [V; C] {
+        Exact(Metric::Chebyshev).terms(differences)
     }
 
     #[inline(always)]
-    fn join(self, term: f32, rest: f32) -> f32 {
-        if term > rest { term } else { rest }
+    fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
+        terms.max(keys)
     }
 
     #[inline(always)]
-    fn distance(self, key: f32) -> f32 {
-        key
-    }
-
-    #[inline(always)]
-    fn terms<S: Simd, V: SimdFloat<S, Element = f32>>(self, difference: V) -> V {
-        difference.abs()
-    }
-
-    #[inline(always)]
-    fn joins<S: Simd, V: SimdFloat<S, Element = f32>>(self, term: V, rest: V) -> V {
-        term.max(rest)
-    }
-
-    #[inline(always)]
-    fn distances<S: Simd>(self, key: f32x16<S>) -> f32x16<S> {
-        key
+    fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
+        keys
     }
 }
 
 /// The Minkowski metric with its exponent.
-#[derive(Clone, Copy)]
-pub(crate) struct Minkowski(pub(crate) f32);
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Powers(pub(crate) f32);
+
+impl Measure for Powers {
+    #[inline(always)]
+    fn terms<S: Simd, V: SimdFloat<S, Element = f32>, const C: usize>(
+        self,
+        mut differences: [V; C],
+    ) -> [V; C] {
+        for i in 0..C {
+            differences[i] = each_lane(differences[i], self.0, power_each);
+        }
+        differences
+    }
+
+    #[inline(always)]
+    fn accumulate<S: Simd, V: SimdFloat<S, Element = f32>>(self, terms: V, keys: V) -> V {
+        terms + keys
+    }
+
+    #[inline(always)]
+    fn distances<S: Simd>(self, keys: f32x16<S>) -> f32x16<S> {
+        each_lane(keys, self.0, root_each)
+    }
+}
 
 /// Differences are scaled by this before their power, so that a step and 16 cells are about as far from the ends of
 /// the range of `f32`.
 const MINKOWSKI_SCALE: f32 = 256.0;
 
-impl Norm for Minkowski {
-    /// `powf` is good to an ulp or two, so larger differences can have smaller powers by as much; this is 80 ulps.
-    const LOOSE: f32 = 1.000_01;
+/// The term of the Minkowski metric.
+fn power(difference: f32, p: f32) -> f32 {
+    libm::powf(difference.abs() * MINKOWSKI_SCALE, p)
+}
 
-    #[inline(always)]
-    fn term(self, difference: f32) -> f32 {
-        libm::powf(difference.abs() * MINKOWSKI_SCALE, self.0)
-    }
+/// The distance of the Minkowski metric.
+fn root(key: f32, p: f32) -> f32 {
+    libm::powf(key, 1.0 / p) * (1.0 / MINKOWSKI_SCALE)
+}
 
-    #[inline(always)]
-    fn join(self, term: f32, rest: f32) -> f32 {
-        term + rest
-    }
-
-    #[inline(always)]
-    fn distance(self, key: f32) -> f32 {
-        libm::powf(key, 1.0 / self.0) * (1.0 / MINKOWSKI_SCALE)
-    }
-
-    #[inline(always)]
-    fn terms<S: Simd, V: SimdFloat<S, Element = f32>>(self, difference: V) -> V {
-        each_lane(difference, |difference| self.term(difference))
-    }
-
-    #[inline(always)]
-    fn joins<S: Simd, V: SimdFloat<S, Element = f32>>(self, term: V, rest: V) -> V {
-        term + rest
-    }
-
-    #[inline(always)]
-    fn distances<S: Simd>(self, key: f32x16<S>) -> f32x16<S> {
-        each_lane(key, |key| self.distance(key))
+#[inline(never)]
+fn power_each(differences: &mut [f32], p: f32) {
+    for difference in differences {
+        *difference = power(*difference, p);
     }
 }
 
+#[inline(never)]
+fn root_each(keys: &mut [f32], p: f32) {
+    for key in keys {
+        *key = root(*key, p);
+    }
+}
+
+/// Changes a register by way of memory.
 #[inline(always)]
-fn each_lane<S: Simd, V: SimdFloat<S, Element = f32>>(lanes: V, change: impl Fn(f32) -> f32) -> V {
+fn each_lane<S: Simd, V: SimdFloat<S, Element = f32>>(
+    lanes: V,
+    p: f32,
+    change: fn(&mut [f32], f32),
+) -> V {
     let mut values = [0.0; 16];
     let values = &mut values[..V::LEN];
     lanes.store_slice(values);
-    for value in &mut *values {
-        *value = change(*value);
-    }
+    change(values, p);
     V::from_slice(lanes.token(), values)
 }
-
-/// Evaluates an expression with the [`Norm`] of a [`Metric`].
-macro_rules! with_norm {
-    ($metric:expr, $norm:ident => $body:expr) => {
-        match $metric {
-            $crate::metric::Metric::Euclidean => {
-                let $norm = $crate::metric::Euclidean;
-                $body
-            }
-            $crate::metric::Metric::Manhattan => {
-                let $norm = $crate::metric::Manhattan;
-                $body
-            }
-            $crate::metric::Metric::Chebyshev => {
-                let $norm = $crate::metric::Chebyshev;
-                $body
-            }
-            $crate::metric::Metric::Minkowski(p) => {
-                let $norm = $crate::metric::Minkowski(p);
-                $body
-            }
-        }
-    };
-}
-pub(crate) use with_norm;

@@ -6,20 +6,51 @@
 use crate::fixed::{Place, STEPS, cells};
 use crate::lattice::{Lattice, SixteenCells};
 use crate::many::NOTHING;
-use crate::metric::Norm;
+use crate::metric::{Exact, Measure as _};
 use crate::places::{LANES, cells_by_distance, digit};
-use crate::search::{Hit, Name, border, hit};
+use crate::search::{self, Hit, Name, border, hit};
+use crate::{LIMIT, Metric};
 use dapple_hash::CellHashes;
-use fearless_simd::{f32x16, i32x16, mask32x16, prelude::*, u32x16};
+use fearless_simd::{Level, dispatch, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
-/// The nearest points of a place, nearest first, if the neighbors are enough to tell.
+/// The nearest points of a place, nearest first; at most four.
+#[inline]
+pub(crate) fn nearest<const N: usize>(
+    metric: Metric,
+    lattice: &Lattice<N>,
+    level: Level,
+    place: &Place<N>,
+    hits: &mut [Hit<N>],
+) {
+    // Powers take so long that nothing is gained side by side, and counts of a density are drawn one by one.
+    let is_scalar = matches!(metric, Metric::Minkowski(_)) || lattice.density.is_some();
+    let is_known = !is_scalar
+        && match hits.len() {
+            1 => {
+                dispatch!(level, simd => nearest_of_neighbors::<_, N, 1>(simd, metric, lattice, place, hits))
+            }
+            2 => {
+                dispatch!(level, simd => nearest_of_neighbors::<_, N, 2>(simd, metric, lattice, place, hits))
+            }
+            _ => {
+                dispatch!(level, simd => nearest_of_neighbors::<_, N, LIMIT>(simd, metric, lattice, place, hits))
+            }
+        };
+    if !is_known {
+        search::nearest(lattice, metric, place, hits);
+    }
+}
+
+/// Finds the nearest points of a place, nearest first: as many as there are `hits`, and at most `K`. Tells whether the
+/// neighbors are enough for that.
 #[inline(always)]
-pub(crate) fn nearest_of_neighbors<S: Simd, M: Norm, const N: usize, const K: usize>(
+fn nearest_of_neighbors<S: Simd, const N: usize, const K: usize>(
     simd: S,
-    norm: M,
+    metric: Metric,
     lattice: &Lattice<N>,
     place: &Place<N>,
-) -> Option<[Hit<N>; K]> {
+    hits: &mut [Hit<N>],
+) -> bool {
     let around = Around::new(lattice, place);
     let index_bits = u32::BITS - lattice.counts.range().end().leading_zeros();
     let code_mask = (1 << (LANE_BITS + index_bits)) - 1;
@@ -44,7 +75,7 @@ pub(crate) fn nearest_of_neighbors<S: Simd, M: Norm, const N: usize, const K: us
             for axis in 0..N {
                 vector[axis] = (origins[axis] - steps[axis].bitcast::<i32x16<S>>()).to_float();
             }
-            let key = norm.keys(vector).bitcast::<u32x16<S>>();
+            let key = Exact(metric).keys(vector).bitcast::<u32x16<S>>();
             let coded = (key & !code_mask) | codes | index;
             let is_there = counts.simd_gt(index_lanes);
             let mut coded = is_there.select(coded, u32x16::splat(simd, NOTHING));
@@ -56,19 +87,19 @@ pub(crate) fn nearest_of_neighbors<S: Simd, M: Norm, const N: usize, const K: us
             next = next.min(coded);
         }
     }
-    let mut hits = [Hit::NONE; K];
+    let n_hits = hits.len();
     let mut before = None;
-    for rank in 0..=K {
+    for rank in 0..=n_hits {
         let smallest = best[0].reduce_min();
         if before == Some(smallest | code_mask) {
-            return None;
+            return false;
         }
         before = Some(smallest | code_mask);
-        if rank == K {
+        if rank == n_hits {
             break;
         }
         if smallest == NOTHING {
-            return None;
+            return false;
         }
         let is_smallest = best[0].simd_eq(smallest);
         for rank in 0..K {
@@ -82,10 +113,9 @@ pub(crate) fn nearest_of_neighbors<S: Simd, M: Norm, const N: usize, const K: us
         let hash = lattice.hash(cell);
         let index = code & ((1 << index_bits) - 1);
         let steps = lattice.point(hash, index);
-        hits[rank] = hit(norm, place, shift, steps, Name { hash, index });
+        hits[rank] = hit(metric, place, shift, steps, Name { hash, index });
     }
-    let border = norm.key_along_one_axis(cells(border(place, 1)));
-    (hits[K - 1].key < border).then_some(hits)
+    hits[n_hits - 1].key < metric.term(cells(border(place, 1)))
 }
 
 /// The bits of a number below 81, the cells of four dimensions.

@@ -1,5 +1,6 @@
 //! Planes through spaces of two, three and four axes.
 
+use crate::fixed::MOST_AXES;
 use crate::{Axes, Space, Vector};
 use glam::DVec2;
 
@@ -50,34 +51,60 @@ where
     /// Where in space a position of the plane is.
     #[must_use]
     pub fn position(&self, position: DVec2) -> Vector<N> {
-        Vector::<N>::from(core::array::from_fn(|axis| self.coordinate(axis, position)))
+        let section = self.section();
+        Vector::<N>::from(core::array::from_fn(|axis| {
+            section.coordinate(axis, position)
+        }))
     }
 
-    /// One coordinate of [`position`](Self::position).
+    /// The same plane, whatever the number of axes.
+    pub(crate) fn section(&self) -> Section {
+        let flat = |part: Vector<N>| {
+            let mut parts = [0.0; MOST_AXES];
+            parts[..N].copy_from_slice(&part.into());
+            parts
+        };
+        Section {
+            n_axes: N,
+            origin: flat(self.origin),
+            u: flat(self.u),
+            v: flat(self.v),
+        }
+    }
+}
+
+/// A [`Plane`] of any number of axes; what it has none of is zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Section {
+    pub(crate) n_axes: usize,
+    pub(crate) origin: [f64; MOST_AXES],
+    pub(crate) u: [f64; MOST_AXES],
+    pub(crate) v: [f64; MOST_AXES],
+}
+
+impl Section {
+    /// One coordinate of a position of the plane.
     #[inline]
     pub(crate) fn coordinate(&self, axis: usize, position: DVec2) -> f64 {
-        let [origin, u, v] = [self.origin, self.u, self.v].map(|part| part.into()[axis]);
-        origin + (u * position.x + v * position.y)
+        self.origin[axis] + (self.u[axis] * position.x + self.v[axis] * position.y)
     }
 
     /// Whether another plane has the same coordinates along an axis.
     pub(crate) fn is_same_along(&self, axis: usize, other: &Self) -> bool {
-        let parts = |plane: &Self| [plane.origin, plane.u, plane.v].map(|part| part.into()[axis]);
+        let parts = |plane: &Self| [plane.origin, plane.u, plane.v].map(|part| part[axis]);
         parts(self) == parts(other)
     }
 
     /// The only axis that goes with the rows, if there is only one, and it is not the first.
     pub(crate) fn row_axis(&self) -> Option<usize> {
-        let v: [f64; N] = self.v.into();
-        let mut axes = (0..N).filter(|&axis| v[axis] != 0.0);
+        let mut axes = (0..self.n_axes).filter(|&axis| self.v[axis] != 0.0);
         axes.next()
             .filter(|&axis| axis > 0 && axes.next().is_none())
     }
 
     /// Whether the first axis, and no other, goes with the columns.
     pub(crate) fn is_upright(&self) -> bool {
-        let [u, v]: [[f64; N]; 2] = [self.u.into(), self.v.into()];
-        v[0] == 0.0 && u[1..].iter().all(|&part| part == 0.0)
+        self.v[0] == 0.0 && self.u[1..].iter().all(|&part| part == 0.0)
     }
 }
 

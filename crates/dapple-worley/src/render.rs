@@ -1,10 +1,11 @@
 //! Many positions at once: a window of a plane.
 //!
 //! The window is cut into bands of rows, which threads share out, and blocks of columns. The feature points of a block
-//! and its neighborhood are made once ([`table`]); then, for each tile of up to 32 × 32 pixels, those that matter to it
-//! are picked out ([`sieve`], then [`thin`]), and only those are compared at its pixels, sixteen side by side
-//! ([`kernel`]; [`track`], where it matters which points they are). The most usual pictures go a shorter way through the
-//! same stages ([`sheet`]). Where a tile needs points further away than its neighborhood reaches, the
+//! and its neighborhood are made once ([`table`]). Only they know how many axes there are ([`basis`]). For each square of
+//! up to 64 × 64 pixels, and then for each of its tiles ([`square`]), those that may be among the nearest are picked out:
+//! the candidates ([`cull`], [`flat`], then [`candidates`]). Only these are compared at the pixels of the tile, sixteen side by side
+//! ([`kernel`]; [`track`], where it matters which points they are). Slices of a volume that lie near one another share
+//! their candidates. Where a tile needs points further away than its neighborhood reaches, the
 //! neighborhood grows; where that would not be exact, single positions are searched. Where cells have few pixels, points
 //! are sorted by the pixels near to them ([`bins`]), and compared at all of these ([`splat`]). Distances to the edges of
 //! cells are a second pass over the nearest points ([`edge`]).
@@ -12,30 +13,31 @@
 //! What runs in registers are stages with nothing but memory between them, so that each is compiled only for what it
 //! depends on.
 
+mod area;
+mod basis;
 mod bins;
 mod block;
+mod candidates;
+mod cull;
 mod edge;
+mod flat;
 mod kernel;
-mod sheet;
-mod shortlist;
-mod sieve;
 mod splat;
+mod square;
 mod table;
-mod thin;
-mod tile;
 mod track;
 
 use crate::features::FeatureRows;
-use crate::fixed::{Place, split};
+use crate::fixed::{FlatPlace, MOST_AXES, split};
+use crate::plane::Section;
 use crate::sink::{Tone, Values};
-use crate::{Axes, Plane, Space, Worley};
 use block::{Block, Memory};
 use dapple_raster::{RasterViewMut, Window, simd};
 use fearless_simd::Level;
 use glam::DVec2;
 use std::sync::Arc;
 
-pub(crate) use edge::render_edges;
+pub(crate) use basis::Basis;
 
 /// The pixels of a register.
 pub(crate) const LANES: usize = 16;
@@ -47,29 +49,26 @@ const BAND_ROWS: usize = 64;
 const BLOCK_COLUMNS: usize = 128;
 
 /// A window of a plane through the basis.
-#[derive(Clone, Copy)]
-pub(crate) struct Picture<'a, const N: usize>
-where
-    Axes: Space<N>,
-{
-    pub(crate) worley: &'a Worley<N>,
-    pub(crate) plane: &'a Plane<N>,
+#[derive(Clone, Copy, Debug)]
+pub struct Picture<'a> {
+    pub(crate) basis: &'a dyn Basis,
+    pub(crate) section: Section,
     pub(crate) window: &'a Window,
     /// What positions are multiplied by.
     pub(crate) frequency: f64,
 }
 
 /// The rows of a band, and what is to be put into them.
-pub(crate) enum Output<'a, const N: usize> {
+pub(crate) enum Output<'a> {
     /// Values of a texture.
     Values(Values, Vec<&'a mut [f32]>),
     /// The nearest points, as many as there are members.
-    Features(Vec<FeatureRows<'a, N>>),
-    /// Gradients of a texture.
-    Gradients(Tone, Vec<&'a mut [[f32; N]]>),
+    Features(Vec<FeatureRows<'a>>),
+    /// Gradients of a texture, their parts one after the other.
+    Gradients(Tone, Vec<&'a mut [f32]>),
 }
 
-impl<const N: usize> Output<'_, N> {
+impl Output<'_> {
     /// The greatest n of `F_n` that is needed.
     fn depth(&self) -> usize {
         match self {
@@ -87,10 +86,7 @@ impl<const N: usize> Output<'_, N> {
     }
 }
 
-impl<const N: usize> Picture<'_, N>
-where
-    Axes: Space<N>,
-{
+impl Picture<'_> {
     /// How many bands the window has.
     pub(crate) fn n_bands(&self) -> usize {
         self.window.size[1].div_ceil(BAND_ROWS as u32) as usize
@@ -108,48 +104,50 @@ where
     }
 
     /// Fills the bands of the window, on all cores where the feature `rayon` is on.
-    pub(crate) fn render(&self, bands: Vec<Output<'_, N>>) {
+    pub(crate) fn render(&self, bands: Vec<Output<'_>>) {
         self.render_at(simd::level(), bands);
     }
 
     /// As [`render`](Self::render), at a given SIMD level.
-    pub(crate) fn render_at(&self, level: Level, bands: Vec<Output<'_, N>>) {
+    pub(crate) fn render_at(&self, level: Level, bands: Vec<Output<'_>>) {
         render_stack(level, vec![(*self, bands)]);
     }
 
     /// The coordinates of the columns; those of the picture before, if they are the same.
     fn columns(&self, before: Option<(&Self, &Arc<Line>)>) -> Arc<Line> {
         match before {
-            Some((before, columns)) if before.plane.is_same_along(0, self.plane) => columns.clone(),
+            Some((before, columns)) if before.section.is_same_along(0, &self.section) => {
+                columns.clone()
+            }
             _ => Arc::new(self.line(0, self.window.size[0], |column| {
                 DVec2::new(self.window.column_x(column), 0.0)
             })),
         }
     }
 
-    /// The coordinates of `n` rows from `first` on; along each axis those of the picture before, if they are the same.
-    fn rows(&self, [first, n]: [usize; 2], before: Option<&Shelf<'_, N>>) -> [Arc<Line>; N] {
-        core::array::from_fn(|axis| match before {
-            Some(before) if before.picture.plane.is_same_along(axis, self.plane) => {
+    /// The coordinates of `n` rows from `first` on along an axis; those of the picture before, if they are the same.
+    fn rows(&self, axis: usize, first: usize, n: usize, before: Option<&Band<'_>>) -> Arc<Line> {
+        match before {
+            Some(before) if before.picture.section.is_same_along(axis, &self.section) => {
                 before.rows[axis].clone()
             }
             _ => {
                 // Where all rows are at the same place, the first one does for all. (Zero times infinity is no place.)
                 let last = self.window.row_y((first + n) as u32 - 1);
-                let is_level = self.plane.v.into()[axis] == 0.0 && last.is_finite();
+                let is_level = self.section.v[axis] == 0.0 && last.is_finite();
                 let mut line = self.line(axis, if is_level { 1 } else { n as u32 }, |row| {
                     DVec2::new(0.0, self.window.row_y(first as u32 + row))
                 });
                 line.places.resize(n, line.places[0]);
                 Arc::new(line)
             }
-        })
+        }
     }
 
     /// The coordinates of columns or rows along one axis. They are those of [`place`](Self::place) if the plane is
     /// upright, for then the other part of the position adds zero.
     fn line(&self, axis: usize, len: u32, position: impl Fn(u32) -> DVec2) -> Line {
-        let coordinate = |index| self.plane.coordinate(axis, position(index)) * self.frequency;
+        let coordinate = |index| self.section.coordinate(axis, position(index)) * self.frequency;
         let mut places: Vec<_> = (0..len)
             .map_while(|index| split(coordinate(index)))
             .collect();
@@ -159,11 +157,17 @@ where
     }
 
     /// The place of a pixel.
-    fn place(&self, column: usize, row: usize) -> Option<Place<N>> {
+    fn place(&self, column: usize, row: usize) -> Option<FlatPlace> {
         let position = self.window.position(column as u32, row as u32);
-        Place::new(core::array::from_fn(|axis| {
-            self.plane.coordinate(axis, position) * self.frequency
-        }))
+        let mut place = FlatPlace {
+            cell: [0; MOST_AXES],
+            steps: [0; MOST_AXES],
+        };
+        for axis in 0..self.section.n_axes {
+            let coordinate = self.section.coordinate(axis, position) * self.frequency;
+            (place.cell[axis], place.steps[axis]) = split(coordinate)?;
+        }
+        Some(place)
     }
 }
 
@@ -171,13 +175,8 @@ where
 const STACK: usize = 16;
 
 /// Fills the bands of pictures of the same basis, frequency and window, on all cores where the feature `rayon` is on.
-pub(crate) fn render_stack<'a, const N: usize>(
-    level: Level,
-    stack: Vec<(Picture<'a, N>, Vec<Output<'a, N>>)>,
-) where
-    Axes: Space<N>,
-{
-    let mut pictures: Vec<(Picture<'a, N>, Arc<Line>, Vec<Output<'a, N>>)> = Vec::new();
+pub(crate) fn render_stack<'a>(level: Level, stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
+    let mut pictures: Vec<(Picture<'a>, Arc<Line>, Vec<Output<'a>>)> = Vec::new();
     for (picture, bands) in stack {
         let before = pictures.last();
         let columns = picture.columns(before.map(|(before, columns, _)| (before, columns)));
@@ -185,12 +184,15 @@ pub(crate) fn render_stack<'a, const N: usize>(
     }
     let mut jobs = Vec::new();
     for pictures in pictures.chunks_mut(STACK) {
-        for band in (0..pictures[0].0.n_bands()).rev() {
-            let bands = pictures.iter_mut().filter_map(|(picture, columns, bands)| {
-                let out = bands.pop()?;
-                Some((*picture, columns.clone(), out))
-            });
-            jobs.push((band, bands.collect()));
+        for index in (0..pictures[0].0.n_bands()).rev() {
+            let (mut bands, mut outs): (Vec<Band<'a>>, _) = (Vec::new(), Vec::new());
+            for (picture, columns, rest) in &mut *pictures {
+                if let Some(out) = rest.pop() {
+                    bands.push(Band::new(*picture, index, columns.clone(), bands.last()));
+                    outs.push(out);
+                }
+            }
+            jobs.push((bands, outs));
         }
     }
     #[cfg(feature = "rayon")]
@@ -200,68 +202,85 @@ pub(crate) fn render_stack<'a, const N: usize>(
         // Memory goes from job to job, since it takes time to be had anew.
         let pool = Mutex::new(Vec::new());
         let lock = || pool.lock().unwrap_or_else(PoisonError::into_inner);
-        jobs.into_par_iter().for_each(|(band, pictures)| {
+        jobs.into_par_iter().for_each(|(bands, outs)| {
             let mut memory = lock().pop().unwrap_or_else(Memory::new);
-            render_band(level, band, pictures, &mut memory);
+            render_bands(level, &bands, outs, &mut memory);
             lock().push(memory);
         });
     }
     #[cfg(not(feature = "rayon"))]
     {
         let mut memory = Memory::new();
-        for (band, pictures) in jobs {
-            render_band(level, band, pictures, &mut memory);
+        for (bands, outs) in jobs {
+            render_bands(level, &bands, outs, &mut memory);
         }
     }
 }
 
-/// Fills the same band of several pictures, each with its columns.
-fn render_band<const N: usize>(
+/// Fills the same band of several pictures. Those next to one another that are slices of a volume are filled together.
+fn render_bands(
     level: Level,
-    band: usize,
-    pictures: Vec<(Picture<'_, N>, Arc<Line>, Output<'_, N>)>,
-    memory: &mut Memory<N>,
-) where
-    Axes: Space<N>,
-{
-    let first = band * BAND_ROWS;
-    let mut shelves: Vec<Shelf<'_, N>> = Vec::with_capacity(pictures.len());
-    for (picture, columns, out) in pictures {
-        let n_rows = BAND_ROWS.min(picture.window.size[1] as usize - first);
-        shelves.push(Shelf {
-            columns,
-            rows: picture.rows([first, n_rows], shelves.last()),
-            picture,
-            out,
-        });
-    }
-    let n_columns = shelves[0].columns.places.len();
-    for start in (0..n_columns).step_by(BLOCK_COLUMNS) {
-        for shelf in &mut shelves {
+    mut bands: &[Band<'_>],
+    mut outs: Vec<Output<'_>>,
+    memory: &mut Memory,
+) {
+    let mut outs = &mut outs[..];
+    while let Some(first) = bands.first() {
+        let n = bands
+            .iter()
+            .take_while(|band| first.is_slice(band))
+            .count()
+            .max(1);
+        let (together, others) = bands.split_at(n);
+        let (out, others_out) = outs.split_at_mut(n);
+        let n_columns = first.columns.places.len();
+        for start in (0..n_columns).step_by(BLOCK_COLUMNS) {
             let block = Block {
-                picture: &shelf.picture,
+                bands: together,
                 level,
-                columns: &shelf.columns,
-                rows: &shelf.rows,
-                n_rows: shelf.rows[0].places.len(),
-                first,
                 range: start..n_columns.min(start + BLOCK_COLUMNS),
             };
-            block.render(&mut shelf.out, memory);
+            block.render(out, memory);
         }
+        (bands, outs) = (others, others_out);
     }
 }
 
-/// A band of a picture.
-struct Shelf<'a, const N: usize>
-where
-    Axes: Space<N>,
-{
-    picture: Picture<'a, N>,
-    out: Output<'a, N>,
+/// A band of rows of a picture, where they and the columns lie.
+struct Band<'a> {
+    picture: Picture<'a>,
+    /// The first row, in the window.
+    first: usize,
+    n_rows: usize,
     columns: Arc<Line>,
     /// Along every axis.
-    rows: [Arc<Line>; N],
+    rows: Vec<Arc<Line>>,
+}
+
+impl<'a> Band<'a> {
+    /// The band with this index; `before` is that of another picture.
+    fn new(picture: Picture<'a>, index: usize, columns: Arc<Line>, before: Option<&Self>) -> Self {
+        let first = index * BAND_ROWS;
+        let n_rows = BAND_ROWS.min(picture.window.size[1] as usize - first);
+        let axes = 0..picture.section.n_axes;
+        let rows = axes.map(|axis| picture.rows(axis, first, n_rows, before));
+        Self {
+            first,
+            n_rows,
+            rows: rows.collect(),
+            columns,
+            picture,
+        }
+    }
+
+    /// Whether another band is a slice along the first two axes with the same columns and rows, and so is this one.
+    fn is_slice(&self, other: &Self) -> bool {
+        let is_flat = |band: &Self| band.picture.section.row_axis() == Some(1);
+        is_flat(self)
+            && is_flat(other)
+            && Arc::ptr_eq(&self.columns, &other.columns)
+            && (0..2).all(|axis| Arc::ptr_eq(&self.rows[axis], &other.rows[axis]))
+    }
 }
 
 /// The coordinates of columns or rows along one axis: cell, and steps within it.

@@ -1,13 +1,13 @@
 //! The door for many scattered positions, such as the shading points of a renderer.
 
+use crate::doors::Doors as _;
 use crate::fixed::Place;
-use crate::many::{GROUP, Group, Points, Search};
-use crate::metric::{Chebyshev, Euclidean, Manhattan, Norm};
+use crate::many::{GROUP, Group, Points};
 use crate::sink::Tone;
-use crate::{Axes, Feature, LIMIT, Metric, Space, Vector, Worley, WorleyError};
+use crate::{Axes, Feature, LIMIT, Space, Vector, Worley, WorleyError};
 use core::ops::Range;
 use dapple_raster::simd;
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 
 impl<const N: usize> Worley<N>
 where
@@ -49,23 +49,9 @@ where
     ) -> Result<(), WorleyError> {
         const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
         WorleyError::check_length(features.len(), positions.len())?;
-        match K {
-            1 => self.fill_groups::<1, K>(level, positions, features),
-            2 => self.fill_groups::<2, K>(level, positions, features),
-            // Hardly faster for three than for four, but as much to compile.
-            _ => self.fill_groups::<4, K>(level, positions, features),
-        }
-        Ok(())
-    }
-
-    /// From the `D` nearest, at least as many as are asked for.
-    fn fill_groups<const D: usize, const K: usize>(
-        &self,
-        level: Level,
-        positions: &[Vector<N>],
-        features: &mut [[Feature<Vector<N>>; K]],
-    ) {
-        self.each_group::<D>(level, positions, |range, holds, points| {
+        // Hardly faster for three than for four, but as much to compile.
+        let depth = if K == 3 { LIMIT } else { K };
+        self.each_group(level, depth, positions, |range, holds, points| {
             let positions = &positions[range.clone()];
             let features = &mut features[range];
             if holds != 0 {
@@ -78,25 +64,23 @@ where
                 again &= again - 1;
             }
         });
+        Ok(())
     }
 
     /// The values of a combination at many positions.
     pub(crate) fn tones(&self, tone: &Tone, positions: &[Vector<N>], values: &mut [f32]) {
-        match tone.depth() {
-            ..=2 => self.tones_of::<2>(tone, positions, values),
-            _ => self.tones_of::<4>(tone, positions, values),
-        }
-    }
-
-    /// The values of a combination of up to `D` distances.
-    fn tones_of<const D: usize>(&self, tone: &Tone, positions: &[Vector<N>], values: &mut [f32]) {
-        self.each_group::<D>(simd::level(), positions, |range, holds, points| {
+        let depth = if tone.depth() <= 2 { 2 } else { LIMIT };
+        self.each_group(simd::level(), depth, positions, |range, holds, points| {
             for (place, index) in range.enumerate() {
                 values[index] = if holds >> place & 1 != 0 {
-                    tone.of(&points.each_ref().map(|points| points.distances[place]))
+                    let mut distances = [0.0; LIMIT];
+                    for (distance, points) in distances.iter_mut().zip(points) {
+                        *distance = points.distances[place];
+                    }
+                    tone.of(&distances)
                 } else {
                     let place = Place::new(positions[index].into());
-                    place.map_or(f32::NAN, |place| tone.at(self, place))
+                    place.map_or(f32::NAN, |place| tone.at(self, &place))
                 };
             }
         });
@@ -108,7 +92,8 @@ where
         positions: &[Vector<N>],
         mut put: impl FnMut(usize, f32, u64),
     ) {
-        self.each_group::<2>(simd::level(), positions, |range, holds, [nearest, _]| {
+        self.each_group(simd::level(), 2, positions, |range, holds, points| {
+            let nearest = &points[0];
             for (place, index) in range.enumerate() {
                 if holds >> place & 1 != 0 {
                     put(index, nearest.distances[place], nearest.ids[place]);
@@ -121,44 +106,33 @@ where
     }
 
     /// Calls `found` with each group of positions, those of them for which the nearest points hold, as bits, and these
-    /// points.
-    fn each_group<const D: usize>(
+    /// points: 1, 2 or 4 of them.
+    fn each_group(
         &self,
         level: Level,
+        depth: usize,
         positions: &[Vector<N>],
-        mut found: impl FnMut(Range<usize>, u64, &[Points<N>; D]),
+        mut found: impl FnMut(Range<usize>, u64, &[Points<N>]),
     ) {
-        let mut group = Group::<N, D>::new();
+        let mut group = Group::new(depth);
         for (index, positions) in positions.chunks(GROUP).enumerate() {
-            let holds = match self.metric {
-                // One at a time it would be, in any case.
-                _ if self.lattice.density.is_some() => 0,
-                Metric::Minkowski(_) => 0,
-                Metric::Euclidean => self.search(level, Euclidean, positions, &mut group),
-                Metric::Manhattan => self.search(level, Manhattan, positions, &mut group),
-                Metric::Chebyshev => self.search(level, Chebyshev, positions, &mut group),
-            };
+            group.len = positions.len();
+            for (place, &position) in positions.iter().enumerate() {
+                let position: [f64; N] = position.into();
+                for axis in 0..N {
+                    group.positions[axis][place] = position[axis];
+                }
+            }
+            let holds = Axes::search_group(self, level, &mut group);
             let first = index * GROUP;
             found(first..first + positions.len(), holds, group.points());
         }
     }
-
-    /// Up to a group of positions; tells for which of them it holds.
-    fn search<M: Norm, const D: usize>(
-        &self,
-        level: Level,
-        norm: M,
-        positions: &[Vector<N>],
-        group: &mut Group<N, D>,
-    ) -> u64 {
-        let search = Search::new(norm, &self.lattice);
-        dispatch!(level, simd => group.search(simd, search, positions))
-    }
 }
 
 /// Writes what was found, place by place.
-fn put<const N: usize, const D: usize, const K: usize>(
-    points: &[Points<N>; D],
+fn put<const N: usize, const K: usize>(
+    points: &[Points<N>],
     features: &mut [[Feature<Vector<N>>; K]],
 ) where
     Axes: Space<N>,

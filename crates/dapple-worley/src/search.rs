@@ -12,8 +12,8 @@
 //! on the order in which they were found.
 
 use crate::fixed::{Place, STEPS, cells};
-use crate::lattice::Lattice;
-use crate::metric::Norm;
+use crate::lattice::{IDS, Lattice};
+use crate::{LIMIT, Metric};
 use core::cmp::Ordering;
 use dapple_hash::CellHash;
 
@@ -24,9 +24,17 @@ pub(crate) struct Name {
     pub(crate) index: u32,
 }
 
+impl Name {
+    /// The id of the point.
+    #[inline]
+    pub(crate) fn id(self) -> u64 {
+        self.hash.at(IDS + self.index)
+    }
+}
+
 /// A point that was found.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Hit<const N: usize> {
+pub struct Hit<const N: usize> {
     pub(crate) key: f32,
     /// From the feature point to the position, in cells.
     pub(crate) vector: [f32; N],
@@ -35,6 +43,13 @@ pub(crate) struct Hit<const N: usize> {
 }
 
 impl<const N: usize> Hit<N> {
+    /// What a position without a place sees.
+    pub(crate) const NOWHERE: Self = Self {
+        key: f32::NAN,
+        vector: [f32::NAN; N],
+        name: None,
+    };
+
     /// Nothing, infinitely far away.
     pub(crate) const NONE: Self = Self {
         key: f32::INFINITY,
@@ -45,8 +60,8 @@ impl<const N: usize> Hit<N> {
 
 /// What a place sees of a point in the cell that is `shift` cells from its own.
 #[inline(always)]
-pub(crate) fn hit<M: Norm, const N: usize>(
-    norm: M,
+pub(crate) fn hit<const N: usize>(
+    metric: Metric,
     place: &Place<N>,
     shift: [i64; N],
     steps: [i32; N],
@@ -58,7 +73,7 @@ pub(crate) fn hit<M: Norm, const N: usize>(
         vector[axis] = cells(ahead - shift[axis] * i64::from(STEPS));
     }
     Hit {
-        key: norm.key(vector),
+        key: metric.key(vector),
         vector,
         name: Some(name),
     }
@@ -68,44 +83,46 @@ pub(crate) fn hit<M: Norm, const N: usize>(
 /// even in two dimensions.
 const LAST_RING: i64 = 96;
 
-/// The `K` nearest points of a place, nearest first.
-pub(crate) fn nearest<M: Norm, const N: usize, const K: usize>(
+/// The nearest points of a place, nearest first; at most four.
+pub(crate) fn nearest<const N: usize>(
     lattice: &Lattice<N>,
-    norm: M,
-    place: Place<N>,
-) -> [Hit<N>; K] {
-    let mut ranking = Ranking::new();
+    metric: Metric,
+    place: &Place<N>,
+    hits: &mut [Hit<N>],
+) {
+    let mut ranking = Ranking::new(hits.len());
+    let looseness = metric.looseness();
     let search = Search {
         lattice,
-        norm,
+        metric,
         place,
     };
     for ring in 0..=LAST_RING {
         search.ring(ring, |shift| {
-            if search.gap(shift) <= ranking.reach() * M::LOOSE {
-                search.cell(shift, |hit| ranking.add(hit, |name| lattice.id(name)));
+            if search.gap(shift) <= ranking.reach() * looseness {
+                search.cell(shift, |hit| ranking.add(hit, Name::id));
             }
         });
         let is_empty = ranking.hits[0].name.is_none() && lattice.repeats_within(ring);
-        if is_empty || ranking.reach() * M::LOOSE < search.border(ring) {
+        if is_empty || ranking.reach() * looseness < search.border(ring) {
             break;
         }
     }
-    ranking.hits
+    hits.copy_from_slice(ranking.hits());
 }
 
 /// All points of a place with keys of at most that of `distance`, in no particular order.
-pub(crate) fn within<M: Norm, const N: usize>(
+pub(crate) fn within<const N: usize>(
     lattice: &Lattice<N>,
-    norm: M,
-    place: Place<N>,
+    metric: Metric,
+    place: &Place<N>,
     distance: f32,
 ) -> Vec<Hit<N>> {
     let mut hits = Vec::new();
-    let key = norm.key_along_one_axis(distance) * M::LOOSE;
+    let key = metric.term(distance) * metric.looseness();
     let search = Search {
         lattice,
-        norm,
+        metric,
         place,
     };
     for ring in 0..=LAST_RING {
@@ -126,21 +143,28 @@ pub(crate) fn within<M: Norm, const N: usize>(
 }
 
 /// The nearest points so far, nearest first.
-pub(crate) struct Ranking<const N: usize, const K: usize> {
-    pub(crate) hits: [Hit<N>; K],
+pub(crate) struct Ranking<const N: usize> {
+    hits: [Hit<N>; LIMIT],
+    /// How many are wanted.
+    len: usize,
 }
 
-impl<const N: usize, const K: usize> Ranking<N, K> {
-    pub(crate) fn new() -> Self {
+impl<const N: usize> Ranking<N> {
+    pub(crate) fn new(len: usize) -> Self {
         Self {
-            hits: [Hit::NONE; K],
+            hits: [Hit::NONE; LIMIT],
+            len,
         }
+    }
+
+    pub(crate) fn hits(&self) -> &[Hit<N>] {
+        &self.hits[..self.len]
     }
 
     /// Keys from here on do not matter any more.
     #[inline]
     pub(crate) fn reach(&self) -> f32 {
-        self.hits[K - 1].key
+        self.hits[self.len - 1].key
     }
 
     /// Takes in a point.
@@ -152,12 +176,12 @@ impl<const N: usize, const K: usize> Ranking<N, K> {
     }
 
     fn insert(&mut self, hit: Hit<N>, id: impl Fn(Name) -> u64) {
-        let mut at = K;
+        let mut at = self.len;
         while at > 0 && order(&hit, &self.hits[at - 1], &id).is_lt() {
             at -= 1;
         }
-        if at < K {
-            self.hits[at..].rotate_right(1);
+        if at < self.len {
+            self.hits[at..self.len].rotate_right(1);
             self.hits[at] = hit;
         }
     }
@@ -174,13 +198,13 @@ pub(crate) fn order<const N: usize>(a: &Hit<N>, b: &Hit<N>, id: impl Fn(Name) ->
 }
 
 /// A search by rings.
-struct Search<'a, M, const N: usize> {
+struct Search<'a, const N: usize> {
     lattice: &'a Lattice<N>,
-    norm: M,
-    place: Place<N>,
+    metric: Metric,
+    place: &'a Place<N>,
 }
 
-impl<M: Norm, const N: usize> Search<'_, M, N> {
+impl<const N: usize> Search<'_, N> {
     /// Calls `each` with the cells that are `ring` cells away along their furthest axis.
     fn ring(&self, ring: i64, mut each: impl FnMut([i64; N])) {
         let mut shift = [-ring; N];
@@ -212,7 +236,7 @@ impl<M: Norm, const N: usize> Search<'_, M, N> {
     fn cell(&self, shift: [i64; N], mut each: impl FnMut(Hit<N>)) {
         let cell = core::array::from_fn(|axis| self.place.cell[axis] + shift[axis]);
         self.lattice.visit(cell, |steps, name| {
-            each(hit(self.norm, &self.place, shift, steps, name));
+            each(hit(self.metric, self.place, shift, steps, name));
         });
     }
 
@@ -229,13 +253,12 @@ impl<M: Norm, const N: usize> Search<'_, M, N> {
             };
             gap[axis] = cells(near);
         }
-        self.norm.key(gap)
+        self.metric.key(gap)
     }
 
     /// No point beyond the rings visited has a smaller key.
     fn border(&self, ring: i64) -> f32 {
-        let border = border(&self.place, ring);
-        self.norm.key_along_one_axis(cells(border))
+        self.metric.term(cells(border(self.place, ring)))
     }
 }
 

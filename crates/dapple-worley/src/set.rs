@@ -6,7 +6,6 @@
 //!
 //! Differences are taken in `f64` and rounded once to `f32`, so that the unit of positions is the caller's own.
 
-use crate::metric::{Norm, with_norm};
 use crate::search::{Hit, Name, Ranking};
 use crate::{Axes, Feature, LIMIT, Metric, Space, Vector, WorleyError};
 use dapple_hash::{CellHash, Seed};
@@ -155,15 +154,19 @@ where
                 id: u64::MAX,
             }; K];
         }
-        with_norm!(self.metric, norm => self.nearest(norm, position).map(|hit| Feature {
-            distance: norm.distance(hit.key),
-            vector: hit.vector.map(f64::from).into(),
-            id: hit.name.map_or(u64::MAX, |name| u64::from(name.index)),
-        }))
+        let ranking = self.nearest(K, position);
+        core::array::from_fn(|rank| {
+            let hit = ranking.hits()[rank];
+            Feature {
+                distance: self.metric.distance(hit.key),
+                vector: hit.vector.map(f64::from).into(),
+                id: hit.name.map_or(u64::MAX, |name| u64::from(name.index)),
+            }
+        })
     }
 
     /// Bins are visited in growing boxes about the position's own, until no bin outside can hold a nearer point.
-    fn nearest<M: Norm, const K: usize>(&self, norm: M, mut position: [f64; N]) -> [Hit<N>; K] {
+    fn nearest(&self, n: usize, mut position: [f64; N]) -> Ranking<N> {
         let bins = &self.bins;
         for axis in 0..N {
             if bins.wraps[axis] {
@@ -171,16 +174,16 @@ where
             }
         }
         let center = core::array::from_fn(|axis| i64::from(bins.bin(axis, position[axis])));
-        let mut ranking = Ranking::new();
+        let mut ranking = Ranking::new(n);
         if self.points.is_empty() {
-            return ranking.hits;
+            return ranking;
         }
         for ring in 0.. {
             let [first, last] = bins.reach(center, ring);
             let mut bin = first;
             loop {
                 if (0..N).any(|axis| (bin[axis] - center[axis]).abs() == ring) {
-                    self.visit(norm, position, bin, &mut ranking);
+                    self.visit(position, bin, &mut ranking);
                 }
                 let Some(axis) = (0..N).find(|&axis| bin[axis] < last[axis]) else {
                     break;
@@ -189,22 +192,16 @@ where
                 bin[..axis].copy_from_slice(&first[..axis]);
             }
             let border = bins.border(position, [first, last]);
-            let is_enough = ranking.reach() * M::LOOSE < norm.key_along_one_axis(border);
+            let is_enough = ranking.reach() * self.metric.looseness() < self.metric.term(border);
             if is_enough || border == f32::INFINITY {
                 break;
             }
         }
-        ranking.hits
+        ranking
     }
 
     /// Takes in the points of a bin.
-    fn visit<M: Norm, const K: usize>(
-        &self,
-        norm: M,
-        position: [f64; N],
-        bin: [i64; N],
-        ranking: &mut Ranking<N, K>,
-    ) {
+    fn visit(&self, position: [f64; N], bin: [i64; N], ranking: &mut Ranking<N>) {
         let bins = &self.bins;
         let turns: [i64; N] =
             core::array::from_fn(|axis| bin[axis].div_euclid(i64::from(bins.count[axis])));
@@ -220,7 +217,7 @@ where
             }
             let hash = CellHash::new(Seed(0), []);
             let hit = Hit {
-                key: norm.key(vector),
+                key: self.metric.key(vector),
                 vector,
                 name: Some(Name {
                     hash,

@@ -1,8 +1,10 @@
 //! What becomes of the keys of sixteen pixels.
 
-use crate::fixed::Place;
-use crate::metric::Norm;
-use crate::{Axes, Combination, Space, Worley, WorleyError};
+use crate::fixed::{FlatPlace, Place};
+use crate::metric::Measure;
+use crate::render::Basis;
+use crate::search::Hit;
+use crate::{Axes, Combination, LIMIT, Space, Worley, WorleyError};
 use fearless_simd::{f32x16, prelude::*};
 
 /// A combination, mapped to a range: `shift + W1·F1 + W2·F2 + …`.
@@ -44,8 +46,13 @@ impl Tone {
         self.weights.depth()
     }
 
+    /// How many of the nearest points a single position is searched for.
+    pub(crate) fn n_hits(&self) -> usize {
+        if self.depth() <= 2 { 2 } else { LIMIT }
+    }
+
     /// At a place.
-    pub(crate) fn at<const N: usize>(&self, worley: &Worley<N>, place: Place<N>) -> f32
+    pub(crate) fn at<const N: usize>(&self, worley: &Worley<N>, place: &Place<N>) -> f32
     where
         Axes: Space<N>,
     {
@@ -78,15 +85,17 @@ pub(crate) struct Values {
 
 impl Values {
     /// The value at a place; NaN where there is none.
-    pub(crate) fn put_one<const N: usize>(
-        &self,
-        worley: &Worley<N>,
-        place: Option<Place<N>>,
-        out: &mut f32,
-    ) where
-        Axes: Space<N>,
-    {
-        let value = place.map_or(f32::NAN, |place| self.tone.at(worley, place));
+    pub(crate) fn put_one(&self, basis: &dyn Basis, place: Option<FlatPlace>, out: &mut f32) {
+        let value = place.map_or(f32::NAN, |place| {
+            let mut hits = [Hit::NONE; LIMIT];
+            let hits = &mut hits[..self.tone.n_hits()];
+            basis.nearest(&place, hits);
+            let mut distances = [0.0; LIMIT];
+            for (distance, hit) in distances.iter_mut().zip(&*hits) {
+                *distance = basis.metric().distance(hit.key);
+            }
+            self.tone.of(&distances)
+        });
         *out = match self.weight {
             Some(_) if value.is_nan() => f32::NAN,
             Some(weight) => *out + value * weight,
@@ -128,12 +137,12 @@ pub(crate) struct ValueLanes<S: Simd, const K: usize> {
 impl<S: Simd, const K: usize> ValueLanes<S, K> {
     /// Takes in the keys of sixteen pixels.
     #[inline(always)]
-    pub(crate) fn put<M: Norm>(&self, norm: M, keys: [f32x16<S>; K], out: &mut [f32]) {
+    pub(crate) fn put<M: Measure>(&self, measure: M, keys: [f32x16<S>; K], out: &mut [f32]) {
         let mut values = self.shift;
         for rank in 0..K {
             // The last one of one or two is zero in a combination of nothing only, where it adds zero.
             if (rank + 1 == K && K <= 2) || self.counts[rank] {
-                values += norm.distances(keys[rank]) * self.weights[rank];
+                values += measure.distances(keys[rank]) * self.weights[rank];
             }
         }
         if self.is_added {
@@ -144,10 +153,10 @@ impl<S: Simd, const K: usize> ValueLanes<S, K> {
 
     /// Takes in the keys of fewer than sixteen pixels.
     #[inline(always)]
-    pub(crate) fn put_part<M: Norm>(&self, norm: M, keys: [f32x16<S>; K], out: &mut [f32]) {
+    pub(crate) fn put_part<M: Measure>(&self, measure: M, keys: [f32x16<S>; K], out: &mut [f32]) {
         let mut lanes = [0.0; 16];
         lanes[..out.len()].copy_from_slice(out);
-        self.put(norm, keys, &mut lanes);
+        self.put(measure, keys, &mut lanes);
         out.copy_from_slice(&lanes[..out.len()]);
     }
 }

@@ -1,7 +1,4 @@
 //! Slices of textures of four dimensions, as fields of the plane.
-//!
-//! Rendering is compiled for every metric, depth and SIMD level, which takes a while in four dimensions, so this lies behind
-//! the feature `slices`: it is compiled here once, and not again in every crate that uses it.
 
 use crate::{Cellular, EdgeDistances, Fractal, Plane};
 use dapple_raster::glam::{DVec2, DVec4};

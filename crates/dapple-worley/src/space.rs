@@ -1,5 +1,6 @@
 //! The spaces of two, three and four axes, and their vectors.
 
+use crate::doors::Doors;
 use core::fmt;
 use glam::{DVec2, DVec3, DVec4};
 
@@ -8,7 +9,7 @@ use glam::{DVec2, DVec3, DVec4};
 pub struct Axes;
 
 /// A space with `N` axes; [`Axes`] implements it for 2, 3 and 4, and nothing else can.
-pub trait Space<const N: usize>: sealed::Sealed<N> {
+pub trait Space<const N: usize>: Doors<N> {
     /// Its vectors: `DVec2`, `DVec3` or `DVec4`.
     type Vector: Copy + fmt::Debug + PartialEq + From<[f64; N]> + Into<[f64; N]> + Send + Sync;
 }
@@ -26,11 +27,4 @@ impl Space<3> for Axes {
 
 impl Space<4> for Axes {
     type Vector = DVec4;
-}
-
-mod sealed {
-    pub trait Sealed<const N: usize> {}
-    impl Sealed<2> for super::Axes {}
-    impl Sealed<3> for super::Axes {}
-    impl Sealed<4> for super::Axes {}
 }

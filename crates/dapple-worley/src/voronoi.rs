@@ -3,10 +3,11 @@
 //! The distance to the edge and the radius of the sphere are those that Blender's Voronoi texture has made known; here
 //! they are exact. The smooth F1 is our own definition, since the usual ones depend on the order of the points.
 
+use crate::doors::Doors as _;
 use crate::fixed::{Place, STEP, STEPS};
-use crate::metric::{Euclidean, with_norm};
-use crate::search::{Hit, nearest, order, within};
-use crate::{Axes, Space, Vector, Worley, WorleyError};
+use crate::search::{Hit, Name, order};
+use crate::{Axes, Metric, Space, Vector, Worley, WorleyError};
+use dapple_raster::simd;
 
 impl<const N: usize> Worley<N>
 where
@@ -24,14 +25,16 @@ where
         let Some(place) = Place::new(position.into().into()) else {
             return f32::NAN;
         };
-        let pair: [Hit<N>; 2] = nearest(&self.lattice, Euclidean, place);
+        let (metric, lattice) = (Metric::Euclidean, &self.lattice);
+        let mut pair = [Hit::NONE; 2];
+        Axes::nearest(metric, lattice, simd::level(), &place, &mut pair);
         if pair[1].name.is_none() {
             return f32::INFINITY;
         }
         let [first, second] = pair.map(|hit| hit.vector.map(f64::from));
         // The plane halfway to a point at the distance d is at least (d − F1) / 2 away.
         let reach = length(first) + 2.0 * to_plane(first, second);
-        let hits = within(&self.lattice, Euclidean, place, (reach * 1.000_001) as f32);
+        let hits = Axes::within(metric, lattice, &place, (reach * 1.000_001) as f32);
         let mut all: Vec<_> = hits.iter().map(|hit| hit.vector.map(f64::from)).collect();
         if let Some(own) = all.iter().position(|&vector| vector == first) {
             all.swap_remove(own);
@@ -51,7 +54,7 @@ where
         let Some(place) = Place::new(position.into().into()) else {
             return f32::NAN;
         };
-        let [hit] = self.hits::<1>(place);
+        let [hit] = self.hits::<1>(&place);
         if hit.name.is_none() {
             return f32::INFINITY;
         }
@@ -61,7 +64,7 @@ where
             point.cell[axis] += steps.div_euclid(i64::from(STEPS));
             point.steps[axis] = steps.rem_euclid(i64::from(STEPS)) as i32;
         }
-        let [_, neighbor] = self.distances::<2>(point);
+        let [_, neighbor] = self.distances::<2>(&point);
         0.5 * neighbor
     }
 
@@ -92,13 +95,13 @@ where
         let Some(place) = Place::new(position.into().into()) else {
             return Ok(f32::NAN);
         };
-        let [first] = self.distances::<1>(place);
+        let [first] = self.distances::<1>(&place);
         if first == f32::INFINITY {
             return Ok(first);
         }
         let reach = (first + radius) * 1.000_01;
-        let mut hits = with_norm!(self.metric, norm => within(&self.lattice, norm, place, reach));
-        hits.sort_by(|a, b| order(a, b, |name| self.lattice.id(name)));
+        let mut hits = Axes::within(self.metric, &self.lattice, &place, reach);
+        hits.sort_by(|a, b| order(a, b, Name::id));
         let distances = hits
             .iter()
             .map(|hit| f64::from(self.feature(*hit).distance));

@@ -1,14 +1,13 @@
 //! The basis: distances to the nearest feature points.
 
+use crate::doors::Doors as _;
 use crate::fixed::{Place, STEP, STEPS};
 use crate::lattice::{Density, Lattice};
-use crate::metric::{Chebyshev, Euclidean, Manhattan, Minkowski, Norm, with_norm};
-use crate::one::nearest_of_neighbors;
-use crate::search::{Hit, nearest};
+use crate::search::{Hit, Name};
 use crate::{Axes, Metric, Scatter, Space, Vector, WorleyError};
 use dapple_hash::{Seed, unit_f32};
 use dapple_raster::simd;
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use std::sync::Arc;
 
 /// The greatest n of `F_n`.
@@ -236,7 +235,7 @@ where
     ) -> [Feature<Vector<N>>; K] {
         const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
         match Place::new(position.into().into()) {
-            Some(place) => self.hits(place).map(|hit| self.feature(hit)),
+            Some(place) => self.hits(&place).map(|hit| self.feature(hit)),
             None => {
                 [Feature {
                     distance: f32::NAN,
@@ -258,52 +257,35 @@ where
                 offset: steps
                     .map(|steps| f64::from(steps) / f64::from(STEPS))
                     .into(),
-                id: self.lattice.id(name),
+                id: name.id(),
             });
         });
         points
     }
 
-    /// The nearest points of a place.
-    pub(crate) fn hits<const K: usize>(&self, place: Place<N>) -> [Hit<N>; K] {
+    /// The `K` nearest points of a place.
+    pub(crate) fn hits<const K: usize>(&self, place: &Place<N>) -> [Hit<N>; K] {
         self.hits_at(simd::level(), place)
     }
 
     /// As [`hits`](Self::hits), at a given SIMD level.
-    pub(crate) fn hits_at<const K: usize>(&self, level: Level, place: Place<N>) -> [Hit<N>; K] {
-        match self.metric {
-            Metric::Euclidean => self.hits_by(level, Euclidean, place),
-            Metric::Manhattan => self.hits_by(level, Manhattan, place),
-            Metric::Chebyshev => self.hits_by(level, Chebyshev, place),
-            Metric::Minkowski(p) => nearest(&self.lattice, Minkowski(p), place),
-        }
+    pub(crate) fn hits_at<const K: usize>(&self, level: Level, place: &Place<N>) -> [Hit<N>; K] {
+        let mut hits = [Hit::NONE; K];
+        Axes::nearest(self.metric, &self.lattice, level, place, &mut hits);
+        hits
     }
 
-    fn hits_by<M: Norm, const K: usize>(
-        &self,
-        level: Level,
-        norm: M,
-        place: Place<N>,
-    ) -> [Hit<N>; K] {
-        let lattice = &self.lattice;
-        if lattice.density.is_some() {
-            return nearest(lattice, norm, place);
-        }
-        let hits = dispatch!(level, simd => nearest_of_neighbors(simd, norm, lattice, &place));
-        hits.unwrap_or_else(|| nearest(lattice, norm, place))
-    }
-
-    /// The distances of a place.
-    pub(crate) fn distances<const K: usize>(&self, place: Place<N>) -> [f32; K] {
-        let hits = self.hits::<K>(place);
-        with_norm!(self.metric, norm => hits.map(|hit| norm.distance(hit.key)))
+    /// The distances of a place to its `K` nearest points.
+    pub(crate) fn distances<const K: usize>(&self, place: &Place<N>) -> [f32; K] {
+        self.hits::<K>(place)
+            .map(|hit| self.metric.distance(hit.key))
     }
 
     pub(crate) fn feature(&self, hit: Hit<N>) -> Feature<Vector<N>> {
         Feature {
-            distance: with_norm!(self.metric, norm => norm.distance(hit.key)),
+            distance: self.metric.distance(hit.key),
             vector: hit.vector.map(f64::from).into(),
-            id: hit.name.map_or(0, |name| self.lattice.id(name)),
+            id: hit.name.map_or(0, Name::id),
         }
     }
 }

@@ -6,11 +6,12 @@
 
 use super::LANES;
 use super::table::{CellBox, numbers, words};
-use crate::fixed::{STEP, STEP_BITS};
+use crate::Metric;
+use crate::fixed::{MOST_AXES, STEP, STEP_BITS};
 use crate::lattice::{Lattice, SixteenCells};
-use crate::metric::Norm;
+use crate::metric::{Exact, Measure, Powers};
 use dapple_hash::CellHashes;
-use fearless_simd::{f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x16, prelude::*, u32x16};
+use fearless_simd::{f32x4, f32x16, i32x4, i32x16, mask32x16, prelude::*, u32x16};
 
 /// The columns and rows of a tile.
 pub(super) const TILE: usize = 4;
@@ -31,11 +32,13 @@ pub(super) struct Reach {
 
 /// Where the pixels lie.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Grid<const N: usize> {
+pub struct Grid {
+    pub(super) metric: Metric,
+    pub(super) reach: Reach,
     /// The lower corner of the cell from which coordinates are counted.
-    pub(super) origin: [i64; N],
+    pub(super) origin: [i64; MOST_AXES],
     /// The coordinates of the first pixel.
-    pub(super) first: [i32; N],
+    pub(super) first: [i32; MOST_AXES],
     /// How many columns and rows there are.
     pub(super) size: [usize; 2],
     /// Steps from one column to the next, and from one row to the next.
@@ -44,20 +47,12 @@ pub(super) struct Grid<const N: usize> {
     pub(super) row_axis: usize,
 }
 
-impl<const N: usize> Grid<N> {
-    /// The axis that goes with the rows; where there is only one, this is known when the code is compiled.
-    #[inline(always)]
-    fn row_axis(&self) -> usize {
-        if N == 2 { 1 } else { self.row_axis }
-    }
-}
-
-/// A point, with so many terms.
+/// A point, with the terms of the columns of so many tiles.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(super) struct Point<const W: usize> {
+pub(super) struct Point<const TILES: usize> {
     /// The terms at the columns of the tiles about it.
-    pub(super) terms: [f32; W],
+    pub(super) terms: [[f32; TILE]; TILES],
     /// The coordinate along the axis of the rows.
     pub(super) row: i32,
     /// The joined terms along the axes across the picture.
@@ -66,7 +61,7 @@ pub(super) struct Point<const W: usize> {
 
 /// The feature points near to the pixels of a block.
 #[derive(Debug)]
-pub(super) struct Bins {
+pub struct Bins {
     /// How many points there are.
     len: usize,
     /// In the order of the cells: the coordinates along the axes of the picture,
@@ -80,8 +75,8 @@ pub(super) struct Bins {
     /// Where the points of each place begin, and where those of the last end.
     pub(super) starts: Vec<u32>,
     /// In the order of the places, if they are compared with 3 or with 5 columns of tiles.
-    pub(super) near: Vec<Point<12>>,
-    pub(super) wide: Vec<Point<20>>,
+    pub(super) near: Vec<Point<3>>,
+    pub(super) wide: Vec<Point<5>>,
     /// The coordinates of the columns, with those of the tiles about them.
     columns: Vec<i32>,
 }
@@ -119,13 +114,12 @@ impl Bins {
 
     /// Makes the points of `cells` that some tile is compared with.
     #[inline(always)]
-    pub(super) fn collect<S: Simd, M: Norm, const N: usize>(
+    pub(super) fn collect<S: Simd, const N: usize>(
         &mut self,
         simd: S,
-        norm: M,
         lattice: &Lattice<N>,
-        cells: &CellBox<N>,
-        (grid, reach): (&Grid<N>, Reach),
+        cells: &CellBox,
+        grid: &Grid,
     ) {
         self.len = 0;
         let side = cells.side(0);
@@ -142,28 +136,26 @@ impl Bins {
                 cell[0] = cells.first[0] + first as i64;
                 let mut numbers = numbers(lattice, &sixteen, cell);
                 numbers[LANES.min(side - first)..].fill(0);
-                self.add(
-                    simd,
-                    norm,
-                    lattice,
-                    (&sixteen, cell, &numbers),
-                    (grid, reach),
-                );
+                let numbers = u32x16::from_slice(simd, &numbers);
+                self.add::<S, N>(&sixteen, numbers, cell, lattice.jitter, grid);
             }
         }
     }
 
     /// Adds the points of sixteen cells that some tile is compared with.
     #[inline(always)]
-    fn add<S: Simd, M: Norm, const N: usize>(
+    fn add<S: Simd, const N: usize>(
         &mut self,
-        simd: S,
-        norm: M,
-        lattice: &Lattice<N>,
-        (cells, cell, numbers): (&SixteenCells<S>, [i64; N], &[u32; LANES]),
-        (grid, reach): (&Grid<N>, Reach),
+        cells: &SixteenCells<S>,
+        numbers: u32x16<S>,
+        cell: [i64; N],
+        jitter: u32,
+        grid: &Grid,
     ) {
-        let numbers = u32x16::from_slice(simd, numbers);
+        let simd = numbers.simd;
+        // Where there is only one, this is known when the code is compiled.
+        let row_axis = if N == 2 { 1 } else { grid.row_axis };
+        let Grid { metric, reach, .. } = *grid;
         let most = numbers.reduce_max();
         let room = self.len + (most as usize + 1) * LANES;
         if self.places.len() < room {
@@ -177,25 +169,30 @@ impl Bins {
         let lanes = i32x16::from_slice(simd, &ASCENDING) << STEP_BITS;
         let n_tiles = (grid.size[0].div_ceil(TILE) + 2 * reach.tiles) as u32;
         for index in 0..most {
-            let steps: [u32x16<S>; N] = cells.steps(u32x16::splat(simd, index), lattice.jitter);
+            let steps: [u32x16<S>; N] = cells.steps(u32x16::splat(simd, index), jitter);
             let mut points = [lanes; N];
             for axis in 0..N {
                 let corner = ((cell[axis] - grid.origin[axis]) as i32) << STEP_BITS;
                 let steps = steps[axis].bitcast::<i32x16<S>>() + corner;
                 points[axis] = if axis == 0 { steps + lanes } else { steps };
             }
-            let row = points[grid.row_axis()];
-            let ahead = [points[0] - grid.first[0], row - grid.first[grid.row_axis()]];
-            let column = bin(ahead[0], grid.pixel[0], (TILE, reach.tiles));
-            let half = bin(ahead[1], grid.pixel[1], (HALF, reach.halves));
+            let row = points[row_axis];
+            let ahead = [points[0] - grid.first[0], row - grid.first[row_axis]];
+            let column = bin(ahead[0], grid.pixel[0], TILE, reach.tiles);
+            let half = bin(ahead[1], grid.pixel[1], HALF, reach.halves);
             let mut matters = numbers.simd_gt(index)
                 & column.simd_lt(n_tiles)
                 & half.simd_lt(self.n_halves as u32);
             let mut across = f32x16::splat(simd, 0.0);
-            for axis in (1..N).rev().filter(|&axis| axis != grid.row_axis()) {
+            for axis in (1..N).rev().filter(|&axis| axis != row_axis) {
                 let ahead = points[axis] - grid.first[axis];
-                let terms = norm.terms(ahead.to_float::<f32x16<S>>() * STEP);
-                across = norm.joins(terms, across);
+                let ahead = [ahead.to_float::<f32x16<S>>() * STEP];
+                if let Metric::Minkowski(p) = metric {
+                    across += Powers(p).terms(ahead)[0];
+                } else {
+                    let [terms] = Exact(metric).terms(ahead);
+                    across = Exact(metric).accumulate(terms, across);
+                }
             }
             if N > 2 {
                 matters &= across.simd_le(reach.key);
@@ -241,15 +238,15 @@ impl Bins {
 
     /// Puts the points in the order of the places, and makes their terms.
     #[inline(always)]
-    pub(super) fn sort<S: Simd, M: Norm, const W: usize>(
+    pub(super) fn sort<S: Simd, M: Measure, const TILES: usize>(
         &mut self,
         simd: S,
-        norm: M,
-        points: &mut Vec<Point<W>>,
+        measure: M,
+        points: &mut Vec<Point<TILES>>,
     ) {
         if points.len() < self.len {
             let none = Point {
-                terms: [0.0; W],
+                terms: [[0.0; TILE]; TILES],
                 row: 0,
                 across: 0.0,
             };
@@ -264,17 +261,16 @@ impl Bins {
             let start = &mut self.starts[index(place, self.n_halves) + 1];
             let point = &mut points[*start as usize];
             *start += 1;
-            let columns = &self.columns[TILE * (place >> 16) as usize..][..W];
-            let mut at = 0;
-            while at + 8 <= W {
-                let ahead = i32x8::from_slice(simd, &columns[at..at + 8]) - column;
-                let terms = norm.terms(ahead.to_float::<f32x8<S>>() * STEP);
-                terms.store_slice(&mut point.terms[at..at + 8]);
-                at += 8;
+            let columns = &self.columns[TILE * (place >> 16) as usize..][..TILE * TILES];
+            let mut places = [f32x4::splat(simd, 0.0); TILES];
+            for tile in 0..TILES {
+                let ahead = i32x4::from_slice(simd, &columns[tile * TILE..][..TILE]) - column;
+                places[tile] = ahead.to_float::<f32x4<S>>() * STEP;
             }
-            let ahead = i32x4::from_slice(simd, &columns[at..at + 4]) - column;
-            let terms = norm.terms(ahead.to_float::<f32x4<S>>() * STEP);
-            terms.store_slice(&mut point.terms[at..at + 4]);
+            let terms = measure.terms(places);
+            for tile in 0..TILES {
+                terms[tile].store_slice(&mut point.terms[tile]);
+            }
             point.row = row;
             point.across = across;
         }
@@ -287,7 +283,7 @@ const ASCENDING: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 1
 /// In which groups of so many pixels sixteen points lie, from their distances to the middle of the first pixel; the
 /// first `around` groups lie before it. What lies before those may come out as the first one or as very many.
 #[inline(always)]
-fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, (pixels, around): (usize, usize)) -> u32x16<S> {
+fn bin<S: Simd>(ahead: i32x16<S>, pixel: f32, pixels: usize, around: usize) -> u32x16<S> {
     let group = pixels as f32;
     let bins =
         ahead.to_float::<f32x16<S>>() * (pixel * group).recip() + (around as f32 + 0.5 / group);

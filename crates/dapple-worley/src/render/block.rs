@@ -1,20 +1,20 @@
 //! A block: a few columns of a band, whose feature points are made once.
 
+use super::area::Area;
 use super::bins::Bins;
-use super::sheet::Sheet;
-use super::shortlist::Shortlist;
-use super::sieve::{Keep, PixelBox, PointList, Points};
+use super::cull::{PixelBox, PointList};
+use super::flat::{FlatPoints, Thinning};
+use super::kernel::Candidate;
 use super::splat::Splat;
+use super::square::{Guess, Plan};
 use super::table::{CellBox, Table};
-use super::thin::Rivals;
-use super::tile::{Guess, Tile};
-use super::{LANES, Line, Output, Picture};
-use crate::fixed::{STEP, STEPS};
-use crate::metric::{Norm as _, with_norm};
-use crate::{Axes, Feature, LIMIT, Space};
+use super::track::Lookup;
+use super::{Band, LANES, Output, Picture};
+use crate::fixed::{MOST_AXES, STEPS};
+use crate::search::{Hit, Name};
+use crate::{LIMIT, Metric};
 use core::ops::Range;
-use fearless_simd::{Level, dispatch};
-use std::sync::Arc;
+use fearless_simd::Level;
 
 /// The most cells of a block, with its neighborhood; where there are more, a pixel is larger than a cell.
 pub(super) const MOST_CELLS: u128 = 1 << 16;
@@ -22,321 +22,353 @@ pub(super) const MOST_CELLS: u128 = 1 << 16;
 /// The most cells along an axis, so that steps fit into 32 bits.
 pub(super) const LONGEST_SIDE: usize = 1000;
 
-/// The most columns and rows of a tile.
-const LARGE_TILE: usize = 32;
-
-/// Tiles of this many columns are large if they are not wider than this many steps.
-const LARGE_TILE_STEPS: i32 = STEPS * 3 / 4;
+/// Slices are filled together if they are no further apart than this many steps.
+const DEEPEST: i32 = STEPS * 5 / 16;
 
 /// A few columns of a band.
-pub(super) struct Block<'a, const N: usize>
-where
-    Axes: Space<N>,
-{
-    pub(super) picture: &'a Picture<'a, N>,
+pub(super) struct Block<'a> {
+    /// Its band, or those of several slices with the same columns and rows.
+    pub(super) bands: &'a [Band<'a>],
     pub(super) level: Level,
-    pub(super) columns: &'a Line,
-    /// The rows of the band, along every axis.
-    pub(super) rows: &'a [Arc<Line>; N],
-    pub(super) n_rows: usize,
-    /// The first row of the band, in the window.
-    pub(super) first: usize,
     /// The columns of the block, in the window.
     pub(super) range: Range<usize>,
 }
 
-/// What a thread works with, kept from block to block.
-pub(super) struct Memory<const N: usize> {
-    pub(super) table: Table<N>,
-    /// The points about a tile whose neighborhood had to grow.
-    pub(super) wide_table: Table<N>,
-    /// Those that matter to the squares about a tile, from the largest to the smallest, and the limit of their keys.
-    pub(super) lists: [(PointList<N>, f32); SQUARES.len()],
-    /// Those that matter to a tile.
-    pub(super) list: PointList<N>,
-    /// The same, thinned.
-    pub(super) thinned: PointList<N>,
-    pub(super) rivals: Rivals,
-    pub(super) shortlist: Shortlist<N>,
-    pub(super) sheet: Sheet,
-    pub(super) near: Vec<f32>,
+/// Per-thread scratch memory, kept from block to block.
+pub(super) struct Memory {
+    pub(super) table: Table,
+    /// The points about a square whose neighborhood had to grow.
+    pub(super) wide_table: Table,
+    /// Whether the candidates are from there.
+    pub(super) is_wide: bool,
+    /// The candidates of a square, and the corner that they are counted from in the plane of the picture, in steps.
+    pub(super) list: PointList,
+    pub(super) square: FlatPoints,
+    pub(super) low: [i32; MOST_AXES],
+    /// The candidates of a tile.
+    pub(super) tile_list: PointList,
+    pub(super) tile: FlatPoints,
+    pub(super) candidates: Vec<Candidate>,
+    pub(super) lookup: Lookup,
+    pub(super) thinning: Thinning,
+    /// Pixels that need points further away.
+    pub(super) unknown: Vec<Area>,
     pub(super) runs: Vec<Range<usize>>,
     /// The points in the order of the pixels that they are near to.
     pub(super) bins: Bins,
     /// The coordinates of the columns of the block, in steps from the lower corner of the table, and those of the rows
     /// of the band along the other axes; the last one is repeated to fill a register.
-    pub(super) lines: [Vec<i32>; N],
+    pub(super) lines: [Vec<i32>; MOST_AXES],
+    /// The coordinates of several slices along the axes across them.
+    pub(super) slices: Vec<[i32; MOST_AXES]>,
+    n_axes: usize,
 }
 
-impl<const N: usize> Memory<N> {
+impl Memory {
     pub(super) fn new() -> Self {
         Self {
             table: Table::new(),
             wide_table: Table::new(),
-            lists: core::array::from_fn(|_| (PointList::new(), 0.0)),
+            is_wide: false,
             list: PointList::new(),
-            thinned: PointList::new(),
-            rivals: Rivals::new(),
-            shortlist: Shortlist::new(),
-            sheet: Sheet::new(),
-            near: Vec::new(),
+            square: FlatPoints::new(),
+            low: [0; MOST_AXES],
+            tile_list: PointList::new(),
+            tile: FlatPoints::new(),
+            candidates: Vec::new(),
+            lookup: Lookup::new(),
+            thinning: Thinning::new(),
+            unknown: Vec::new(),
             runs: Vec::new(),
             bins: Bins::new(),
             lines: core::array::from_fn(|_| Vec::new()),
+            slices: Vec::new(),
+            n_axes: 0,
         }
     }
 
-    /// Where the pixels of some columns of the block and rows of the band lie.
-    pub(super) fn pixel_box(&self, columns: Range<usize>, rows: Range<usize>) -> PixelBox<N> {
+    /// Where the pixels of an area lie, in some of the slices.
+    #[inline]
+    pub(super) fn pixel_box(&self, area: &Area) -> PixelBox {
         let mut pixels = PixelBox {
-            low: [0; N],
-            high: [0; N],
+            n_axes: self.n_axes,
+            low: [0; MOST_AXES],
+            high: [0; MOST_AXES],
         };
-        for (axis, line) in self.lines.iter().enumerate() {
-            let range = if axis == 0 { &columns } else { &rows };
+        for axis in 0..self.n_axes {
+            let line = &self.lines[axis];
+            let range = if axis == 0 { &area.columns } else { &area.rows };
             let [a, b] = [line[range.start], line[range.end - 1]];
             (pixels.low[axis], pixels.high[axis]) = (a.min(b), a.max(b));
         }
+        if let Some([first, others @ ..]) = self.slices.get(area.slices.clone()) {
+            for axis in 2..self.n_axes {
+                (pixels.low[axis], pixels.high[axis]) = (first[axis], first[axis]);
+                for other in others {
+                    pixels.low[axis] = pixels.low[axis].min(other[axis]);
+                    pixels.high[axis] = pixels.high[axis].max(other[axis]);
+                }
+            }
+        }
         pixels
     }
-}
 
-/// The sides of the squares of pixels for which points are sifted before they are for a tile.
-const SQUARES: [usize; 2] = [64, 32];
+    /// The axis across several slices.
+    fn deep_axis(&self) -> Option<usize> {
+        let (first, last) = (self.slices.first()?, self.slices.last()?);
+        let axes = 2..self.n_axes;
+        // Slices in one place are told apart by none; the third does.
+        Some(
+            axes.clone()
+                .find(|&axis| first[axis] != last[axis])
+                .unwrap_or(axes.start),
+        )
+    }
 
-/// Squares are not wider than this many steps: in wider ones, almost all points matter.
-const WIDEST_SQUARE: i32 = STEPS + STEPS / 4;
-
-impl<const N: usize> Block<'_, N>
-where
-    Axes: Space<N>,
-{
-    /// Fills the pixels of the block; `out` has the rows of the band.
-    pub(super) fn render(&self, out: &mut Output<'_, N>, memory: &mut Memory<N>) {
-        let lattice = &self.picture.worley.lattice;
-        // The inner loops know one, two and four; those that tell which points they are, two and four.
-        let depth = match (&*out, out.depth()) {
-            (Output::Values(..), 1) => 1,
-            (_, ..=2) => 2,
-            _ => 4,
+    /// Takes down where the columns of a block and the rows of its band lie, from the lower corner of some cells.
+    fn take_lines(&mut self, block: &Block<'_>, cells: &CellBox) {
+        self.n_axes = cells.n_axes;
+        let band = &block.bands[0];
+        let steps = |axis: usize, (cell, steps): (i64, i32)| {
+            ((cell - cells.first[axis]) as i32) * STEPS + steps
         };
-        let guess = Guess::new(lattice, self.middle(), depth);
-        let splat = Splat::new(self, guess.distance).filter(|_| matches!(out, Output::Values(..)));
-        let reach = splat.map_or(0, |splat| splat.reach.ceil() as i32);
-        let ring = guess.ring.max(reach);
-        let Some(cells) = self.cells(ring) else {
-            self.one_by_one(0..self.n_rows, self.range.clone(), out);
-            return;
-        };
-        memory.wide_table.wants_ids = out.wants_ids();
-        for axis in 0..N {
+        self.slices.clear();
+        if block.bands.len() > 1 {
+            let slices = block.bands.iter().map(|band| {
+                let mut slice = [0; MOST_AXES];
+                for axis in 2..cells.n_axes {
+                    slice[axis] = steps(axis, band.rows[axis].places[0]);
+                }
+                slice
+            });
+            self.slices.extend(slices);
+        }
+        for axis in 0..cells.n_axes {
             let places = match axis {
-                0 => &self.columns.places[self.range.clone()],
-                _ => &self.rows[axis].places,
+                0 => &band.columns.places[block.range.clone()],
+                _ => &band.rows[axis].places,
             };
-            let steps = places
-                .iter()
-                .map(|&(cell, steps)| ((cell - cells.first[axis]) as i32) * STEPS + steps);
-            let line = &mut memory.lines[axis];
+            let steps = places.iter().map(|&place| steps(axis, place));
+            let line = &mut self.lines[axis];
             line.clear();
             line.extend(steps);
             let last = line.last().copied().unwrap_or(0);
             line.resize(line.len() + LANES, last);
         }
+    }
+}
+
+impl Block<'_> {
+    /// Fills the pixels of the block; `outs` have the rows of its bands.
+    pub(super) fn render(&self, outs: &mut [Output<'_>], memory: &mut Memory) {
+        let mut first = 0;
+        while first < self.bands.len() {
+            let n = self.n_together(first, &outs[first]);
+            let part = Block {
+                bands: &self.bands[first..first + n],
+                level: self.level,
+                range: self.range.clone(),
+            };
+            part.render_together(&mut outs[first..first + n], memory);
+            first += n;
+        }
+    }
+
+    /// How many slices from the first one on can be filled from one list of candidates.
+    fn n_together(&self, first: usize, out: &Output<'_>) -> usize {
+        if first + 1 == self.bands.len() {
+            return 1;
+        }
+        let bands = &self.bands[first..];
+        let is_single = !matches!(out, Output::Values(..))
+            || !bands[0].picture.basis.metric().is_exact_sum()
+            || self.splat(out, self.guess(out)).is_some();
+        if is_single {
+            return 1;
+        }
+        let place = |band: &Band<'_>, axis: usize| {
+            let (cell, steps) = band.rows[axis].places[0];
+            (cell as f64) * f64::from(STEPS) + f64::from(steps)
+        };
+        let axes = 2..bands[0].rows.len();
+        let far = |band: &Band<'_>, axis: usize| (place(band, axis) - place(&bands[0], axis)).abs();
+        // Only along one of the axes across them.
+        let next = bands.get(1).unwrap_or(&bands[0]);
+        let deep = axes.clone().find(|&axis| far(next, axis) > 0.0);
+        let is_near = |band: &&Band<'_>| {
+            axes.clone().all(|axis| match far(band, axis) {
+                far if Some(axis) == deep => far <= f64::from(DEEPEST),
+                far => far == 0.0,
+            }) && band.rows.iter().all(|rows| rows.is_finite)
+        };
+        bands.iter().take_while(is_near).count().max(1)
+    }
+
+    /// The greatest n of `F_n` that the inner loops find: one, two or four; those that tell which points they are, two or
+    /// four.
+    fn depth(out: &Output<'_>) -> usize {
+        match (out, out.depth()) {
+            (Output::Values(..), 1) => 1,
+            (_, ..=2) => 2,
+            _ => LIMIT,
+        }
+    }
+
+    /// How far away the points of the pixels in the middle are about.
+    fn guess(&self, out: &Output<'_>) -> Guess {
+        let Picture { basis, section, .. } = self.bands[0].picture;
+        Guess::new(basis, self.middle(), section.n_axes, Self::depth(out))
+    }
+
+    /// How to fill the block if its cells are small.
+    fn splat(&self, out: &Output<'_>, guess: Guess) -> Option<Splat> {
+        let is_values = matches!(out, Output::Values(..));
+        Splat::new(self, guess.distance).filter(|_| is_values)
+    }
+
+    /// Fills the pixels of slices that lie near one another.
+    fn render_together(&self, outs: &mut [Output<'_>], memory: &mut Memory) {
+        let Picture { basis, section, .. } = self.bands[0].picture;
+        let metric = basis.metric();
+        let is_values = matches!(outs[0], Output::Values(..));
+        let wants_ids = outs[0].wants_ids();
+        let depth = Self::depth(&outs[0]);
+        let guess = self.guess(&outs[0]);
+        let splat = self.splat(&outs[0], guess);
+        let reach = splat.map_or(0, |splat| splat.reach.ceil() as i32);
+        // Powers take so long that no other than values gain anything side by side.
+        let is_single = !is_values && matches!(metric, Metric::Minkowski(_));
+        let cells = self.cells(guess.ring.max(reach));
+        let Some(cells) = cells.filter(|_| !is_single) else {
+            self.one_by_one(&self.all(), outs);
+            return;
+        };
+        memory.take_lines(self, &cells);
         let splat = splat.filter(|splat| splat.is_even(&memory.lines));
-        if let (Output::Values(values, rows), Some(splat)) = (&mut *out, &splat) {
-            splat.render(self, &cells, (values, rows), memory);
+        if let (Output::Values(values, rows), Some(splat)) = (&mut outs[0], &splat) {
+            splat.render(self, &cells, values, rows, memory);
             return;
         }
         // The picture before may be of the same cells.
-        if !memory.table.has(&cells, out.wants_ids()) {
-            memory.table.wants_ids = out.wants_ids();
-            dispatch!(self.level, simd => memory.table.fill(simd, lattice, cells));
+        if !memory.table.has(&cells, wants_ids) {
+            memory.table.wants_ids = wants_ids;
+            basis.fill(self.level, &mut memory.table, cells);
         }
-        if matches!(out, Output::Values(..)) && self.sheet((depth, guess), (out, memory)) {
-            return;
-        }
-        let size = self.tile_size(&memory.lines[0]);
-        let all = (0..self.range.len(), 0..self.n_rows);
-        self.squares(all, (depth, guess, size), (out, memory), (0, None));
+        memory.square.wants_numbers = !is_values;
+        memory.tile.wants_numbers = !is_values;
+        let plan = Plan {
+            depth,
+            guess,
+            metric,
+            // The terms of the axes across the picture are joined before those of the rows.
+            row_axis: section
+                .row_axis()
+                .filter(|&axis| section.n_axes < 4 || axis == 1),
+            tile: [0; 2],
+            deep_axis: memory.deep_axis(),
+        };
+        self.squares(plan, outs, memory);
     }
 
-    /// Fills the pixels of a rectangle, columns of the block and rows of the band, square by square, and the last ones
-    /// tile by tile. `from` is the list with the points that matter, if there is one.
-    fn squares(
-        &self,
-        (columns, rows): (Range<usize>, Range<usize>),
-        (depth, guess, size): (usize, Guess, [usize; 2]),
-        (out, memory): (&mut Output<'_, N>, &mut Memory<N>),
-        (level, from): (usize, Option<usize>),
-    ) {
-        let Some(&side) = SQUARES.get(level) else {
-            let [width, height] = size;
-            for row in rows.clone().step_by(height) {
-                for column in columns.clone().step_by(width) {
-                    let tile = Tile {
-                        block: self,
-                        depth,
-                        rows: row..rows.end.min(row + height),
-                        columns: column..columns.end.min(column + width),
-                        guess,
-                    };
-                    tile.render(out, memory, from);
-                }
-            }
-            return;
-        };
-        let first = memory.pixel_box(
-            columns.start..columns.end.min(columns.start + side),
-            rows.start..rows.end.min(rows.start + side),
-        );
-        let is_wide = (0..N).any(|axis| first.high[axis] - first.low[axis] > WIDEST_SQUARE);
-        if is_wide || side <= size[0] {
-            let rectangle = (columns, rows);
-            return self.squares(
-                rectangle,
-                (depth, guess, size),
-                (out, memory),
-                (level + 1, from),
-            );
+    /// All pixels of the block.
+    pub(super) fn all(&self) -> Area {
+        Area {
+            columns: 0..self.range.len(),
+            rows: 0..self.bands[0].n_rows,
+            slices: 0..self.bands.len(),
         }
-        for row in rows.clone().step_by(side) {
-            for column in columns.clone().step_by(side) {
-                let columns = column..columns.end.min(column + side);
-                let rows = row..rows.end.min(row + side);
-                let pixels = memory.pixel_box(columns.clone(), rows.clone());
-                self.sift(&pixels, (depth, guess), memory, (level, from));
-                let next = (level + 1, Some(level));
-                self.squares((columns, rows), (depth, guess, size), (out, memory), next);
-            }
-        }
-    }
-
-    /// Makes the list of a square.
-    fn sift(
-        &self,
-        pixels: &PixelBox<N>,
-        (depth, guess): (usize, Guess),
-        memory: &mut Memory<N>,
-        (level, from): (usize, Option<usize>),
-    ) {
-        let Memory {
-            table,
-            lists,
-            near,
-            runs,
-            ..
-        } = memory;
-        let (larger, smaller) = lists.split_at_mut(level);
-        let (list, limit) = &mut smaller[0];
-        let norm_border;
-        let run;
-        let points = match from {
-            Some(from) => {
-                norm_border = None;
-                run = 0..larger[from].0.len;
-                *limit = larger[from].1;
-                larger[from].0.points(&run, table.wants_ids)
-            }
-            None => {
-                let cells = pixels.cells(guess.ring);
-                norm_border = Some(pixels.border(cells) as f32 * STEP);
-                table.runs(cells, runs);
-                Points {
-                    steps: &table.steps,
-                    numbers: None,
-                    runs,
-                    wants_numbers: table.wants_ids,
-                }
-            }
-        };
-        with_norm!(self.picture.worley.metric, norm => {
-            if let Some(border) = norm_border {
-                *limit = norm.tightened(norm.key_along_one_axis(border));
-            }
-            dispatch!(self.level, simd => {
-                list.sift(simd, norm, points, (pixels, Keep::Nearest(depth)), near);
-            });
-        });
     }
 
     /// The cell in the middle.
-    fn middle(&self) -> [i64; N] {
-        core::array::from_fn(|axis| match axis {
-            0 => self.columns.places[self.range.start + self.range.len() / 2].0,
-            _ => self.rows[axis].places[self.n_rows / 2].0,
-        })
+    fn middle(&self) -> [i64; MOST_AXES] {
+        let mut middle = [0; MOST_AXES];
+        let band = &self.bands[0];
+        middle[0] = band.columns.places[self.range.start + self.range.len() / 2].0;
+        for axis in 1..band.rows.len() {
+            middle[axis] = band.rows[axis].places[band.n_rows / 2].0;
+        }
+        middle
     }
 
     /// The cells that the block needs, if it can be filled from a table.
-    fn cells(&self, ring: i32) -> Option<CellBox<N>> {
-        let is_finite = self.columns.is_finite && self.rows.iter().all(|rows| rows.is_finite);
-        if !is_finite || !self.picture.plane.is_upright() {
+    fn cells(&self, ring: i32) -> Option<CellBox> {
+        let band = &self.bands[0];
+        let is_finite = band.columns.is_finite && band.rows.iter().all(|rows| rows.is_finite);
+        if !is_finite || !band.picture.section.is_upright() {
             return None;
         }
+        let n_axes = band.rows.len();
         let mut cells = CellBox {
-            first: [0; N],
-            last: [0; N],
+            n_axes,
+            first: [0; MOST_AXES],
+            last: [0; MOST_AXES],
         };
-        for axis in 0..N {
+        for axis in 0..n_axes {
             [cells.first[axis], cells.last[axis]] = match axis {
-                0 => self.columns.cells(self.range.clone()),
-                _ => self.rows[axis].cells(0..self.n_rows),
+                0 => band.columns.cells(self.range.clone()),
+                _ => band.rows[axis].cells(0..band.n_rows),
             };
         }
+        for slice in &self.bands[1..] {
+            for axis in 2..n_axes {
+                let (cell, _) = slice.rows[axis].places[0];
+                cells.first[axis] = cells.first[axis].min(cell);
+                cells.last[axis] = cells.last[axis].max(cell);
+            }
+        }
         let cells = cells.widened(i64::from(ring));
-        let is_small =
-            cells.n_cells() <= MOST_CELLS && (0..N).all(|axis| cells.side(axis) <= LONGEST_SIDE);
+        let is_small = cells.n_cells() <= MOST_CELLS
+            && (0..n_axes).all(|axis| cells.side(axis) <= LONGEST_SIDE);
         is_small.then_some(cells)
     }
 
-    /// The columns and rows of a tile: fewer, where pixels are further apart.
-    fn tile_size(&self, columns: &[i32]) -> [usize; 2] {
-        let n = self.range.len();
-        let width = |n_columns: usize| (columns[n_columns.min(n) - 1] - columns[0]).abs();
-        if width(LARGE_TILE) <= LARGE_TILE_STEPS {
-            return [LARGE_TILE; 2];
-        }
-        match width(LANES) as f32 * STEP {
-            ..0.5 => [LANES, LANES],
-            ..1.5 => [LANES, LANES / 2],
-            _ => [LANES, LANES / 4],
-        }
-    }
-
-    /// Fills pixels each on its own: rows of the band, columns of the window.
-    pub(super) fn one_by_one(
-        &self,
-        rows: Range<usize>,
-        columns: Range<usize>,
-        out: &mut Output<'_, N>,
-    ) {
-        for row in rows {
-            for column in columns.clone() {
-                self.one([column, row], out);
+    /// Fills pixels each on its own.
+    pub(super) fn one_by_one(&self, area: &Area, outs: &mut [Output<'_>]) {
+        for slice in area.slices.clone() {
+            for row in area.rows.clone() {
+                for column in area.columns.clone() {
+                    self.one(slice, self.range.start + column, row, &mut outs[slice]);
+                }
             }
         }
     }
 
-    /// Fills one pixel: a column of the window, a row of the band.
-    pub(super) fn one(&self, [column, row]: [usize; 2], out: &mut Output<'_, N>) {
-        let worley = self.picture.worley;
-        let place = self.picture.place(column, self.first + row);
+    /// Fills one pixel of a slice: a column of the window, a row of the band.
+    pub(super) fn one(&self, slice: usize, column: usize, row: usize, out: &mut Output<'_>) {
+        let band = &self.bands[slice];
+        let Picture { basis, section, .. } = band.picture;
+        let place = band.picture.place(column, band.first + row);
+        let nearest = |n: usize| {
+            let mut hits = [Hit::NONE; LIMIT];
+            if let Some(place) = &place {
+                basis.nearest(place, &mut hits[..n]);
+            } else {
+                hits.fill(Hit::NOWHERE);
+            }
+            hits
+        };
+        let n = section.n_axes;
         match out {
-            Output::Values(values, rows) => values.put_one(worley, place, &mut rows[row][column]),
+            Output::Values(values, rows) => values.put_one(basis, place, &mut rows[row][column]),
             Output::Gradients(tone, rows) => {
-                let gradient = place.map(|place| tone.gradient_at(worley, place));
-                rows[row][column] = gradient.unwrap_or([f32::NAN; N]);
+                let vectors = nearest(tone.n_hits()).map(|hit| hit.vector);
+                let gradient = tone.gradient(basis.metric(), &vectors);
+                let gradient = place.map_or([f32::NAN; MOST_AXES], |_| gradient);
+                rows[row][column * n..][..n].copy_from_slice(&gradient[..n]);
             }
             Output::Features(features) => {
-                let hits = place.map(|place| worley.hits::<LIMIT>(place));
-                for (rank, features) in features.iter_mut().enumerate() {
-                    let (distance, vector, id) =
-                        hits.map_or((f32::NAN, [f32::NAN; N], 0), |hits| {
-                            let Feature { distance, id, .. } = worley.feature(hits[rank]);
-                            (distance, hits[rank].vector, id)
-                        });
-                    features.put([column, row], distance, vector, id);
+                let hits = nearest(LIMIT);
+                for (hit, features) in hits.iter().zip(features) {
+                    if let Some(out) = features.distance.get_mut(row) {
+                        let distance = || basis.metric().distance(hit.key);
+                        out[column] = place.map_or(f32::NAN, |_| distance());
+                    }
+                    if let Some(out) = features.vector.get_mut(row) {
+                        out[column * n..][..n].copy_from_slice(&hit.vector[..n]);
+                    }
+                    if let Some(out) = features.id.get_mut(row) {
+                        out[column] = hit.name.map_or(0, Name::id);
+                    }
                 }
             }
         }

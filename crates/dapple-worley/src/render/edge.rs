@@ -8,14 +8,15 @@
 //! nearest, the pixel is computed as [`Worley::edge_distance`] does: from whole numbers of steps, exactly up to the root
 //! and the quotient.
 
+use super::basis::first;
 use super::block::{LONGEST_SIDE, MOST_CELLS};
+use super::square::Guess;
 use super::table::{CellBox, Table};
-use super::tile::Guess;
-use super::{BAND_ROWS, BLOCK_COLUMNS, LANES, Line, Picture};
-use crate::fixed::{STEP, STEP_BITS, STEPS, cells};
-use crate::{Axes, FeatureView, Plane, Space, Worley};
+use super::{BAND_ROWS, BLOCK_COLUMNS, LANES, Line, Output, Picture};
+use crate::features::{FeatureRows, flattened};
+use crate::fixed::{MOST_AXES, STEP, STEP_BITS, STEPS, cells};
 use core::ops::Range;
-use dapple_raster::{Raster, RasterError, RasterViewMut, Window, simd};
+use dapple_raster::{Raster, RasterError, RasterViewMut, simd};
 use fearless_simd::{dispatch, f32x16, f64x8, i32x16, prelude::*};
 use std::sync::Arc;
 
@@ -26,22 +27,20 @@ const ERROR: f64 = 1.0 / (1_u64 << 44) as f64;
 /// Ways are shorter than this many cells along each axis, so that they are exact in `f32` and their squares in `f64`.
 const FARTHEST: i32 = 4;
 
-/// Fills a window of a plane with the distances to the edges of the cells of a basis whose metric is Euclidean, on all
+/// Fills a picture of a basis with `N` axes and the Euclidean metric with the distances to the edges of its cells, on all
 /// cores where the feature `rayon` is on.
-pub(crate) fn render_edges<const N: usize>(
-    worley: &Worley<N>,
-    plane: &Plane<N>,
-    window: &Window,
+pub(super) fn render_edges<const N: usize>(
+    picture: &Picture<'_>,
     out: RasterViewMut<'_, f32>,
-) -> Result<(), RasterError>
-where
-    Axes: Space<N>,
-{
+) -> Result<(), RasterError> {
     let bands = out.bands(BAND_ROWS as u32).zip((0..).step_by(BAND_ROWS));
     let bands: Vec<_> = bands.collect();
     let fill = |memory: &mut Memory<N>, (mut out, first): (RasterViewMut<'_, f32>, i64)| {
-        let window = window.crop([0, first], out.size())?;
-        let band = Band::new(worley, plane, &window)?;
+        let window = picture.window.crop([0, first], out.size())?;
+        let band = Band::new(Picture {
+            window: &window,
+            ..*picture
+        })?;
         let mut rows: Vec<_> = out.rows_mut().collect();
         for start in (0..window.size[0] as usize).step_by(BLOCK_COLUMNS) {
             let end = (start + BLOCK_COLUMNS).min(window.size[0] as usize);
@@ -64,11 +63,8 @@ where
 }
 
 /// A band of rows, with the nearest point of each pixel.
-struct Band<'a, const N: usize>
-where
-    Axes: Space<N>,
-{
-    picture: Picture<'a, N>,
+struct Band<'a, const N: usize> {
+    picture: Picture<'a>,
     columns: Arc<Line>,
     /// Along every axis.
     rows: [Arc<Line>; N],
@@ -78,7 +74,7 @@ where
 
 /// Per-thread scratch memory.
 struct Memory<const N: usize> {
-    table: Table<N>,
+    table: Table,
     /// The points of the table in a row of cells.
     found: Vec<Range<usize>>,
     /// The coordinates of the columns, and of the rows along the other axes, in steps from the corner of the table. After
@@ -124,25 +120,20 @@ struct Edge<const N: usize> {
     half: f64,
 }
 
-impl<'a, const N: usize> Band<'a, N>
-where
-    Axes: Space<N>,
-{
-    fn new(
-        worley: &'a Worley<N>,
-        plane: &'a Plane<N>,
-        window: &'a Window,
-    ) -> Result<Self, RasterError> {
-        let mut ways = Raster::filled(window.size, [0.0; N])?;
-        let nearest = FeatureView {
-            vector: Some(ways.view_mut()),
-            ..FeatureView::default()
-        };
-        worley.render_features(plane, window, [nearest])?;
-        let picture = worley.feature_picture(plane, window);
+impl<'a, const N: usize> Band<'a, N> {
+    fn new(picture: Picture<'a>) -> Result<Self, RasterError> {
+        let mut ways = Raster::filled(picture.window.size, [0.0; N])?;
+        let bands = picture.bands(Some(ways.view_mut())).map(|rows| {
+            Output::Features(vec![FeatureRows {
+                vector: flattened(rows),
+                ..FeatureRows::default()
+            }])
+        });
+        picture.render(bands.collect());
+        let n_rows = picture.window.size[1] as usize;
         Ok(Self {
             columns: picture.columns(None),
-            rows: picture.rows([0, window.size[1] as usize], None),
+            rows: core::array::from_fn(|axis| picture.rows(axis, 0, n_rows, None)),
             picture,
             ways,
         })
@@ -150,13 +141,16 @@ where
 
     /// Fills some columns.
     fn fill(&self, range: Range<usize>, out: &mut [&mut [f32]], memory: &mut Memory<N>) {
-        let middle = core::array::from_fn(|axis| match axis {
-            0 => self.columns.places[range.start + range.len() / 2].0,
-            _ => self.rows[axis].places[out.len() / 2].0,
-        });
-        let lattice = &self.picture.worley.lattice;
+        let mut middle = [0; MOST_AXES];
+        for axis in 0..N {
+            middle[axis] = match axis {
+                0 => self.columns.places[range.start + range.len() / 2].0,
+                _ => self.rows[axis].places[out.len() / 2].0,
+            };
+        }
+        let basis = self.picture.basis;
         // The nearest point is hardly ever further away than the guess, nor an edge that matters from it than twice that.
-        let ring = Guess::new(lattice, middle, 2).ring;
+        let ring = Guess::new(basis, middle, N, 2).ring;
         let Some(cells) = self.cells(&range, 3 * ring + 1) else {
             for row in 0..out.len() {
                 self.one_by_one(row, range.clone(), out);
@@ -165,7 +159,7 @@ where
         };
         memory.take_lines(&cells, &self.columns.places[range.clone()], &self.rows);
         memory.table.wants_ids = false;
-        dispatch!(simd::level(), simd => memory.table.fill(simd, lattice, cells));
+        basis.fill(simd::level(), &mut memory.table, cells);
         self.find_runs(&range, out, memory);
         for piece in 0..memory.pieces.len() {
             memory.find_edges(piece);
@@ -174,19 +168,22 @@ where
     }
 
     /// The cells that a block and its neighborhood need, if it can be filled from a table.
-    fn cells(&self, range: &Range<usize>, ring: i32) -> Option<CellBox<N>> {
+    fn cells(&self, range: &Range<usize>, ring: i32) -> Option<CellBox> {
         let is_finite = self.columns.is_finite && self.rows.iter().all(|rows| rows.is_finite);
-        if !is_finite || !self.picture.plane.is_upright() {
+        if !is_finite || !self.picture.section.is_upright() {
             return None;
         }
-        let ends: [[i64; 2]; N] = core::array::from_fn(|axis| match axis {
-            0 => self.columns.cells(range.clone()),
-            _ => self.rows[axis].cells(0..self.rows[axis].places.len()),
-        });
-        let cells = CellBox {
-            first: ends.map(|[first, _]| first),
-            last: ends.map(|[_, last]| last),
+        let mut cells = CellBox {
+            n_axes: N,
+            first: [0; MOST_AXES],
+            last: [0; MOST_AXES],
         };
+        for axis in 0..N {
+            [cells.first[axis], cells.last[axis]] = match axis {
+                0 => self.columns.cells(range.clone()),
+                _ => self.rows[axis].cells(0..self.rows[axis].places.len()),
+            };
+        }
         let cells = cells.widened(i64::from(ring));
         let is_small =
             cells.n_cells() <= MOST_CELLS && (0..N).all(|axis| cells.side(axis) <= LONGEST_SIDE);
@@ -248,14 +245,15 @@ where
     #[cold]
     fn one_by_one(&self, row: usize, columns: Range<usize>, out: &mut [&mut [f32]]) {
         let Picture {
-            worley,
-            plane,
+            basis,
+            section,
             window,
             ..
         } = self.picture;
         for column in columns {
             let position = window.position(column as u32, row as u32);
-            out[row][column] = worley.edge_distance(plane.position(position));
+            let position = core::array::from_fn(|axis| section.coordinate(axis, position));
+            out[row][column] = basis.edge_distance(position);
         }
     }
 }
@@ -274,7 +272,7 @@ impl<const N: usize> Memory<N> {
     }
 
     /// Takes down where the columns and the rows are.
-    fn take_lines(&mut self, cells: &CellBox<N>, columns: &[(i64, i32)], rows: &[Arc<Line>; N]) {
+    fn take_lines(&mut self, cells: &CellBox, columns: &[(i64, i32)], rows: &[Arc<Line>; N]) {
         for (axis, line) in self.lines.iter_mut().enumerate() {
             let places = if axis == 0 {
                 columns
@@ -328,13 +326,16 @@ impl<const N: usize> Memory<N> {
         }
         let last = self.lines[0][columns.end - 1];
         (low[0], high[0]) = (low[0].min(last), high[0].max(last));
-        let cell = point.map(|steps| steps >> STEP_BITS);
+        let mut cell = [0; MOST_AXES];
+        for axis in 0..N {
+            cell[axis] = point[axis] >> STEP_BITS;
+        }
         if !self.table.has_cells([cell; 2]) {
             return None;
         }
         self.table.runs([cell; 2], &mut self.found);
         let mut found = self.found.iter().cloned().flatten();
-        let index = found.find(|&index| self.table.point(index) == point)?;
+        let index = found.find(|&index| first(self.table.point(index)) == point)?;
         let piece = *self.piece_of[index].get_or_insert_with(|| {
             self.pieces.push(Piece {
                 point,
@@ -362,11 +363,11 @@ impl<const N: usize> Memory<N> {
         let mut ring = 0;
         while bound == f64::INFINITY && ring < FARTHEST {
             ring += 1;
-            let Some(found) = self.table.around(piece.point, ring, &mut self.found) else {
+            let Some(found) = self.table.around(&piece.point, ring, &mut self.found) else {
                 return;
             };
             for other in found.iter().cloned().flatten() {
-                if let Some(edge) = Edge::new(piece.point, self.table.point(other)) {
+                if let Some(edge) = Edge::new(piece.point, first(self.table.point(other))) {
                     bound = bound.min(corners.farthest(&edge));
                 }
             }
@@ -377,7 +378,7 @@ impl<const N: usize> Memory<N> {
             return;
         }
         ring = ring.max(reach as i32 + 1);
-        let Some(found) = self.table.around(piece.point, ring, &mut self.found) else {
+        let Some(found) = self.table.around(&piece.point, ring, &mut self.found) else {
             return;
         };
         let start = self.edges.len();
@@ -385,7 +386,7 @@ impl<const N: usize> Memory<N> {
         let reach = (reach / f64::from(STEP)) as i64 + 1;
         let mut n_there = 0;
         for other in found.iter().cloned().flatten() {
-            let other = self.table.point(other);
+            let other = first(self.table.point(other));
             if distance_sq(piece.point, other) > reach * reach {
                 continue;
             }

@@ -1,32 +1,32 @@
 //! The inner loop: the smallest keys of sixteen pixels side by side, for several rows at once.
 
 use super::LANES;
-use super::shortlist::TILE_ROWS;
-use crate::Metric;
-use crate::fixed::STEP;
-use crate::metric::{Norm, with_norm};
+use crate::metric::Measure;
 use crate::sink::Values;
 use core::ops::Range;
-use fearless_simd::{Level, dispatch, f32x16, i32x16, prelude::*};
+use fearless_simd::{f32x16, prelude::*};
 
-/// The columns of two registers.
-const TWICE: usize = 2 * LANES;
+/// The most columns and rows of a tile: two registers.
+pub(super) const TILE: usize = 2 * LANES;
+
+/// What a point that may be among the nearest adds to the keys of a tile: the terms of the columns, and those of all other
+/// axes together for each row. What follows the last column or row means nothing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidate {
+    pub(super) columns: [f32; TILE],
+    pub(super) rows: [f32; TILE],
+}
 
 /// Some rows of a tile.
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
     /// The rows of the tile, in the band.
     pub(super) rows: Range<usize>,
-    /// The columns, in the window: at most [`LANES`], or twice as many.
+    /// The columns, in the window: at most [`LANES`], or [`TILE`].
     pub(super) columns: Range<usize>,
-    /// The coordinates of the columns, in steps.
-    pub(super) steps: &'a [i32],
-    /// The coordinate that is the smallest of them.
-    pub(super) low: i32,
-    /// The coordinates of the points that matter, along the first axis, in cells from there.
-    pub(super) points: &'a [f32],
-    /// What the rows add to the keys of each point.
-    pub(super) row_terms: &'a [[f32; TILE_ROWS]],
+    /// Which of the registers of a tile's columns comes first, 0 or 1; 0, if there are two.
+    pub(super) register: usize,
+    pub(super) candidates: &'a [Candidate],
     /// Keys from here on may be wrong.
     pub(super) limit: f32,
     pub(super) values: &'a Values,
@@ -34,64 +34,55 @@ pub(super) struct Rows<'a> {
 
 impl Rows<'_> {
     /// Fills pixels row by row, and returns the row from which on keys reach the limit: the end, if none does.
-    pub(super) fn fill(
-        &self,
-        level: Level,
-        metric: Metric,
-        depth: usize,
-        out: &mut [&mut [f32]],
-    ) -> usize {
-        with_norm!(metric, norm => match depth {
-            1 => dispatch!(level, simd => self.fill_with::<_, _, 1>(simd, norm, out)),
-            2 => dispatch!(level, simd => self.fill_with::<_, _, 2>(simd, norm, out)),
-            _ => dispatch!(level, simd => self.fill_with::<_, _, 4>(simd, norm, out)),
-        })
-    }
-
+    ///
     /// Roots take long, but while they are taken, the processor goes on to compare the next few rows: not too many at
     /// once, so that it can look that far ahead.
     #[inline(always)]
-    pub(super) fn fill_with<S: Simd, M: Norm, const K: usize>(
+    pub(super) fn fill<S: Simd, M: Measure, const K: usize>(
         &self,
         simd: S,
-        norm: M,
+        measure: M,
         out: &mut [&mut [f32]],
     ) -> usize {
-        let has_few_registers = const { <S::f32s as SimdBase<S>>::LEN < LANES };
+        if const { <S::f32s as SimdBase<S>>::LEN < LANES } {
+            return match self.columns.len() {
+                TILE => self.fill_groups::<S, M, K, 1, 2>(simd, measure, out),
+                LANES => self.fill_groups::<S, M, K, 2, 1>(simd, measure, out),
+                _ => self.fill_groups::<S, M, K, 1, 0>(simd, measure, out),
+            };
+        }
         match self.columns.len() {
-            TWICE if has_few_registers => self.fill_groups::<S, M, K, 1, 2>(simd, norm, out),
-            TWICE if K == 1 => self.fill_groups::<S, M, K, 4, 2>(simd, norm, out),
-            TWICE => self.fill_groups::<S, M, K, 2, 2>(simd, norm, out),
-            LANES if has_few_registers => self.fill_groups::<S, M, K, 2, 1>(simd, norm, out),
-            LANES => self.fill_groups::<S, M, K, 4, 1>(simd, norm, out),
-            _ => self.fill_groups::<S, M, K, 1, 0>(simd, norm, out),
+            TILE if const { K == 1 } => self.fill_groups::<S, M, K, 4, 2>(simd, measure, out),
+            TILE => self.fill_groups::<S, M, K, 2, 2>(simd, measure, out),
+            LANES => self.fill_groups::<S, M, K, 4, 1>(simd, measure, out),
+            _ => self.fill_groups::<S, M, K, 1, 0>(simd, measure, out),
         }
     }
 
     /// `R` rows and `C` registers of columns at once; none stands for a part of one.
     #[inline(always)]
-    fn fill_groups<S: Simd, M: Norm, const K: usize, const R: usize, const C: usize>(
+    fn fill_groups<S: Simd, M: Measure, const K: usize, const R: usize, const C: usize>(
         &self,
         simd: S,
-        norm: M,
+        measure: M,
         out: &mut [&mut [f32]],
     ) -> usize {
-        let mut columns = [f32x16::splat(simd, 0.0); 2];
-        for part in 0..C.max(1) {
-            let steps = i32x16::from_slice(simd, &self.steps[part * LANES..][..LANES]) - self.low;
-            columns[part] = steps.to_float::<f32x16<S>>() * STEP;
-        }
+        let register = if C == 2 { 0 } else { self.register };
         let values = self.values.lanes::<S, K>(simd);
         let out = &mut out[self.rows.clone()];
         for (group, out) in out.chunks_mut(R).enumerate() {
             let mut best = [[[f32x16::splat(simd, f32::INFINITY); K]; 2]; R];
-            for (&point, row_terms) in self.points.iter().zip(self.row_terms) {
-                let row_terms = &row_terms.as_chunks::<R>().0[group];
+            for candidate in self.candidates {
+                let row_terms = &candidate.rows.as_chunks::<R>().0[group];
                 for part in 0..C.max(1) {
-                    let column_terms = norm.terms(columns[part] - point);
+                    // Within bounds, as the compiler sees.
+                    let register = (register + part) % 2;
+                    let columns = &candidate.columns.as_chunks::<LANES>().0[register];
+                    let column_terms = f32x16::from_slice(simd, columns);
                     for row in 0..R {
                         let row_term = f32x16::splat(simd, row_terms[row]);
-                        insert(&mut best[row][part], norm.joins(column_terms, row_term));
+                        let key = measure.accumulate(column_terms, row_term);
+                        insert(&mut best[row][part], key);
                     }
                 }
             }
@@ -110,12 +101,12 @@ impl Rows<'_> {
                 };
                 let out = &mut out[self.columns.clone()];
                 match C {
-                    0 => values.put_part(norm, best[row][0], out),
-                    1 => values.put(norm, best[row][0], out),
+                    0 => values.put_part(measure, best[row][0], out),
+                    1 => values.put(measure, best[row][0], out),
                     _ => {
                         let (left, right) = out.split_at_mut(LANES);
-                        values.put(norm, best[row][0], left);
-                        values.put(norm, best[row][1], right);
+                        values.put(measure, best[row][0], left);
+                        values.put(measure, best[row][1], right);
                     }
                 }
             }

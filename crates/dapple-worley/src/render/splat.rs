@@ -10,10 +10,11 @@ use super::block::{Block, Memory};
 use super::kernel::{greater, lesser};
 use super::table::CellBox;
 use super::{BLOCK_COLUMNS, LANES};
-use crate::fixed::{STEP, STEP_BITS};
-use crate::metric::{Norm, with_norm};
+use crate::LIMIT;
+use crate::Metric;
+use crate::fixed::{MOST_AXES, STEP, STEP_BITS};
+use crate::metric::{Additive, Exact, Longest, Measure, Powers};
 use crate::sink::{ValueLanes, Values};
-use crate::{Axes, Space};
 use fearless_simd::{Level, dispatch, f32x4, f32x16, i32x4, prelude::*};
 
 /// By how much of a pixel a pixel may lie beside its place: well below what [`SURE`] leaves.
@@ -55,23 +56,19 @@ pub(super) struct Splat {
 
 impl Splat {
     /// How to fill a block whose pixels need points as far away as `distance`, if it can be filled in this way.
-    pub(super) fn new<const N: usize>(block: &Block<'_, N>, distance: f32) -> Option<Self>
-    where
-        Axes: Space<N>,
-    {
-        let plane = block.picture.plane;
-        let [u, v]: [[f64; N]; 2] = [plane.u.into(), plane.v.into()];
-        let row_axis = plane.row_axis()?;
+    pub(super) fn new(block: &Block<'_>, distance: f32) -> Option<Self> {
+        let section = &block.bands[0].picture.section;
+        let row_axis = section.row_axis()?;
         // The terms of the axes across the picture are joined before those of the rows.
-        if N == 4 && row_axis != 1 {
+        if section.n_axes == 4 && row_axis != 1 {
             return None;
         }
-        let window = block.picture.window;
-        let frequency = block.picture.frequency;
+        let window = block.bands[0].picture.window;
+        let frequency = block.bands[0].picture.frequency;
         let pixel = window.pixel * window.scale;
         let pixel = [
-            (u[0] * pixel.x * frequency) as f32,
-            (v[row_axis] * pixel.y * frequency) as f32,
+            (section.u[0] * pixel.x * frequency) as f32,
+            (section.v[row_axis] * pixel.y * frequency) as f32,
         ];
         // A tile begins half a pixel before its first pixel.
         let reach = |pixel: f32, pixels: usize| (pixels as f32 + 0.5) * pixel.abs() * SURE;
@@ -83,7 +80,7 @@ impl Splat {
                 continue;
             };
             let along = along_row.min(reach(pixel[1], HALF * halves));
-            let across = if N > 2 {
+            let across = if section.n_axes > 2 {
                 distance * SPARE
             } else {
                 f32::INFINITY
@@ -99,7 +96,7 @@ impl Splat {
     }
 
     /// Whether pixels are as evenly spaced as tiles need it: far from zero, `f64` may not tell them apart.
-    pub(super) fn is_even<const N: usize>(&self, lines: &[Vec<i32>; N]) -> bool {
+    pub(super) fn is_even(&self, lines: &[Vec<i32>; MOST_AXES]) -> bool {
         let is_even = |axis: usize, pixel: f32| {
             let line = &lines[axis][..lines[axis].len() - LANES];
             line.iter().enumerate().all(|(index, &steps)| {
@@ -111,89 +108,91 @@ impl Splat {
     }
 
     /// Fills the pixels of a block; its lines are counted from the corner of `cells`.
-    pub(super) fn render<const N: usize>(
+    pub(super) fn render(
         &self,
-        block: &Block<'_, N>,
-        cells: &CellBox<N>,
-        (values, out): (&Values, &mut [&mut [f32]]),
-        memory: &mut Memory<N>,
-    ) where
-        Axes: Space<N>,
-    {
-        let origin = cells.first;
-        let cells = self.cells(block, origin, memory);
+        block: &Block<'_>,
+        cells: &CellBox,
+        values: &Values,
+        out: &mut [&mut [f32]],
+        memory: &mut Memory,
+    ) {
+        let near = self.cells(block, cells, memory);
         let Memory { bins, lines, .. } = memory;
-        let lattice = &block.picture.worley.lattice;
+        let basis = block.bands[0].picture.basis;
+        let metric = basis.metric();
+        let [tiles, halves] = self.around;
+        let reach = Reach {
+            tiles,
+            halves,
+            key: metric.term(self.reach),
+        };
         let grid = Grid {
-            origin,
-            first: lines.each_ref().map(|line| line[0]),
-            size: [block.range.len(), block.n_rows],
+            metric,
+            reach,
+            origin: cells.first,
+            first: lines
+                .each_ref()
+                .map(|line| line.first().copied().unwrap_or(0)),
+            size: [block.range.len(), block.bands[0].n_rows],
             pixel: self.pixel,
             row_axis: self.row_axis,
         };
-        let [tiles, halves] = self.around;
-        with_norm!(block.picture.worley.metric, norm => {
-            let reach = Reach {
-                tiles,
-                halves,
-                key: norm.key_along_one_axis(self.reach),
-            };
-            bins.clear(&lines[0][..block.range.len()], block.n_rows, reach);
-            dispatch!(block.level, simd => bins.collect(simd, norm, lattice, &cells, (&grid, reach)));
-            bins.count();
-            let rows = &lines[self.row_axis];
-            if tiles == NEAR {
-                let mut points = core::mem::take(&mut bins.near);
-                dispatch!(block.level, simd => bins.sort(simd, norm, &mut points));
-                let runs = Runs::new(bins, reach, rows, &points);
-                fill_block::<_, N, 12, 3>(norm, (block, reach), runs, (values, out));
-                bins.near = points;
-            } else {
-                let mut points = core::mem::take(&mut bins.wide);
-                dispatch!(block.level, simd => bins.sort(simd, norm, &mut points));
-                let runs = Runs::new(bins, reach, rows, &points);
-                fill_block::<_, N, 20, 5>(norm, (block, reach), runs, (values, out));
-                bins.wide = points;
+        bins.clear(&lines[0][..block.range.len()], block.bands[0].n_rows, reach);
+        basis.collect(block.level, bins, &near, &grid);
+        bins.count();
+        let rows = &lines[self.row_axis];
+        if tiles == NEAR {
+            let mut points = core::mem::take(&mut bins.near);
+            match metric {
+                Metric::Minkowski(p) => {
+                    dispatch!(block.level, simd => bins.sort(simd, Powers(p), &mut points));
+                }
+                _ => dispatch!(block.level, simd => bins.sort(simd, Exact(metric), &mut points)),
             }
-        });
+            let runs = Runs::new(bins, &grid, rows, &points);
+            fill_block::<3>(block, runs, values, out);
+            bins.near = points;
+        } else {
+            let mut points = core::mem::take(&mut bins.wide);
+            match metric {
+                Metric::Minkowski(p) => {
+                    dispatch!(block.level, simd => bins.sort(simd, Powers(p), &mut points));
+                }
+                _ => dispatch!(block.level, simd => bins.sort(simd, Exact(metric), &mut points)),
+            }
+            let runs = Runs::new(bins, &grid, rows, &points);
+            fill_block::<5>(block, runs, values, out);
+            bins.wide = points;
+        }
     }
 
     /// The cells with points within reach.
-    fn cells<const N: usize>(
-        &self,
-        block: &Block<'_, N>,
-        origin: [i64; N],
-        memory: &Memory<N>,
-    ) -> CellBox<N>
-    where
-        Axes: Space<N>,
-    {
-        let pixels = memory.pixel_box(0..block.range.len(), 0..block.n_rows);
+    fn cells(&self, block: &Block<'_>, cells: &CellBox, memory: &Memory) -> CellBox {
+        let pixels = memory.pixel_box(&block.all());
         let reach = (self.reach / STEP) as i32 + 1;
-        let cell = |axis: usize, steps: i32| origin[axis] + i64::from(steps >> STEP_BITS);
-        CellBox {
-            first: core::array::from_fn(|axis| cell(axis, pixels.low[axis] - reach)),
-            last: core::array::from_fn(|axis| cell(axis, pixels.high[axis] + reach)),
+        let mut near = *cells;
+        for axis in 0..cells.n_axes {
+            let cell = |steps: i32| cells.first[axis] + i64::from(steps >> STEP_BITS);
+            near.first[axis] = cell(pixels.low[axis] - reach);
+            near.last[axis] = cell(pixels.high[axis] + reach);
         }
+        near
     }
 }
 
 /// Fills the pixels of a block from its points.
-fn fill_block<M: Norm, const N: usize, const W: usize, const TILES: usize>(
-    norm: M,
-    (block, reach): (&Block<'_, N>, Reach),
-    runs: Runs<'_, W>,
-    (values, out): (&Values, &mut [&mut [f32]]),
-) where
-    Axes: Space<N>,
-{
+fn fill_block<const TILES: usize>(
+    block: &Block<'_>,
+    runs: Runs<'_, TILES>,
+    values: &Values,
+    out: &mut [&mut [f32]],
+) {
     let range = block.range.clone();
     let n_tiles = range.len().div_ceil(TILE);
-    let limit = norm.tightened(reach.key);
     let mut whole_tiles = [[0.0; BLOCK_COLUMNS]; TILE];
     let mut unknown = [0; BLOCK_COLUMNS / TILE];
     for (tile_row, out) in out.chunks_mut(TILE).enumerate() {
-        let is_whole = out.len() == TILE && range.len() % TILE == 0;
+        let is_whole = out.len() == TILE && range.len().is_multiple_of(TILE);
         if !is_whole {
             for (pixels, out) in whole_tiles.iter_mut().zip(&*out) {
                 pixels[..range.len()].copy_from_slice(&out[range.clone()]);
@@ -204,19 +203,30 @@ fn fill_block<M: Norm, const N: usize, const W: usize, const TILES: usize>(
             Some(out) if is_whole => &mut out[range.clone()],
             _ => &mut pixels[..n_tiles * TILE],
         });
-        let unknown = &mut unknown[..n_tiles];
-        let (from, limit, to) = ((runs, tile_row), (values, limit), (pixels, &mut *unknown));
-        if N == 2 {
-            fill_by_depth::<_, W, TILES, false>(block.level, norm, from, limit, to);
-        } else {
-            fill_by_depth::<_, W, TILES, true>(block.level, norm, from, limit, to);
+        let mut tiles = TileRow {
+            index: tile_row,
+            values,
+            pixels,
+            unknown: &mut unknown[..n_tiles],
+        };
+        let level = block.level;
+        match runs.metric {
+            Metric::Minkowski(p) => {
+                let measure = Powers(p);
+                dispatch!(level, simd => fill::<_, _, LIMIT, TILES, true>(simd, measure, runs, &mut tiles));
+            }
+            Metric::Chebyshev => fill_by_depth::<_, TILES, true>(level, Longest, runs, &mut tiles),
+            metric if block.bands[0].rows.len() == 2 => {
+                fill_by_depth::<_, TILES, false>(level, Additive(metric), runs, &mut tiles);
+            }
+            metric => fill_by_depth::<_, TILES, true>(level, Additive(metric), runs, &mut tiles),
         }
         if !is_whole {
             for (pixels, out) in whole_tiles.iter().zip(&mut *out) {
                 out[range.clone()].copy_from_slice(&pixels[..range.len()]);
             }
         }
-        for (tile, &unknown) in unknown.iter().enumerate() {
+        for (tile, &unknown) in unknown[..n_tiles].iter().enumerate() {
             let mut rest = unknown;
             while rest != 0 {
                 let lane = rest.trailing_zeros() as usize;
@@ -224,8 +234,10 @@ fn fill_block<M: Norm, const N: usize, const W: usize, const TILES: usize>(
                 let [column, row] = [range.start + tile * TILE + lane % TILE, lane / TILE];
                 if column < range.end && row < out.len() {
                     let row_of_band = tile_row * TILE + row;
-                    let place = block.picture.place(column, block.first + row_of_band);
-                    values.put_one(block.picture.worley, place, &mut out[row][column]);
+                    let place = block.bands[0]
+                        .picture
+                        .place(column, block.bands[0].first + row_of_band);
+                    values.put_one(block.bands[0].picture.basis, place, &mut out[row][column]);
                 }
             }
         }
@@ -234,76 +246,87 @@ fn fill_block<M: Norm, const N: usize, const W: usize, const TILES: usize>(
 
 /// The points of a block in the order of their places.
 #[derive(Clone, Copy, Debug)]
-struct Runs<'a, const W: usize> {
+struct Runs<'a, const TILES: usize> {
+    metric: Metric,
+    /// Keys from here on may be wrong.
+    limit: f32,
     starts: &'a [u32],
     n_halves: usize,
     /// The half tiles above and below a tile that its points come from.
     halves: usize,
-    points: &'a [Point<W>],
+    points: &'a [Point<TILES>],
     /// The coordinates of the rows.
     rows: &'a [i32],
 }
 
-impl<'a, const W: usize> Runs<'a, W> {
-    fn new(bins: &'a Bins, reach: Reach, rows: &'a [i32], points: &'a [Point<W>]) -> Self {
+impl<'a, const TILES: usize> Runs<'a, TILES> {
+    fn new(bins: &'a Bins, grid: &Grid, rows: &'a [i32], points: &'a [Point<TILES>]) -> Self {
         Self {
+            metric: grid.metric,
+            limit: grid.metric.tightened(grid.reach.key),
             starts: &bins.starts,
             n_halves: bins.n_halves,
-            halves: reach.halves,
+            halves: grid.reach.halves,
             points,
             rows,
         }
     }
 }
 
-/// Fills a row of tiles, but for the pixels whose keys reach the limit, which are put down in `unknown`.
-///
-/// `DEEP`, if there are axes across the picture.
-fn fill_by_depth<M: Norm, const W: usize, const TILES: usize, const DEEP: bool>(
+/// A row of tiles.
+struct TileRow<'a> {
+    /// Which one, in the band.
+    index: usize,
+    values: &'a Values,
+    /// Its rows of pixels.
+    pixels: [&'a mut [f32]; TILE],
+    /// For each tile, the pixels whose keys reach the limit, which are not filled.
+    unknown: &'a mut [u16],
+}
+
+/// Fills a row of tiles; `DEEP`, if there may be axes across the picture.
+fn fill_by_depth<M: Measure, const TILES: usize, const DEEP: bool>(
     level: Level,
-    norm: M,
-    from: (Runs<'_, W>, usize),
-    (values, limit): (&Values, f32),
-    to: ([&mut [f32]; TILE], &mut [u16]),
+    measure: M,
+    runs: Runs<'_, TILES>,
+    tiles: &mut TileRow<'_>,
 ) {
-    let limit = (values, limit);
-    match values.tone.depth() {
-        1 => dispatch!(level, simd => fill::<_, _, 1, W, TILES, DEEP>(simd, norm, from, limit, to)),
-        2 => dispatch!(level, simd => fill::<_, _, 2, W, TILES, DEEP>(simd, norm, from, limit, to)),
-        _ => dispatch!(level, simd => fill::<_, _, 4, W, TILES, DEEP>(simd, norm, from, limit, to)),
+    match tiles.values.tone.depth() {
+        1 => dispatch!(level, simd => fill::<_, _, 1, TILES, DEEP>(simd, measure, runs, tiles)),
+        2 => dispatch!(level, simd => fill::<_, _, 2, TILES, DEEP>(simd, measure, runs, tiles)),
+        _ => dispatch!(level, simd => fill::<_, _, LIMIT, TILES, DEEP>(simd, measure, runs, tiles)),
     }
 }
 
 /// The tiles that the points of one column of tiles matter to are held in registers.
 #[inline(always)]
-fn fill<S: Simd, M: Norm, const K: usize, const W: usize, const TILES: usize, const DEEP: bool>(
+fn fill<S: Simd, M: Measure, const K: usize, const TILES: usize, const DEEP: bool>(
     simd: S,
-    norm: M,
-    (runs, tile_row): (Runs<'_, W>, usize),
-    (values, limit): (&Values, f32),
-    (mut pixels, unknown): ([&mut [f32]; TILE], &mut [u16]),
+    measure: M,
+    runs: Runs<'_, TILES>,
+    tiles: &mut TileRow<'_>,
 ) {
-    let values = values.lanes::<S, K>(simd);
+    let values = tiles.values.lanes::<S, K>(simd);
     let empty = [f32x16::splat(simd, f32::INFINITY); K];
     let mut best = [empty; TILES];
-    let rows = i32x4::from_slice(simd, &runs.rows[tile_row * TILE..][..TILE]);
-    let first = tile_row * TILE / HALF;
+    let rows = i32x4::from_slice(simd, &runs.rows[tiles.index * TILE..][..TILE]);
+    let first = tiles.index * TILE / HALF;
     let last = first + TILE / HALF + 2 * runs.halves;
-    for column in 0..unknown.len() + TILES - 1 {
+    for column in 0..tiles.unknown.len() + TILES - 1 {
         let starts = &runs.starts[column * runs.n_halves..];
         for point in &runs.points[starts[first] as usize..starts[last] as usize] {
             let ahead = (rows - point.row).to_float::<f32x4<S>>() * STEP;
-            let mut rows = norm.terms(ahead);
+            let [mut rows] = measure.terms([ahead]);
             if DEEP {
-                rows = norm.joins(rows, f32x4::splat(simd, point.across));
+                rows = measure.accumulate(rows, f32x4::splat(simd, point.across));
             }
             // Each of the four numbers four times.
             let rows = f32x16::block_splat(rows);
             let rows = rows.zip_low(rows);
             let rows = rows.zip_low(rows);
             for tile in 0..TILES {
-                let columns = f32x4::from_slice(simd, &point.terms[tile * TILE..][..TILE]);
-                let mut key = norm.joins(f32x16::block_splat(columns), rows);
+                let columns = f32x4::from_slice(simd, &point.terms[tile]);
+                let mut key = measure.accumulate(f32x16::block_splat(columns), rows);
                 for rank in 0..K {
                     let smaller = lesser(best[tile][rank], key);
                     key = greater(best[tile][rank], key);
@@ -312,7 +335,7 @@ fn fill<S: Simd, M: Norm, const K: usize, const W: usize, const TILES: usize, co
             }
         }
         if let Some(tile) = (column + 1).checked_sub(TILES) {
-            unknown[tile] = put(norm, best[0], (&values, limit), (&mut pixels, tile));
+            tiles.put(measure, &values, best[0], runs.limit, tile);
         }
         for tile in 1..TILES {
             best[tile - 1] = best[tile];
@@ -321,29 +344,33 @@ fn fill<S: Simd, M: Norm, const K: usize, const W: usize, const TILES: usize, co
     }
 }
 
-/// Puts the values of a tile; returns which of its keys reach the limit.
-#[inline(always)]
-fn put<S: Simd, M: Norm, const K: usize>(
-    norm: M,
-    keys: [f32x16<S>; K],
-    (values, limit): (&ValueLanes<S, K>, f32),
-    (pixels, tile): (&mut [&mut [f32]; TILE], usize),
-) -> u16 {
-    let left = tile * TILE;
-    let is_known = keys[K - 1].simd_lt(limit);
-    let unknown = !is_known.to_bitmask() as u16;
-    let mut lanes = [0.0; LANES];
-    if values.is_added || unknown != 0 {
-        for row in 0..TILE {
-            lanes[row * TILE..][..TILE].copy_from_slice(&pixels[row][left..left + TILE]);
+impl TileRow<'_> {
+    /// Puts the values of a tile, but for the pixels whose keys reach the limit.
+    #[inline(always)]
+    fn put<S: Simd, M: Measure, const K: usize>(
+        &mut self,
+        measure: M,
+        values: &ValueLanes<S, K>,
+        keys: [f32x16<S>; K],
+        limit: f32,
+        tile: usize,
+    ) {
+        let left = tile * TILE;
+        let is_known = keys[K - 1].simd_lt(limit);
+        let unknown = !is_known.to_bitmask() as u16;
+        let mut lanes = [0.0; LANES];
+        if values.is_added || unknown != 0 {
+            for row in 0..TILE {
+                lanes[row * TILE..][..TILE].copy_from_slice(&self.pixels[row][left..left + TILE]);
+            }
         }
+        let before = f32x16::from_slice(keys[0].simd, &lanes);
+        values.put(measure, keys, &mut lanes);
+        let after = f32x16::from_slice(keys[0].simd, &lanes);
+        is_known.select(after, before).store_slice(&mut lanes);
+        for row in 0..TILE {
+            self.pixels[row][left..left + TILE].copy_from_slice(&lanes[row * TILE..][..TILE]);
+        }
+        self.unknown[tile] = unknown;
     }
-    let before = f32x16::from_slice(keys[0].simd, &lanes);
-    values.put(norm, keys, &mut lanes);
-    let after = f32x16::from_slice(keys[0].simd, &lanes);
-    is_known.select(after, before).store_slice(&mut lanes);
-    for row in 0..TILE {
-        pixels[row][left..left + TILE].copy_from_slice(&lanes[row * TILE..][..TILE]);
-    }
-    unknown
 }

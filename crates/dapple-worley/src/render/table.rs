@@ -1,43 +1,44 @@
 //! The feature points of a box of cells, made once and then looked up.
 
 use super::LANES;
-use super::sieve::PointList;
-use crate::fixed::STEP_BITS;
+use crate::fixed::{MOST_AXES, STEP_BITS};
 use crate::lattice::{IDS, Lattice, SixteenCells};
 use core::ops::Range;
 use dapple_hash::{CellHash, CellHashes};
 use fearless_simd::{prelude::*, u32x16};
 
-/// Cells along each axis, from the first to the last.
+/// Cells along each axis, from the first to the last; only the cell 0 along axes that there are none of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct CellBox<const N: usize> {
-    pub(super) first: [i64; N],
-    pub(super) last: [i64; N],
+pub struct CellBox {
+    pub(super) n_axes: usize,
+    pub(super) first: [i64; MOST_AXES],
+    pub(super) last: [i64; MOST_AXES],
 }
 
-impl<const N: usize> CellBox<N> {
+impl CellBox {
     /// How many cells there are along an axis.
     pub(super) fn side(&self, axis: usize) -> usize {
         (self.last[axis] - self.first[axis] + 1) as usize
     }
 
     /// The same with so many more cells on every side.
-    pub(super) fn widened(&self, by: i64) -> Self {
-        Self {
-            first: self.first.map(|cell| cell - by),
-            last: self.last.map(|cell| cell + by),
+    pub(super) fn widened(mut self, by: i64) -> Self {
+        for axis in 0..self.n_axes {
+            self.first[axis] -= by;
+            self.last[axis] += by;
         }
+        self
     }
 
     /// The rows of cells along the first axis: the hash that those of the row begin with, and the first cell.
-    pub(super) fn rows<'a>(
-        &'a self,
-        lattice: &'a Lattice<N>,
-    ) -> impl Iterator<Item = (CellHash, [i64; N])> + 'a {
+    pub(super) fn rows<const N: usize>(
+        &self,
+        lattice: &Lattice<N>,
+    ) -> impl Iterator<Item = (CellHash, [i64; N])> {
         let n_rows: usize = (1..N).map(|axis| self.side(axis)).product();
         (0..n_rows).map(move |mut index| {
             let mut hash = lattice.root;
-            let mut cell = self.first;
+            let mut cell = core::array::from_fn(|axis| self.first[axis]);
             let mut rest = n_rows;
             for axis in (1..N).rev() {
                 rest /= self.side(axis);
@@ -63,28 +64,32 @@ const USUAL: usize = 4;
 
 /// The feature points of a box of cells, row by row of cells.
 #[derive(Debug)]
-pub(super) struct Table<const N: usize> {
-    pub(super) cells: CellBox<N>,
+pub struct Table {
+    pub(super) cells: CellBox,
     /// Where the points of each cell begin, and where those of the last end.
     starts: Vec<u32>,
+    /// Memory for the points of sixteen cells.
+    scratch: Vec<u32>,
     /// The coordinates along each axis, in steps from the lower corner of the box. After the last point there is room
     /// for a whole register.
-    pub(super) steps: [Vec<i32>; N],
+    pub(super) steps: [Vec<i32>; MOST_AXES],
     /// Whether ids are wanted.
     pub(super) wants_ids: bool,
     /// What the points are known by, if that is wanted.
     pub(super) ids: Vec<u64>,
 }
 
-impl<const N: usize> Table<N> {
+impl Table {
     /// An empty table.
     pub(super) fn new() -> Self {
         Self {
             cells: CellBox {
-                first: [0; N],
-                last: [0; N],
+                n_axes: 0,
+                first: [0; MOST_AXES],
+                last: [0; MOST_AXES],
             },
             starts: Vec::new(),
+            scratch: Vec::new(),
             steps: core::array::from_fn(|_| Vec::new()),
             wants_ids: false,
             ids: Vec::new(),
@@ -92,66 +97,58 @@ impl<const N: usize> Table<N> {
     }
 
     /// Whether it has the points of these cells, with ids or without.
-    pub(super) fn has(&self, cells: &CellBox<N>, with_ids: bool) -> bool {
+    pub(super) fn has(&self, cells: &CellBox, with_ids: bool) -> bool {
         !self.starts.is_empty() && self.cells == *cells && self.wants_ids == with_ids
     }
 
     /// Makes the points of `cells`, which are at most 1000 along each axis.
     #[inline(always)]
-    pub(super) fn fill<S: Simd>(&mut self, simd: S, lattice: &Lattice<N>, cells: CellBox<N>) {
+    pub(super) fn fill<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        lattice: &Lattice<N>,
+        cells: CellBox,
+    ) {
         self.cells = cells;
         self.starts.clear();
         self.starts.push(0);
         self.ids.clear();
         let side = cells.side(0);
-        let columns: Vec<[u32; 2]> = (0..side.next_multiple_of(LANES) as i64)
-            .map(|column| words(lattice.wrap(0, cells.first[0] + column)))
-            .collect();
-        let mut scratch = Vec::new();
+        let columns = 0..side.next_multiple_of(LANES) as i64;
+        let columns = columns.map(|column| words(lattice.wrap(0, cells.first[0] + column)));
+        let (low, high): (Vec<u32>, Vec<u32>) = columns.map(|[low, high]| (low, high)).unzip();
         for (hash, cell) in cells.rows(lattice) {
             let mut corner: [i32; N] =
                 core::array::from_fn(|axis| ((cell[axis] - cells.first[axis]) as i32) << STEP_BITS);
-            for (chunk, columns) in columns.chunks_exact(LANES).enumerate() {
-                let first = chunk * LANES;
+            for first in (0..side).step_by(LANES) {
                 corner[0] = (first as i32) << STEP_BITS;
                 let n_cells = (side - first).min(LANES);
-                self.add(
-                    simd,
-                    lattice,
-                    (hash, columns),
-                    (corner, n_cells),
-                    &mut scratch,
+                let hashes = CellHashes::splat(simd, hash).axis(
+                    u32x16::from_slice(simd, &low[first..first + LANES]),
+                    u32x16::from_slice(simd, &high[first..first + LANES]),
                 );
+                self.add(simd, lattice, hashes, corner, n_cells);
             }
         }
     }
 
     /// Adds the points of up to sixteen cells side by side.
     #[inline(always)]
-    fn add<S: Simd>(
+    fn add<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         lattice: &Lattice<N>,
-        (row, columns): (CellHash, &[[u32; 2]]),
-        (corner, n_cells): ([i32; N], usize),
-        scratch: &mut Vec<u32>,
+        hashes: CellHashes<S>,
+        corner: [i32; N],
+        n_cells: usize,
     ) {
-        let mut halves = [[0; LANES]; 2];
-        for (lane, &[low, high]) in columns.iter().enumerate() {
-            halves[0][lane] = low;
-            halves[1][lane] = high;
-        }
-        let [low, high] = halves;
-        let hashes = CellHashes::splat(simd, row).axis(
-            u32x16::from_slice(simd, &low),
-            u32x16::from_slice(simd, &high),
-        );
         let cells = SixteenCells::new(simd, lattice, hashes);
         let cell = core::array::from_fn(|axis| {
             self.cells.first[axis] + i64::from(corner[axis] >> STEP_BITS)
         });
         let numbers = numbers(lattice, &cells, cell);
         let most = numbers[..n_cells].iter().copied().fold(0, u32::max);
+        let mut scratch = core::mem::take(&mut self.scratch);
         scratch.resize(most.max(USUAL as u32) as usize * N * LANES, 0);
         for index in 0..most {
             let steps: [u32x16<S>; N] = cells.steps(u32x16::splat(simd, index), lattice.jitter);
@@ -189,6 +186,7 @@ impl<const N: usize> Table<N> {
             end += number;
             self.starts.push(end as u32);
         }
+        self.scratch = scratch;
         if self.wants_ids {
             self.add_ids(simd, hashes, &numbers[..n_cells]);
         }
@@ -224,24 +222,32 @@ impl<const N: usize> Table<N> {
     }
 
     /// A point, in steps from the lower corner of the box.
-    pub(super) fn point(&self, index: usize) -> [i32; N] {
-        self.steps.each_ref().map(|steps| steps[index])
+    pub(super) fn point(&self, index: usize) -> [i32; MOST_AXES] {
+        let mut point = [0; MOST_AXES];
+        for axis in 0..self.cells.n_axes {
+            point[axis] = self.steps[axis][index];
+        }
+        point
     }
 
     /// Whether it has the cells from `first` to `last` along each axis.
-    pub(super) fn has_cells(&self, [first, last]: [[i32; N]; 2]) -> bool {
-        (0..N).all(|axis| first[axis] >= 0 && (last[axis] as usize) < self.cells.side(axis))
+    pub(super) fn has_cells(&self, [first, last]: [[i32; MOST_AXES]; 2]) -> bool {
+        (0..self.cells.n_axes)
+            .all(|axis| first[axis] >= 0 && (last[axis] as usize) < self.cells.side(axis))
     }
 
     /// The points of the cells up to `ring` cells from that of a point, if the table has these cells.
     pub(super) fn around<'a>(
         &self,
-        point: [i32; N],
+        point: &[i32],
         ring: i32,
         runs: &'a mut Vec<Range<usize>>,
     ) -> Option<&'a [Range<usize>]> {
-        let cell = point.map(|steps| steps >> STEP_BITS);
-        let cells = [cell.map(|cell| cell - ring), cell.map(|cell| cell + ring)];
+        let mut cells = [[0; MOST_AXES]; 2];
+        for (axis, steps) in point.iter().enumerate() {
+            let cell = steps >> STEP_BITS;
+            [cells[0][axis], cells[1][axis]] = [cell - ring, cell + ring];
+        }
         if !self.has_cells(cells) {
             return None;
         }
@@ -250,31 +256,22 @@ impl<const N: usize> Table<N> {
     }
 
     /// The points of the cells from `first` to `last` along each axis, row by row.
-    pub(super) fn runs(&self, [first, last]: [[i32; N]; 2], runs: &mut Vec<Range<usize>>) {
+    pub(super) fn runs(&self, [first, last]: [[i32; MOST_AXES]; 2], runs: &mut Vec<Range<usize>>) {
+        let n_axes = self.cells.n_axes;
         runs.clear();
         let columns = first[0] as usize..last[0] as usize + 1;
         let mut row = first;
         loop {
             let mut index = 0;
-            for axis in (1..N).rev() {
+            for axis in (1..n_axes).rev() {
                 index = index * self.cells.side(axis) + row[axis] as usize;
             }
             runs.push(self.run(index, columns.clone()));
-            let Some(axis) = (1..N).find(|&axis| row[axis] < last[axis]) else {
+            let Some(axis) = (1..n_axes).find(|&axis| row[axis] < last[axis]) else {
                 return;
             };
             row[axis] += 1;
             row[1..axis].copy_from_slice(&first[1..axis]);
-        }
-    }
-
-    /// The ids of the points of a list, if they are wanted, padded to a whole register.
-    pub(super) fn look_up_ids(&self, list: &PointList<N>, ids: &mut Vec<u64>) {
-        ids.clear();
-        if self.wants_ids {
-            let numbers = list.numbers[..list.len].iter();
-            ids.extend(numbers.map(|&number| self.ids[number as usize]));
-            ids.resize(list.len.next_multiple_of(LANES).max(LANES), 0);
         }
     }
 

@@ -4,72 +4,123 @@
 //! two of the nearest cannot be told from the other bits are searched on their own.
 
 use super::LANES;
-use super::kernel::{greater, lesser};
-use super::shortlist::Shortlist;
+use super::flat::FlatPoints;
+use super::kernel::{Candidate, greater, lesser};
+use super::table::Table;
+use crate::LIMIT;
 use crate::features::FeatureRows;
-use crate::fixed::STEP;
+use crate::fixed::{MOST_AXES, STEP};
 use crate::many::NOTHING;
-use crate::metric::Norm;
+use crate::metric::Measure;
 use core::ops::Range;
 use fearless_simd::{f32x16, i32x16, prelude::*, u8x64, u32x16};
 
+/// The candidates of a tile, to be looked up when they are the nearest.
+#[derive(Debug)]
+pub(super) struct Lookup {
+    n_axes: usize,
+    /// Their coordinates along each axis, in cells from a corner of the tile; padded to whole registers.
+    coordinates: [Vec<f32>; MOST_AXES],
+    /// Their ids, if they are wanted.
+    ids: Vec<u64>,
+}
+
+impl Lookup {
+    pub(super) fn new() -> Self {
+        Self {
+            n_axes: 0,
+            coordinates: core::array::from_fn(|_| Vec::new()),
+            ids: Vec::new(),
+        }
+    }
+
+    /// Takes the candidates from the table; `low` is the corner, in steps.
+    pub(super) fn fill(&mut self, points: &FlatPoints, table: &Table, low: [i32; MOST_AXES]) {
+        let numbers = &points.numbers[..points.len];
+        let room = points.len.next_multiple_of(LANES).max(LANES);
+        self.n_axes = table.cells.n_axes;
+        for axis in 0..self.n_axes {
+            let steps = numbers
+                .iter()
+                .map(|&number| table.steps[axis][number as usize]);
+            let coordinates = &mut self.coordinates[axis];
+            coordinates.clear();
+            coordinates.extend(steps.map(|steps| (steps - low[axis]) as f32 * STEP));
+            coordinates.resize(room, 0.0);
+        }
+        self.ids.clear();
+        if table.wants_ids {
+            let ids = numbers.iter().map(|&number| table.ids[number as usize]);
+            self.ids.extend(ids);
+            self.ids.resize(room, 0);
+        }
+    }
+}
+
 /// Some rows of a tile.
 #[derive(Debug)]
-pub(super) struct TrackedRows<'a, const N: usize> {
+pub(super) struct TrackedRows<'a> {
     /// The rows of the tile, in the band.
     pub(super) rows: Range<usize>,
     /// The columns, in the window; at most [`LANES`].
     pub(super) columns: Range<usize>,
-    /// The first column, in the block.
-    pub(super) first_column: usize,
-    /// The coordinates of the block's columns and of the band's rows, in steps.
-    pub(super) lines: &'a [Vec<i32>; N],
-    /// The smallest of them in the tile.
-    pub(super) low: [i32; N],
-    pub(super) shortlist: &'a Shortlist<N>,
+    /// Which of the registers of a tile's columns they are, 0 or 1.
+    pub(super) register: usize,
+    /// The coordinates of the columns, in steps, and those of the band's rows along the other axes.
+    pub(super) lines: [&'a [i32]; MOST_AXES],
+    /// The corner from which candidates are counted.
+    pub(super) low: [i32; MOST_AXES],
+    pub(super) candidates: &'a [Candidate],
+    pub(super) lookup: &'a Lookup,
     /// Keys from here on may be wrong.
     pub(super) limit: f32,
 }
 
-/// The `K` nearest points of the pixels of a row.
-pub(super) struct Found<const N: usize, const K: usize> {
+/// The nearest points of the pixels of a row.
+pub(super) struct Found {
     pub(super) row: usize,
     pub(super) columns: Range<usize>,
-    pub(super) distances: [[f32; LANES]; K],
-    pub(super) vectors: [[[f32; N]; LANES]; K],
-    pub(super) ids: [[u64; LANES]; K],
+    pub(super) n_axes: usize,
+    /// How many points there are.
+    depth: usize,
+    pub(super) distances: [[f32; LANES]; LIMIT],
+    /// The parts of a vector one after the other.
+    pub(super) vectors: [[f32; MOST_AXES * LANES]; LIMIT],
+    pub(super) ids: [[u64; LANES]; LIMIT],
     /// The lanes whose order is not known, as bits.
     pub(super) unknown: u64,
 }
 
-impl<const N: usize> TrackedRows<'_, N> {
-    /// Finds the nearest points row by row, and returns the row from which on keys reach the limit: the end, if none
+impl TrackedRows<'_> {
+    /// Finds the `K` nearest points row by row, and returns the row from which on keys reach the limit: the end, if none
     /// does.
     #[inline(always)]
-    pub(super) fn fill<S: Simd, M: Norm, const K: usize>(
+    pub(super) fn fill<S: Simd, M: Measure, const K: usize>(
         &self,
         simd: S,
-        norm: M,
-        mut put: impl FnMut(&Found<N, K>),
+        measure: M,
+        put: &mut dyn FnMut(&Found),
     ) -> usize {
         let mut found = Found {
             row: self.rows.start,
             columns: self.columns.clone(),
-            distances: [[0.0; LANES]; K],
-            vectors: [[[0.0; N]; LANES]; K],
-            ids: [[0; LANES]; K],
+            n_axes: self.lookup.n_axes,
+            depth: K,
+            distances: [[0.0; LANES]; LIMIT],
+            vectors: [[0.0; MOST_AXES * LANES]; LIMIT],
+            ids: [[0; LANES]; LIMIT],
             unknown: 0,
         };
-        let columns = i32x16::from_slice(simd, &self.lines[0][self.first_column..][..LANES]);
-        let mut places = [(columns - self.low[0]).to_float::<f32x16<S>>() * STEP; N];
-        let n_bits = usize::BITS - self.shortlist.len.leading_zeros();
+        let columns = i32x16::from_slice(simd, &self.lines[0][..LANES]);
+        let mut places = [(columns - self.low[0]).to_float::<f32x16<S>>() * STEP; MOST_AXES];
+        let n_bits = usize::BITS - self.candidates.len().leading_zeros();
         let mask = (1_u32 << n_bits) - 1;
         for row in self.rows.clone() {
-            for axis in 1..N {
+            for axis in 1..found.n_axes {
                 let ahead = self.lines[axis][row] - self.low[axis];
                 places[axis] = f32x16::splat(simd, ahead as f32 * STEP);
             }
-            let (best, next) = self.smallest::<S, M, K>(norm, places[0], row, mask);
+            let (best, next) = self.smallest::<S, M, K>(simd, measure, row, mask);
             let last = (best[K - 1] | mask).bitcast::<f32x16<S>>();
             if !last.simd_lt(self.limit).all_true() {
                 return row;
@@ -80,7 +131,12 @@ impl<const N: usize> TrackedRows<'_, N> {
                 let after = if rank + 1 < K { best[rank + 1] } else { next };
                 let is_unknown = (best[rank] | mask).simd_ge(after | mask);
                 found.unknown |= is_unknown.to_bitmask();
-                self.look_up(simd, norm, &places, best[rank] & mask, (&mut found, rank));
+                let numbers = best[rank] & mask;
+                match found.n_axes {
+                    2 => self.look_up::<S, M, 2>(measure, &places, numbers, &mut found, rank),
+                    3 => self.look_up::<S, M, 3>(measure, &places, numbers, &mut found, rank),
+                    _ => self.look_up::<S, M, 4>(measure, &places, numbers, &mut found, rank),
+                }
             }
             put(&found);
         }
@@ -89,22 +145,21 @@ impl<const N: usize> TrackedRows<'_, N> {
 
     /// The keys of the `K` nearest, and of the next, with the numbers of their candidates in the low bits.
     #[inline(always)]
-    fn smallest<S: Simd, M: Norm, const K: usize>(
+    fn smallest<S: Simd, M: Measure, const K: usize>(
         &self,
-        norm: M,
-        columns: f32x16<S>,
+        simd: S,
+        measure: M,
         row: usize,
         mask: u32,
     ) -> ([u32x16<S>; K], u32x16<S>) {
-        let simd = columns.simd;
         let mut best = [f32x16::splat(simd, f32::from_bits(NOTHING)); K];
         let mut next = best[0];
-        let shortlist = self.shortlist;
-        let points = &shortlist.coordinates[0][..shortlist.len];
         let row = row - self.rows.start;
-        for (number, (&point, row_terms)) in points.iter().zip(&shortlist.row_terms).enumerate() {
-            let row_term = f32x16::splat(simd, row_terms[row]);
-            let key = norm.joins(norm.terms(columns - point), row_term);
+        for (number, candidate) in self.candidates.iter().enumerate() {
+            let columns = &candidate.columns.as_chunks::<LANES>().0[self.register % 2];
+            let columns = f32x16::from_slice(simd, columns);
+            let row_term = f32x16::splat(simd, candidate.rows[row]);
+            let key = measure.accumulate(columns, row_term);
             let coded = (key.to_bits() & !mask) | number as u32;
             let mut coded = f32x16::from_bits(coded);
             for best in &mut best {
@@ -123,32 +178,64 @@ impl<const N: usize> TrackedRows<'_, N> {
 
     /// Takes down which points they are.
     #[inline(always)]
-    fn look_up<S: Simd, M: Norm, const K: usize>(
+    fn look_up<S: Simd, M: Measure, const N: usize>(
         &self,
-        simd: S,
-        norm: M,
-        places: &[f32x16<S>; N],
+        measure: M,
+        places: &[f32x16<S>; MOST_AXES],
         numbers: u32x16<S>,
-        (found, rank): (&mut Found<N, K>, usize),
+        found: &mut Found,
+        rank: usize,
     ) {
-        let mut vector = *places;
-        let mut parts = [[0.0; LANES]; N];
-        for axis in 0..N {
-            let points = look_up(simd, self.shortlist.coordinates(axis), numbers);
-            vector[axis] = places[axis] - points;
-            vector[axis].store_slice(&mut parts[axis]);
+        let simd = numbers.simd;
+        let lookup = self.lookup;
+        let mut keys = f32x16::splat(simd, 0.0);
+        let mut vectors = [keys; N];
+        for axis in (0..N).rev() {
+            let points = look_up(simd, &lookup.coordinates[axis], numbers);
+            let parts = places[axis] - points;
+            vectors[axis] = parts;
+            let [terms] = measure.terms([parts]);
+            keys = measure.accumulate(terms, keys);
         }
-        norm.distances(norm.keys(vector))
+        measure
+            .distances(keys)
             .store_slice(&mut found.distances[rank]);
-        let mut lanes = [0; LANES];
-        numbers.store_slice(&mut lanes);
-        let ids = &self.shortlist.ids;
-        for lane in 0..LANES {
-            for axis in 0..N {
-                found.vectors[rank][lane][axis] = parts[axis][lane];
+        interleave(&vectors, &mut found.vectors[rank]);
+        if !lookup.ids.is_empty() {
+            let mut lanes = [0; LANES];
+            numbers.store_slice(&mut lanes);
+            for lane in 0..LANES {
+                found.ids[rank][lane] = lookup.ids[lanes[lane] as usize];
             }
-            if !ids.is_empty() {
-                found.ids[rank][lane] = ids[lanes[lane] as usize];
+        }
+    }
+}
+
+/// Puts the parts of sixteen vectors one after the other.
+#[inline(always)]
+fn interleave<S: Simd>(parts: &[f32x16<S>], out: &mut [f32; MOST_AXES * LANES]) {
+    let out = out.as_chunks_mut::<LANES>().0;
+    match *parts {
+        [x, y] => {
+            x.zip_low(y).store_slice(&mut out[0]);
+            x.zip_high(y).store_slice(&mut out[1]);
+        }
+        [x, y, z, w] => {
+            let [low, high] = [x.zip_low(z), x.zip_high(z)];
+            let [other_low, other_high] = [y.zip_low(w), y.zip_high(w)];
+            low.zip_low(other_low).store_slice(&mut out[0]);
+            low.zip_high(other_low).store_slice(&mut out[1]);
+            high.zip_low(other_high).store_slice(&mut out[2]);
+            high.zip_high(other_high).store_slice(&mut out[3]);
+        }
+        _ => {
+            let out = out.as_flattened_mut();
+            let mut lanes = [0.0; LANES];
+            for (axis, parts) in parts.iter().enumerate() {
+                parts.store_slice(&mut lanes);
+                for lane in 0..LANES {
+                    out[lane * 3 + axis] = lanes[lane];
+                }
             }
         }
     }
@@ -168,21 +255,33 @@ fn look_up<S: Simd>(simd: S, table: &[f32], indices: u32x16<S>) -> f32x16<S> {
     f32x16::from_slice(simd, &values)
 }
 
-impl<const N: usize, const K: usize> Found<N, K> {
+impl Found {
     /// Puts the row into memory, but for what is unknown.
-    pub(super) fn put(&self, features: &mut [FeatureRows<'_, N>]) {
+    pub(super) fn put(&self, features: &mut [FeatureRows<'_>]) {
         let columns = self.columns.clone();
+        let n = columns.len();
         for (rank, out) in features.iter_mut().enumerate() {
-            let n = columns.len();
             if let Some(out) = out.distance.get_mut(self.row) {
                 out[columns.clone()].copy_from_slice(&self.distances[rank][..n]);
             }
             if let Some(out) = out.vector.get_mut(self.row) {
-                out[columns.clone()].copy_from_slice(&self.vectors[rank][..n]);
+                let out = &mut out[columns.start * self.n_axes..columns.end * self.n_axes];
+                out.copy_from_slice(&self.vectors[rank][..n * self.n_axes]);
             }
             if let Some(out) = out.id.get_mut(self.row) {
                 out[columns.clone()].copy_from_slice(&self.ids[rank][..n]);
             }
         }
+    }
+
+    /// The vectors of a lane, nearest first.
+    pub(super) fn vectors<const N: usize>(&self, lane: usize) -> [[f32; N]; LIMIT] {
+        let mut vectors = [[0.0; N]; LIMIT];
+        for rank in 0..self.depth {
+            for axis in 0..N {
+                vectors[rank][axis] = self.vectors[rank][lane * N + axis];
+            }
+        }
+        vectors
     }
 }

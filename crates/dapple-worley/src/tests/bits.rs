@@ -2,8 +2,7 @@
 
 use super::oracle::{METRICS, SCATTERS, position};
 use crate::fixed::Place;
-use crate::metric::with_norm;
-use crate::search::nearest;
+use crate::search::{Hit, nearest};
 use crate::{Axes, Combination, FeatureView, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_raster::simd::for_every_level;
@@ -253,10 +252,10 @@ fn neighbors_side_by_side_equal_the_search_by_rings() -> Result<(), WorleyError>
     {
         for index in 0..n {
             let place = Place::new(position::<N>(Seed(21), index, 1e4)).unwrap();
-            let expected: [_; 4] =
-                with_norm!(worley.metric, norm => nearest(&worley.lattice, norm, place));
+            let mut expected = [Hit::NONE; 4];
+            nearest(&worley.lattice, worley.metric, &place, &mut expected);
             for_every_level(|level| {
-                let found = worley.hits_at::<4>(level, place);
+                let found = worley.hits_at::<4>(level, &place);
                 for (found, expected) in found.iter().zip(&expected) {
                     assert_eq!(
                         found.key.to_bits(),

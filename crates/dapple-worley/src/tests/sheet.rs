@@ -2,11 +2,11 @@
 
 use crate::{
     Axes, Combination, FeatureView, Metric, Octaves, Plane, Scatter, Space, Vector, Worley,
-    Worley2, Worley3, WorleyError,
+    Worley2, Worley3, Worley4, WorleyError,
 };
 use dapple_hash::Seed;
 use dapple_raster::{Field, Raster, RasterErrorKind, Window};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, DVec4};
 
 /// A position that is as near to its nearest point as to the second one, to within a hair: on the way from `at` to
 /// another place with another nearest point.
@@ -148,6 +148,40 @@ fn slices_are_pictures_of_their_planes_bit_for_bit() -> Result<(), WorleyError> 
             for row in 0..size[1] {
                 assert_eq!(values.row(first + row), value.row(row), "{plane:?}");
                 assert_eq!(sums.row(first + row), sum.row(row), "{plane:?}");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Slices downward along the third axis, then upward along the fourth, near enough to share their candidates.
+#[test]
+fn slices_of_four_dimensions_equal_values_bit_for_bit() -> Result<(), WorleyError> {
+    let slice = |z: f64, w: f64| Plane::slice(DVec4::new(0.5, -2.0, z, w));
+    let steps = (0..5).map(|step| f64::from(step) / 32.0);
+    let downward = steps.clone().map(|step| slice(1.0 - step, 0.25));
+    let planes: Vec<_> = downward
+        .chain(steps.map(|step| slice(0.75, 0.25 + step)))
+        .collect();
+    let window = Window::new(DVec2::ZERO, DVec2::new(1.25, 1.0), [40, 33])?;
+    for metric in [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev] {
+        // Few points, so that neighborhoods must grow.
+        let worley = Worley4::new(Seed(5)).with_scatter(Scatter::Unclamped { density: 0.25 })?;
+        let texture = worley
+            .with_metric(metric)?
+            .combine(Combination::F3_MINUS_F1);
+        let mut values = Raster::filled([40, 33 * planes.len() as u32], -1.0)?;
+        let views = values.view_mut().bands(33);
+        texture.render_slices(&window, planes.iter().copied().zip(views).collect())?;
+        for (plane, first) in planes.iter().zip((0..).step_by(33)) {
+            for (column, row) in (0..33).flat_map(|row| (0..40).map(move |column| (column, row))) {
+                let expected = texture.value(plane.position(window.position(column, row)));
+                let found = values.row(first + row)[column as usize];
+                assert_eq!(
+                    found.to_bits(),
+                    expected.to_bits(),
+                    "{metric:?} {plane:?} {column}, {row}"
+                );
             }
         }
     }

@@ -1,0 +1,65 @@
+//! Parts of a block: squares, tiles, and what is left of them.
+
+use core::ops::Range;
+
+/// Columns of a block, rows of its band, and slices.
+#[derive(Clone, Debug)]
+pub(super) struct Area {
+    pub(super) columns: Range<usize>,
+    pub(super) rows: Range<usize>,
+    pub(super) slices: Range<usize>,
+}
+
+impl Area {
+    /// Its parts of at most so many columns and rows.
+    pub(super) fn parts(&self, size: [usize; 2]) -> Parts<'_> {
+        Parts {
+            column: self.columns.start,
+            row: self.rows.start,
+            area: self,
+            size,
+        }
+    }
+
+    /// Whether it is larger than so many columns and rows.
+    pub(super) fn is_larger(&self, [width, height]: [usize; 2]) -> bool {
+        self.columns.len() > width || self.rows.len() > height
+    }
+}
+
+/// The parts of an area, row by row.
+pub(super) struct Parts<'a> {
+    area: &'a Area,
+    size: [usize; 2],
+    /// Where the next one begins.
+    column: usize,
+    row: usize,
+}
+
+impl Iterator for Parts<'_> {
+    type Item = Area;
+
+    #[inline]
+    fn next(&mut self) -> Option<Area> {
+        let Area {
+            columns,
+            rows,
+            slices,
+        } = self.area;
+        let [width, height] = self.size;
+        if self.row >= rows.end {
+            return None;
+        }
+        let part = Area {
+            columns: self.column..columns.end.min(self.column + width),
+            rows: self.row..rows.end.min(self.row + height),
+            slices: slices.clone(),
+        };
+        self.column += width;
+        if self.column >= columns.end {
+            self.column = columns.start;
+            self.row += height;
+        }
+        Some(part)
+    }
+}

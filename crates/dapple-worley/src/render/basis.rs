@@ -1,0 +1,99 @@
+//! What pictures need of a basis, whatever its number of axes.
+
+use super::Picture;
+use super::bins::{Bins, Grid};
+use super::edge::render_edges;
+use super::table::{CellBox, Table};
+use crate::doors::Doors as _;
+use crate::fixed::{FlatPlace, MOST_AXES, Place};
+use crate::search::Hit;
+use crate::{Axes, LIMIT, Metric, Space, Vector, Worley};
+use core::fmt;
+use dapple_raster::{RasterError, RasterViewMut, simd};
+use fearless_simd::{Level, dispatch};
+
+/// A basis as pictures see it: only hashes and the tables of feature points know the number of axes. Places and vectors
+/// have zeros along the axes that the basis has not.
+pub trait Basis: Sync + fmt::Debug {
+    /// How distances are measured.
+    fn metric(&self) -> Metric;
+
+    /// The feature points per cell, on average about a cell.
+    fn density(&self, cell: [i64; MOST_AXES]) -> f64;
+
+    /// Puts the feature points of some cells into a table.
+    fn fill(&self, level: Level, table: &mut Table, cells: CellBox);
+
+    /// Puts the feature points of some cells into bins.
+    fn collect(&self, level: Level, bins: &mut Bins, cells: &CellBox, grid: &Grid);
+
+    /// The nearest points of a place, nearest first; at most four.
+    fn nearest(&self, place: &FlatPlace, hits: &mut [Hit<MOST_AXES>]);
+
+    /// The distance from a position to the nearest edge of its Voronoi cell.
+    fn edge_distance(&self, position: [f64; MOST_AXES]) -> f32;
+
+    /// Fills a picture of the basis with such distances; its metric is Euclidean.
+    fn render_edges(
+        &self,
+        picture: &Picture<'_>,
+        out: RasterViewMut<'_, f32>,
+    ) -> Result<(), RasterError>;
+}
+
+impl<const N: usize> Basis for Worley<N>
+where
+    Axes: Space<N>,
+{
+    fn metric(&self) -> Metric {
+        self.metric
+    }
+
+    fn density(&self, cell: [i64; MOST_AXES]) -> f64 {
+        match &self.lattice.density {
+            None => self.lattice.counts.mean(),
+            Some(density) => self.lattice.density_at(density, first(cell)),
+        }
+    }
+
+    fn fill(&self, level: Level, table: &mut Table, cells: CellBox) {
+        dispatch!(level, simd => table.fill(simd, &self.lattice, cells));
+    }
+
+    fn collect(&self, level: Level, bins: &mut Bins, cells: &CellBox, grid: &Grid) {
+        dispatch!(level, simd => bins.collect(simd, &self.lattice, cells, grid));
+    }
+
+    fn nearest(&self, place: &FlatPlace, hits: &mut [Hit<MOST_AXES>]) {
+        let place = Place {
+            cell: first(place.cell),
+            steps: first(place.steps),
+        };
+        let mut found = [Hit::NONE; LIMIT];
+        let found = &mut found[..hits.len()];
+        Axes::nearest(self.metric, &self.lattice, simd::level(), &place, found);
+        for (hit, found) in hits.iter_mut().zip(found) {
+            hit.key = found.key;
+            hit.name = found.name;
+            hit.vector = [0.0; MOST_AXES];
+            hit.vector[..N].copy_from_slice(&found.vector);
+        }
+    }
+
+    fn edge_distance(&self, position: [f64; MOST_AXES]) -> f32 {
+        self.edge_distance(Vector::<N>::from(first(position)))
+    }
+
+    fn render_edges(
+        &self,
+        picture: &Picture<'_>,
+        out: RasterViewMut<'_, f32>,
+    ) -> Result<(), RasterError> {
+        render_edges::<N>(picture, out)
+    }
+}
+
+/// The parts along the axes that there are.
+pub(super) fn first<T: Copy, const N: usize>(parts: [T; MOST_AXES]) -> [T; N] {
+    core::array::from_fn(|axis| parts[axis])
+}

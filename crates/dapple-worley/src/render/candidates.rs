@@ -1,0 +1,198 @@
+//! The candidates of a tile, and what they add to the keys of its pixels.
+
+use super::LANES;
+use super::area::Area;
+use super::block::Memory;
+use super::cull::Cull;
+use super::flat::{Cuboid, FlatPoints, PictureAxes};
+use super::kernel::{Candidate, TILE};
+use super::square::Square;
+use crate::fixed::STEP;
+use crate::metric::{Exact, Measure};
+use fearless_simd::{f32x16, i32x16, prelude::*};
+
+impl Memory {
+    /// Picks the candidates of a tile from those of its square, and makes their terms.
+    #[inline(always)]
+    pub(super) fn candidates<S: Simd, M: Measure>(
+        &mut self,
+        simd: S,
+        measure: M,
+        area: &Area,
+        square: &Square,
+    ) {
+        let (plan, low) = (&square.plan, &square.pixels.low);
+        if plan.thins() {
+            let cuboid = self.cuboid(area, square);
+            let thinning = &mut self.thinning;
+            self.tile
+                .thin(simd, plan.metric, &self.square, &cuboid, thinning);
+        } else {
+            let pixels = self.pixel_box(area);
+            let mut moved = pixels;
+            for axis in 0..pixels.n_axes {
+                let by = self.low[axis] - low[axis];
+                moved.low[axis] += by;
+                moved.high[axis] += by;
+            }
+            if square.is_tile {
+                core::mem::swap(&mut self.list, &mut self.tile_list);
+            } else {
+                let cull = Cull {
+                    measure,
+                    pixels: &moved,
+                    keep: plan.nearest(),
+                };
+                let run = 0..self.list.len;
+                let points = self.list.points(&run, self.tile.wants_numbers);
+                self.tile_list.cull(simd, cull, points);
+            }
+            moved.low = self.low;
+            let axes = PictureAxes {
+                rows: plan.row_axis.unwrap_or(1),
+                slices: None,
+            };
+            self.tile
+                .flatten(simd, measure, &self.tile_list, &moved, axes);
+        }
+        if self.candidates.len() < self.tile.len {
+            let none = Candidate {
+                columns: [0.0; TILE],
+                rows: [0.0; TILE],
+            };
+            let room = self.tile.len.next_power_of_two();
+            self.candidates.resize(room, none);
+        }
+        self.column_terms(simd, measure, area, square);
+        match plan.row_axis {
+            // Slices have their own.
+            Some(_) if plan.deep_axis.is_some() => {}
+            Some(row_axis) => self.row_terms(simd, measure, area, square, row_axis),
+            None => self.slanted_terms(simd, measure, area, square),
+        }
+    }
+
+    /// Where the pixels of a tile lie, from the lower corner of its square.
+    #[inline(always)]
+    fn cuboid(&self, area: &Area, square: &Square) -> Cuboid {
+        let mut cuboid = square.cuboid;
+        if square.is_tile {
+            return cuboid;
+        }
+        let row_axis = square.plan.row_axis.unwrap_or(1);
+        for (index, axis, range) in [(0, 0, &area.columns), (1, row_axis, &area.rows)] {
+            let line = &self.lines[axis];
+            let [a, b] = [line[range.start], line[range.end - 1]];
+            let corner = square.pixels.low[axis];
+            cuboid.low[index] = (a.min(b) - corner) as f32 * STEP;
+            cuboid.high[index] = (a.max(b) - corner) as f32 * STEP;
+        }
+        cuboid
+    }
+
+    /// Makes the terms of the columns of a tile.
+    #[inline(always)]
+    fn column_terms<S: Simd, M: Measure>(
+        &mut self,
+        simd: S,
+        measure: M,
+        area: &Area,
+        square: &Square,
+    ) {
+        let line = &self.lines[0][area.columns.start..];
+        for first in (0..area.columns.len()).step_by(LANES) {
+            let places = places(simd, &line[first..], square.pixels.low[0]);
+            let points = self.tile.x[..self.tile.len].iter();
+            for (&x, candidate) in points.zip(&mut self.candidates) {
+                let [terms] = measure.terms([places - x]);
+                terms.store_slice(&mut candidate.columns[first..first + LANES]);
+            }
+        }
+    }
+
+    /// Makes the terms of the rows of a tile in the slice at some steps from the lower corner of a square; they go along the
+    /// second axis.
+    #[inline(always)]
+    pub(super) fn slice_terms<S: Simd>(
+        &mut self,
+        simd: S,
+        exact: Exact,
+        area: &Area,
+        square: &Square,
+        place: i32,
+    ) {
+        let place = f32x16::splat(simd, place as f32 * STEP);
+        let line = &self.lines[1][area.rows.start..];
+        let FlatPoints { y, z, rest, .. } = &self.tile;
+        for start in (0..self.tile.len).step_by(LANES) {
+            let at = start..start + LANES;
+            let [terms] = exact.terms([place - f32x16::from_slice(simd, &z[at.clone()])]);
+            let rest = exact.accumulate(terms, f32x16::from_slice(simd, &rest[at.clone()]));
+            let mut rests = [0.0; LANES];
+            rest.store_slice(&mut rests);
+            let n = LANES.min(self.tile.len - start);
+            for first in (0..area.rows.len()).step_by(LANES) {
+                let places = places(simd, &line[first..], square.pixels.low[1]);
+                let points = y[at.clone()][..n].iter().zip(&rests);
+                for ((&y, &rest), candidate) in points.zip(&mut self.candidates[start..]) {
+                    let [terms] = exact.terms([places - y]);
+                    let terms = exact.accumulate(terms, f32x16::splat(simd, rest));
+                    terms.store_slice(&mut candidate.rows[first..first + LANES]);
+                }
+            }
+        }
+    }
+
+    /// Makes the terms of the rows of a tile, which go along one axis.
+    #[inline(always)]
+    fn row_terms<S: Simd, M: Measure>(
+        &mut self,
+        simd: S,
+        measure: M,
+        area: &Area,
+        square: &Square,
+        row_axis: usize,
+    ) {
+        let line = &self.lines[row_axis][area.rows.start..];
+        for first in (0..area.rows.len()).step_by(LANES) {
+            let places = places(simd, &line[first..], square.pixels.low[row_axis]);
+            let FlatPoints { y, rest, len, .. } = &self.tile;
+            let points = y[..*len].iter().zip(&rest[..*len]);
+            for ((&y, &rest), candidate) in points.zip(&mut self.candidates) {
+                let [terms] = measure.terms([places - y]);
+                let terms = measure.accumulate(terms, f32x16::splat(simd, rest));
+                terms.store_slice(&mut candidate.rows[first..first + LANES]);
+            }
+        }
+    }
+
+    /// Makes the terms of the rows of a tile, which go along several axes.
+    #[inline(always)]
+    fn slanted_terms<S: Simd, M: Measure>(
+        &mut self,
+        simd: S,
+        measure: M,
+        area: &Area,
+        square: &Square,
+    ) {
+        for first in (0..area.rows.len()).step_by(LANES) {
+            for (index, candidate) in self.candidates[..self.tile.len].iter_mut().enumerate() {
+                let mut keys = f32x16::splat(simd, 0.0);
+                for axis in (1..square.pixels.n_axes).rev() {
+                    let line = &self.lines[axis][area.rows.start + first..];
+                    let point = (self.tile_list.steps[axis][index] - self.low[axis]) as f32 * STEP;
+                    let [terms] =
+                        measure.terms([places(simd, line, square.pixels.low[axis]) - point]);
+                    keys = measure.accumulate(terms, keys);
+                }
+                keys.store_slice(&mut candidate.rows[first..first + LANES]);
+            }
+        }
+    }
+}
+
+/// Sixteen places of a line, in cells from the lower corner of a square.
+#[inline(always)]
+fn places<S: Simd>(simd: S, line: &[i32], low: i32) -> f32x16<S> {
+    (i32x16::from_slice(simd, &line[..LANES]) - low).to_float::<f32x16<S>>() * STEP
+}

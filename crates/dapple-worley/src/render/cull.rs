@@ -1,0 +1,263 @@
+//! Which feature points matter to a box of pixels: the candidates.
+//!
+//! A point can be among the `K` nearest of some pixel only if it is nearer to the box than a bound. There are two: the
+//! `K`-th smallest of the distances from the points to their furthest corner of the box, which always holds and is
+//! best for small boxes; and a guess, which is best for large ones, and holds if the distances that result are below
+//! it. The candidates of small boxes are taken from those of a larger box about them.
+
+use super::LANES;
+use crate::fixed::{MOST_AXES, STEP, STEP_BITS, STEPS};
+use crate::metric::Measure;
+use core::ops::Range;
+use fearless_simd::{f32x16, i32x16, mask32x16, prelude::*, u32x16};
+
+/// Where some pixels lie, in steps from the lower corner of a table.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PixelBox {
+    pub(super) n_axes: usize,
+    pub(super) low: [i32; MOST_AXES],
+    pub(super) high: [i32; MOST_AXES],
+}
+
+impl PixelBox {
+    /// The cells of the table within `ring` cells of those that the box touches, as the first and the last along each
+    /// axis. May reach past the table.
+    pub(super) fn cells(&self, ring: i32) -> [[i32; MOST_AXES]; 2] {
+        let mut cells = [[0; MOST_AXES]; 2];
+        for axis in 0..self.n_axes {
+            cells[0][axis] = (self.low[axis] >> STEP_BITS) - ring;
+            cells[1][axis] = (self.high[axis] >> STEP_BITS) + ring;
+        }
+        cells
+    }
+
+    /// How far it is from the box to the nearest place outside of these cells, in steps.
+    pub(super) fn border(&self, [first, last]: [[i32; MOST_AXES]; 2]) -> i32 {
+        let mut border = i32::MAX;
+        for axis in 0..self.n_axes {
+            border = border
+                .min(self.low[axis] - first[axis] * STEPS)
+                .min((last[axis] + 1) * STEPS - self.high[axis]);
+        }
+        border
+    }
+
+    /// The longest of its sides, in steps.
+    pub(super) fn extent(&self) -> i32 {
+        let mut extent = 0;
+        for axis in 0..self.n_axes {
+            extent = extent.max(self.high[axis] - self.low[axis]);
+        }
+        extent
+    }
+}
+
+/// Feature points, axis by axis.
+#[derive(Debug)]
+pub(super) struct PointList {
+    pub(super) len: usize,
+    /// Their coordinates along each axis, in steps from the lower corner of the table. There is room for a register
+    /// more.
+    pub(super) steps: [Vec<i32>; MOST_AXES],
+    /// Which points of the table they are, if that is wanted.
+    pub(super) numbers: Vec<u32>,
+    /// Memory for the smallest keys of points.
+    near: Vec<f32>,
+}
+
+/// Where candidates are taken from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Points<'a> {
+    pub(super) steps: &'a [Vec<i32>; MOST_AXES],
+    /// The numbers of the points, if they are not simply counted.
+    pub(super) numbers: Option<&'a [u32]>,
+    /// Which of them.
+    pub(super) runs: &'a [Range<usize>],
+    pub(super) wants_numbers: bool,
+}
+
+/// Which points are candidates.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Keep {
+    /// Those that can be among so many nearest, where bounds are multiplied by a looseness.
+    Nearest(usize, f32),
+    /// Those whose smallest key is at most this.
+    Within(f32),
+}
+
+/// For whom candidates are picked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cull<'a, M> {
+    pub(super) measure: M,
+    pub(super) pixels: &'a PixelBox,
+    pub(super) keep: Keep,
+}
+
+impl PointList {
+    pub(super) fn new() -> Self {
+        Self {
+            len: 0,
+            steps: core::array::from_fn(|_| Vec::new()),
+            numbers: Vec::new(),
+            near: Vec::new(),
+        }
+    }
+
+    /// The points, to be culled again.
+    pub(super) fn points<'a>(&'a self, run: &'a Range<usize>, wants_numbers: bool) -> Points<'a> {
+        Points {
+            steps: &self.steps,
+            numbers: wants_numbers.then_some(&self.numbers),
+            runs: core::slice::from_ref(run),
+            wants_numbers,
+        }
+    }
+
+    /// Takes those of some points that are candidates, in their order.
+    #[inline(always)]
+    pub(super) fn cull<S: Simd, M: Measure>(
+        &mut self,
+        simd: S,
+        cull: Cull<'_, M>,
+        points: Points<'_>,
+    ) {
+        match cull.pixels.n_axes {
+            2 => self.cull_axes::<S, M, 2>(simd, cull, points),
+            3 => self.cull_axes::<S, M, 3>(simd, cull, points),
+            _ => self.cull_axes::<S, M, 4>(simd, cull, points),
+        }
+    }
+
+    /// As [`cull`](Self::cull), for boxes with `N` axes.
+    #[inline(always)]
+    fn cull_axes<S: Simd, M: Measure, const N: usize>(
+        &mut self,
+        simd: S,
+        cull: Cull<'_, M>,
+        points: Points<'_>,
+    ) {
+        let n_axes = N;
+        let room = self.make_room(points, n_axes);
+        let infinite = f32x16::splat(simd, f32::INFINITY);
+        let mut least = infinite;
+        let mut at = 0;
+        if self.near.len() < room {
+            self.near.resize(room.next_power_of_two(), 0.0);
+        }
+        for run in points.runs {
+            for start in run.clone().step_by(LANES) {
+                let (key, far) = cull.keys::<S, N>(simd, points.steps, start);
+                let is_there = lanes_before(simd, run.end - start);
+                let near = &mut self.near[at..at + LANES];
+                is_there.select(key, infinite).store_slice(near);
+                least = least.min(is_there.select(far, infinite));
+                at += LANES;
+            }
+        }
+        let bound = match cull.keep {
+            Keep::Within(bound) => bound,
+            Keep::Nearest(depth, looseness) => smallest_but(depth - 1, least) * looseness,
+        };
+        // An infinite bound keeps what is there, and only that.
+        let bound = bound.min(f32::MAX);
+        let mut at = 0;
+        for run in points.runs {
+            for start in run.clone().step_by(LANES) {
+                let key = f32x16::from_slice(simd, &self.near[at..at + LANES]);
+                self.push(simd, points, n_axes, start, key.simd_le(bound));
+                at += LANES;
+            }
+        }
+    }
+
+    /// Empties the list, and makes room for some points; returns for how many.
+    fn make_room(&mut self, points: Points<'_>, n_axes: usize) -> usize {
+        self.len = 0;
+        let slots = points.runs.iter().map(|run| run.len().div_ceil(LANES));
+        let room = (slots.sum::<usize>() + 1) * LANES;
+        for steps in &mut self.steps[..n_axes] {
+            if steps.len() < room {
+                steps.resize(room.next_power_of_two(), 0);
+            }
+        }
+        if points.wants_numbers && self.numbers.len() < room {
+            self.numbers.resize(room.next_power_of_two(), 0);
+        }
+        room
+    }
+
+    /// Takes in some of sixteen points.
+    #[inline(always)]
+    fn push<S: Simd>(
+        &mut self,
+        simd: S,
+        points: Points<'_>,
+        n_axes: usize,
+        start: usize,
+        matters: mask32x16<S>,
+    ) {
+        let to = self.len..self.len + LANES;
+        for axis in 0..n_axes {
+            let steps = i32x16::from_slice(simd, &points.steps[axis][start..start + LANES]);
+            steps
+                .compress(matters)
+                .store_slice(&mut self.steps[axis][to.clone()]);
+        }
+        if points.wants_numbers {
+            let numbers = match points.numbers {
+                Some(numbers) => u32x16::from_slice(simd, &numbers[start..start + LANES]),
+                None => u32x16::from_slice(simd, &ASCENDING) + start as u32,
+            };
+            numbers.compress(matters).store_slice(&mut self.numbers[to]);
+        }
+        self.len += matters.to_bitmask().count_ones() as usize;
+    }
+}
+
+/// The numbers of the lanes.
+const ASCENDING: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+
+/// The first lanes, at most sixteen.
+#[inline(always)]
+pub(super) fn lanes_before<S: Simd>(simd: S, n: usize) -> mask32x16<S> {
+    mask32x16::from_bitmask(simd, u64::MAX >> (64 - n.min(LANES)))
+}
+
+impl<M: Measure> Cull<'_, M> {
+    /// The smallest and the largest keys that sixteen points have in the box.
+    #[inline(always)]
+    fn keys<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        steps: &[Vec<i32>; MOST_AXES],
+        start: usize,
+    ) -> (f32x16<S>, f32x16<S>) {
+        let zero = f32x16::splat(simd, 0.0);
+        let [mut near_key, mut far_key] = [zero; 2];
+        for axis in (0..N).rev() {
+            let [low, high] = [self.pixels.low[axis], self.pixels.high[axis]];
+            let steps = i32x16::from_slice(simd, &steps[axis][start..start + LANES]);
+            let ahead = (steps - low).to_float::<f32x16<S>>() * STEP;
+            let past = ahead - (high - low) as f32 * STEP;
+            // Terms are not below zero, so that the first ones become the keys as they are.
+            let [near, far] = self
+                .measure
+                .terms([past.max(-ahead).max(zero), ahead.max(-past)]);
+            near_key = self.measure.accumulate(near, near_key);
+            far_key = self.measure.accumulate(far, far_key);
+        }
+        (near_key, far_key)
+    }
+}
+
+/// The smallest number of the lanes that is left when `n` have been taken away; more, if some are equal.
+///
+/// Each lane holds the distance of another point, so it bounds that of the point in this place of the order.
+#[inline(always)]
+fn smallest_but<S: Simd>(n: usize, mut far: f32x16<S>) -> f32 {
+    for _ in 0..n {
+        let is_smallest = far.simd_eq(far.reduce_min());
+        far = is_smallest.select(f32x16::splat(far.simd, f32::INFINITY), far);
+    }
+    far.reduce_min()
+}

@@ -1,0 +1,339 @@
+//! Candidates as points of the picture's plane, and those that are nearer than others in a whole rectangle of pixels.
+//!
+//! The axes across the picture add the same to the keys of a point at all pixels. So a point is flat: a column, a row, and
+//! the rest.
+//!
+//! Where terms are added up, what a point is nearer than another is a sum over the axes, and along each axis it grows or
+//! shrinks all the way, since terms are convex. So its smallest value in a rectangle is the sum of the smaller ones of
+//! two ends. If that is above zero, the one point is *preferred* to the other: it is nearer in the whole rectangle. A
+//! point to which `K` others are preferred is not among the `K` nearest of any pixel.
+//!
+//! This leaves about half of the points that are left by bounds for each point alone.
+
+use super::LANES;
+use super::cull::{PixelBox, PointList, lanes_before};
+use crate::Metric;
+use crate::fixed::STEP;
+use crate::metric::{Exact, Measure};
+use fearless_simd::{f32x16, i32x16, mask32x16, prelude::*, u32x16};
+
+/// A rectangle of pixels along the axes of the columns and of the rows, and of slices across them, in cells.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cuboid {
+    pub(super) low: [f32; 3],
+    pub(super) high: [f32; 3],
+    /// Whether there are several slices.
+    pub(super) is_deep: bool,
+}
+
+/// Which points are not taken.
+#[derive(Debug)]
+pub(super) struct Thinning {
+    /// Those to which so many others are preferred,
+    pub(super) depth: usize,
+    /// if those others are about this near to the middle of the rectangle: farther ones are preferred to few.
+    pub(super) distance: f32,
+    /// Memory for those others.
+    rivals: Rivals,
+}
+
+impl Thinning {
+    pub(super) fn new() -> Self {
+        Self {
+            depth: 0,
+            distance: 0.0,
+            rivals: Rivals::new(),
+        }
+    }
+
+    /// Those that are near have no larger keys than this at the far corner.
+    #[inline(always)]
+    fn nearby(&self, metric: Metric, cuboid: &Cuboid) -> f32 {
+        let sides = [0, 1, 2].map(|axis| cuboid.high[axis] - cuboid.low[axis]);
+        let diagonal = metric.distance(metric.key(sides));
+        metric.term(self.distance + diagonal / 2.0)
+    }
+}
+
+/// What is to spare of the largest key of a point: there are fewer than 64 roundings in its key, in that of another
+/// point, and in what compares them, and none of them is of more than 2⁻²⁴ of that. (Another point with larger terms is
+/// not preferred in any case.)
+const SPARE: f32 = 128.0 / (1 << 24) as f32;
+
+/// Sixteen points, as seen from a rectangle.
+#[derive(Clone, Copy)]
+struct Seen<S: Simd> {
+    /// Along the three axes, their terms at the low and at the high end; nothing along the third if there is one slice.
+    ends: [[f32x16<S>; 2]; 3],
+    /// What the other axes add.
+    rest: f32x16<S>,
+    /// The largest keys that they have.
+    far: f32x16<S>,
+}
+
+impl<S: Simd> Seen<S> {
+    #[inline(always)]
+    fn new<const DEEP: bool>(exact: Exact, cuboid: &Cuboid, lanes: [f32x16<S>; 4]) -> Self {
+        let Cuboid { low, high, .. } = cuboid;
+        let [x, y, z, rest] = lanes;
+        let [left, right, top, bottom] =
+            exact.terms([x - low[0], x - high[0], y - low[1], y - high[1]]);
+        let mut seen = Self {
+            ends: [[left, right], [top, bottom], [rest; 2]],
+            rest,
+            far: rest + left.max(right) + top.max(bottom),
+        };
+        if DEEP {
+            seen.ends[2] = exact.terms([z - low[2], z - high[2]]);
+            seen.far += seen.ends[2][0].max(seen.ends[2][1]);
+        }
+        seen
+    }
+}
+
+/// Points that may be preferred to others.
+#[derive(Debug)]
+struct Rivals {
+    len: usize,
+    /// Along the three axes, their terms at the low and at the high end.
+    ends: [[Vec<f32>; 2]; 3],
+    /// What the other axes add.
+    rest: Vec<f32>,
+}
+
+impl Rivals {
+    fn new() -> Self {
+        let ends = || [Vec::new(), Vec::new()];
+        Self {
+            len: 0,
+            ends: [ends(), ends(), ends()],
+            rest: Vec::new(),
+        }
+    }
+
+    /// Takes all away, and makes room for so many and a register more.
+    #[inline(always)]
+    fn clear(&mut self, n: usize) {
+        self.len = 0;
+        let room = n + LANES;
+        if self.rest.len() < room {
+            let ends = self.ends.as_flattened_mut().iter_mut();
+            for numbers in ends.chain([&mut self.rest]) {
+                numbers.resize(room.next_power_of_two(), 0.0);
+            }
+        }
+    }
+
+    /// Takes in some of sixteen points.
+    #[inline(always)]
+    fn push<S: Simd, const DEEP: bool>(&mut self, seen: &Seen<S>, mask: mask32x16<S>) {
+        let to = self.len..self.len + LANES;
+        for axis in 0..if DEEP { 3 } else { 2 } {
+            for end in 0..2 {
+                let terms = seen.ends[axis][end].compress(mask);
+                terms.store_slice(&mut self.ends[axis][end][to.clone()]);
+            }
+        }
+        seen.rest
+            .compress(mask)
+            .store_slice(&mut self.rest[to.clone()]);
+        self.len += mask.to_bitmask().count_ones() as usize;
+    }
+
+    /// How many are preferred to each of sixteen points.
+    #[inline(always)]
+    fn preferred<S: Simd, const DEEP: bool>(&self, seen: &Seen<S>) -> u32x16<S> {
+        let mut number = u32x16::splat(seen.far.simd, 0);
+        let n = self.len;
+        let [[left, right], [top, bottom], [front, back]] = &self.ends;
+        let (left, right, rest) = (&left[..n], &right[..n], &self.rest[..n]);
+        let (top, bottom) = (&top[..n], &bottom[..n]);
+        let (front, back) = (&front[..n], &back[..n]);
+        let [across, down, deep] = seen.ends;
+        let lowered = seen.rest - seen.far * SPARE;
+        for rival in 0..n {
+            let across = (across[0] - left[rival]).min(across[1] - right[rival]);
+            let down = (down[0] - top[rival]).min(down[1] - bottom[rival]);
+            let mut nearer = across + down + (lowered - rest[rival]);
+            if DEEP {
+                nearer += (deep[0] - front[rival]).min(deep[1] - back[rival]);
+            }
+            number = nearer.simd_gt(0.0).select(number + 1, number);
+        }
+        number
+    }
+}
+
+/// The axes of space that go with a picture's rows, and with several slices. The first goes with the columns.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PictureAxes {
+    pub(super) rows: usize,
+    pub(super) slices: Option<usize>,
+}
+
+/// Feature points in the plane of the picture.
+#[derive(Debug)]
+pub(super) struct FlatPoints {
+    pub(super) len: usize,
+    /// Their coordinates along the axes of the columns and of the rows, in cells from some corner that is less than 8 cells
+    /// away, and so exact. There is room for a register more.
+    pub(super) x: Vec<f32>,
+    pub(super) y: Vec<f32>,
+    /// The same along the axis across several slices.
+    pub(super) z: Vec<f32>,
+    /// What the other axes add to their keys.
+    pub(super) rest: Vec<f32>,
+    /// Which points of the table they are, if that is wanted.
+    pub(super) numbers: Vec<u32>,
+    pub(super) wants_numbers: bool,
+}
+
+impl FlatPoints {
+    pub(super) fn new() -> Self {
+        Self {
+            len: 0,
+            x: Vec::new(),
+            y: Vec::new(),
+            z: Vec::new(),
+            rest: Vec::new(),
+            numbers: Vec::new(),
+            wants_numbers: false,
+        }
+    }
+
+    /// Takes all away, and makes room for so many.
+    #[inline(always)]
+    fn clear(&mut self, n: usize, wants_numbers: bool) {
+        self.len = 0;
+        self.wants_numbers = wants_numbers;
+        let room = n.next_multiple_of(LANES) + LANES;
+        if self.x.len() < room {
+            for numbers in [&mut self.x, &mut self.y, &mut self.z, &mut self.rest] {
+                numbers.resize(room.next_power_of_two(), 0.0);
+            }
+        }
+        if wants_numbers && self.numbers.len() < room {
+            self.numbers.resize(room.next_power_of_two(), 0);
+        }
+    }
+
+    /// Takes all of a list, whose coordinates are counted from the lower corner of some pixels. The rows of the picture go
+    /// along `row_axis`, and several slices lie along `deep_axis`.
+    #[inline(always)]
+    pub(super) fn flatten<S: Simd, M: Measure>(
+        &mut self,
+        simd: S,
+        measure: M,
+        points: &PointList,
+        pixels: &PixelBox,
+        axes: PictureAxes,
+    ) {
+        self.clear(points.len, self.wants_numbers);
+        self.len = points.len;
+        for start in (0..points.len).step_by(LANES) {
+            let at = start..start + LANES;
+            let mut rest = f32x16::splat(simd, 0.0);
+            for axis in (1..pixels.n_axes).rev() {
+                if axis != axes.rows && Some(axis) != axes.slices {
+                    let [term] = measure.terms([places(simd, points, pixels, axis, start)]);
+                    rest = measure.accumulate(term, rest);
+                }
+            }
+            places(simd, points, pixels, 0, start).store_slice(&mut self.x[at.clone()]);
+            let rows = places(simd, points, pixels, axes.rows, start);
+            rows.store_slice(&mut self.y[at.clone()]);
+            if let Some(deep_axis) = axes.slices {
+                let depths = places(simd, points, pixels, deep_axis, start);
+                depths.store_slice(&mut self.z[at.clone()]);
+            }
+            rest.store_slice(&mut self.rest[at.clone()]);
+            if self.wants_numbers {
+                self.numbers[at.clone()].copy_from_slice(&points.numbers[at]);
+            }
+        }
+    }
+
+    /// Takes some of the points that are seen from a cuboid. Only for metrics whose terms are added up.
+    #[inline(always)]
+    pub(super) fn thin<S: Simd>(
+        &mut self,
+        simd: S,
+        metric: Metric,
+        points: &Self,
+        cuboid: &Cuboid,
+        thinning: &mut Thinning,
+    ) {
+        if cuboid.is_deep {
+            self.thin_deep::<S, true>(simd, metric, points, cuboid, thinning);
+        } else {
+            self.thin_deep::<S, false>(simd, metric, points, cuboid, thinning);
+        }
+    }
+
+    /// As [`thin`](Self::thin), where it is known whether there are several slices.
+    #[inline(always)]
+    fn thin_deep<S: Simd, const DEEP: bool>(
+        &mut self,
+        simd: S,
+        metric: Metric,
+        points: &Self,
+        cuboid: &Cuboid,
+        thinning: &mut Thinning,
+    ) {
+        self.clear(points.len, points.wants_numbers);
+        let nearby = thinning.nearby(metric, cuboid);
+        let rivals = &mut thinning.rivals;
+        rivals.clear(points.len);
+        for start in (0..points.len).step_by(LANES) {
+            let seen = Seen::new::<DEEP>(Exact(metric), cuboid, points.lanes(simd, start));
+            let is_there = lanes_before(simd, points.len - start);
+            rivals.push::<S, DEEP>(&seen, seen.far.simd_le(nearby) & is_there);
+        }
+        for start in (0..points.len).step_by(LANES) {
+            let lanes = points.lanes(simd, start);
+            let seen = Seen::new::<DEEP>(Exact(metric), cuboid, lanes);
+            let matters = rivals
+                .preferred::<S, DEEP>(&seen)
+                .simd_lt(thinning.depth as u32);
+            let mask = matters & lanes_before(simd, points.len - start);
+            let to = self.len..self.len + LANES;
+            let [x, y, z, rest] = lanes;
+            x.compress(mask).store_slice(&mut self.x[to.clone()]);
+            y.compress(mask).store_slice(&mut self.y[to.clone()]);
+            if DEEP {
+                z.compress(mask).store_slice(&mut self.z[to.clone()]);
+            }
+            rest.compress(mask).store_slice(&mut self.rest[to.clone()]);
+            if self.wants_numbers {
+                let numbers = u32x16::from_slice(simd, &points.numbers[start..start + LANES]);
+                numbers.compress(mask).store_slice(&mut self.numbers[to]);
+            }
+            self.len += mask.to_bitmask().count_ones() as usize;
+        }
+    }
+
+    /// The columns, rows, depths and rests of sixteen points.
+    #[inline(always)]
+    fn lanes<S: Simd>(&self, simd: S, start: usize) -> [f32x16<S>; 4] {
+        let at = start..start + LANES;
+        [
+            f32x16::from_slice(simd, &self.x[at.clone()]),
+            f32x16::from_slice(simd, &self.y[at.clone()]),
+            f32x16::from_slice(simd, &self.z[at.clone()]),
+            f32x16::from_slice(simd, &self.rest[at]),
+        ]
+    }
+}
+
+/// The coordinates of sixteen points of a list along an axis, from the lower corner of some pixels.
+#[inline(always)]
+fn places<S: Simd>(
+    simd: S,
+    points: &PointList,
+    pixels: &PixelBox,
+    axis: usize,
+    start: usize,
+) -> f32x16<S> {
+    let steps = i32x16::from_slice(simd, &points.steps[axis][start..start + LANES]);
+    (steps - pixels.low[axis]).to_float::<f32x16<S>>() * STEP
+}

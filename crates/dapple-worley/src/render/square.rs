@@ -1,0 +1,444 @@
+//! Squares of up to 64 × 64 pixels and their tiles of up to 32 × 32: from candidates to values.
+//!
+//! The candidates of a square are picked from the table, and those of each of its tiles from them. Where a key reaches the
+//! edge of the neighborhood that the candidates come from, the pixels are filled again from a larger one.
+
+use super::area::Area;
+use super::block::{Block, Memory};
+use super::cull::{Cull, Keep, PixelBox, Points};
+use super::flat::{Cuboid, PictureAxes};
+use super::kernel::{Rows, TILE};
+use super::track::{Found, TrackedRows};
+use super::{Basis, LANES, Output};
+use crate::fixed::{MOST_AXES, STEP, STEPS};
+use crate::metric::{Additive, Exact, Longest, Measure, Powers, Squares};
+use crate::sink::{Tone, Values};
+use crate::{LIMIT, Metric};
+use core::ops::Range;
+use fearless_simd::dispatch;
+
+/// A distance that hardly any of the nearest points exceeds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Guess {
+    pub(super) distance: f32,
+    /// The cells that it reaches over.
+    pub(super) ring: i32,
+}
+
+impl Guess {
+    /// A ball of that size has so many points on average that fewer than `depth` are unlikely: about one in 250.
+    pub(super) fn new(
+        basis: &dyn Basis,
+        middle: [i64; MOST_AXES],
+        n_axes: usize,
+        depth: usize,
+    ) -> Self {
+        let points = [5.5, 7.8, 9.8, 11.6][depth - 1];
+        // The volumes of the Euclidean unit balls, near enough for a guess.
+        let ball = [1.0, 2.0, 3.1, 4.2, 4.9][n_axes];
+        let distance = libm::pow(points / (ball * basis.density(middle)), 1.0 / n_axes as f64);
+        Self {
+            distance: distance as f32,
+            ring: (distance.ceil() as i32).max(1),
+        }
+    }
+}
+
+/// How a block is filled.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plan {
+    /// The greatest n of `F_n` that is needed.
+    pub(super) depth: usize,
+    pub(super) guess: Guess,
+    pub(super) metric: Metric,
+    /// The axis of the rows, if the terms of all others can be joined before those of the rows.
+    pub(super) row_axis: Option<usize>,
+    /// The columns and rows of a tile.
+    pub(super) tile: [usize; 2],
+    /// The axis across the slices, if there are several.
+    pub(super) deep_axis: Option<usize>,
+}
+
+impl Plan {
+    /// The points that can be among the nearest.
+    pub(super) fn nearest(&self) -> Keep {
+        Keep::Nearest(self.depth, self.metric.looseness())
+    }
+
+    /// Where pixels lie, from their lower corner.
+    fn cuboid(&self, pixels: &PixelBox) -> Cuboid {
+        let mut high = [0.0; 3];
+        for (high, axis) in high
+            .iter_mut()
+            .zip([Some(0), self.row_axis, self.deep_axis])
+        {
+            if let Some(axis) = axis {
+                *high = (pixels.high[axis] - pixels.low[axis]) as f32 * STEP;
+            }
+        }
+        Cuboid {
+            low: [0.0; 3],
+            high,
+            is_deep: self.deep_axis.is_some(),
+        }
+    }
+
+    /// Whether points that are never among the nearest of a rectangle are left out.
+    pub(super) fn thins(&self) -> bool {
+        self.row_axis.is_some() && self.metric.is_exact_sum()
+    }
+}
+
+/// A square whose candidates are picked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Square {
+    pub(super) pixels: PixelBox,
+    /// The same, from its lower corner.
+    pub(super) cuboid: Cuboid,
+    /// Whether it is its only tile.
+    pub(super) is_tile: bool,
+    /// Keys from here on may be wrong.
+    pub(super) limit: f32,
+    pub(super) plan: Plan,
+}
+
+/// The columns and rows of the squares, and of their tiles.
+const SIZES: [[[usize; 2]; 2]; 3] = [
+    [[64, 64], [32, 32]],
+    [[32, 32], [32, 16]],
+    [[16, 16], [16, 16]],
+];
+
+/// Squares are not wider than this many steps: in wider ones, almost all points matter.
+const WIDEST_SQUARE: i32 = STEPS + STEPS / 2;
+
+/// How many cells a square and its neighborhood may span, so that coordinates in it are exact in `f32`.
+const SPAN: i32 = 8;
+
+/// From where feature points are taken for a square.
+#[derive(Clone, Copy, Debug)]
+struct Neighborhood {
+    /// So many cells on every side of those that the square touches.
+    ring: i32,
+    /// How near to the square points are looked for; all that could matter, if nothing.
+    guess: Option<f32>,
+}
+
+impl Neighborhood {
+    /// Whether coordinates within it are exact.
+    fn fits(&self, pixels: &PixelBox) -> bool {
+        let [first, last] = pixels.cells(self.ring);
+        (0..pixels.n_axes).all(|axis| last[axis] - first[axis] < SPAN)
+    }
+
+    /// The next larger one.
+    fn grown(self) -> Self {
+        Self {
+            ring: self.ring + i32::from(self.guess.is_none()),
+            guess: None,
+        }
+    }
+}
+
+impl Block<'_> {
+    /// Fills the pixels of the block.
+    pub(super) fn squares(&self, mut plan: Plan, outs: &mut [Output<'_>], memory: &mut Memory) {
+        let all = self.all();
+        let extent = |size: [usize; 2]| {
+            let first = all.parts(size).next();
+            first.map_or(0, |first| memory.pixel_box(&first).extent())
+        };
+        let fits = |[square, _]: &[[usize; 2]; 2]| extent(*square) <= WIDEST_SQUARE;
+        let mut neighborhood = Neighborhood {
+            ring: plan.guess.ring,
+            guess: None,
+        };
+        let square;
+        [square, plan.tile] = SIZES.into_iter().find(fits).unwrap_or_else(|| {
+            neighborhood.guess = Some(plan.guess.distance);
+            // Pixels are far apart.
+            let is_widest = extent([LANES, 1]) as f32 * STEP >= 1.5;
+            [[LANES, LANES / if is_widest { 4 } else { 2 }]; 2]
+        });
+        for area in all.parts(square) {
+            self.square(&area, neighborhood, plan, outs, memory);
+        }
+    }
+
+    /// Fills the pixels of a square.
+    fn square(
+        &self,
+        area: &Area,
+        neighborhood: Neighborhood,
+        mut plan: Plan,
+        outs: &mut [Output<'_>],
+        memory: &mut Memory,
+    ) {
+        let pixels = memory.pixel_box(area);
+        if !neighborhood.fits(&pixels) {
+            self.one_by_one(area, outs);
+            return;
+        }
+        let limit = self.pick(area, &pixels, neighborhood, plan, memory);
+        let square = Square {
+            pixels,
+            cuboid: plan.cuboid(&pixels),
+            is_tile: !area.is_larger(plan.tile),
+            limit,
+            plan,
+        };
+        for tile in area.parts(plan.tile) {
+            self.tile(&tile, &square, outs, memory);
+        }
+        plan.tile = [LANES, TILE];
+        plan.deep_axis = None;
+        if memory.unknown.is_empty() {
+            return;
+        }
+        for part in core::mem::take(&mut memory.unknown) {
+            self.square(&part, neighborhood.grown(), plan, outs, memory);
+        }
+    }
+
+    /// Picks the candidates of a square from a table; all keys below the limit that is returned are right.
+    fn pick(
+        &self,
+        area: &Area,
+        pixels: &PixelBox,
+        neighborhood: Neighborhood,
+        plan: Plan,
+        memory: &mut Memory,
+    ) -> f32 {
+        let metric = plan.metric;
+        let cells = pixels.cells(neighborhood.ring);
+        let border = metric.term(pixels.border(cells) as f32 * STEP);
+        let guess = neighborhood.guess.map(|guess| metric.term(guess));
+        let limit = metric.tightened(guess.map_or(border, |guess| guess.min(border)));
+        let mut moved = *pixels;
+        memory.is_wide = neighborhood.ring > plan.guess.ring;
+        let table = if memory.is_wide {
+            let corner = memory.table.cells;
+            let mut all = corner;
+            for axis in 0..pixels.n_axes {
+                all.first[axis] = corner.first[axis] + i64::from(cells[0][axis]);
+                all.last[axis] = corner.first[axis] + i64::from(cells[1][axis]);
+                moved.low[axis] -= cells[0][axis] * STEPS;
+                moved.high[axis] -= cells[0][axis] * STEPS;
+            }
+            memory.wide_table.wants_ids = memory.table.wants_ids;
+            self.bands[0]
+                .picture
+                .basis
+                .fill(self.level, &mut memory.wide_table, all);
+            &memory.wide_table
+        } else {
+            &memory.table
+        };
+        memory.low = moved.low;
+        table.runs(moved.cells(neighborhood.ring), &mut memory.runs);
+        let points = Points {
+            steps: &table.steps,
+            numbers: None,
+            runs: &memory.runs,
+            wants_numbers: memory.square.wants_numbers,
+        };
+        let keep = guess.map_or(plan.nearest(), Keep::Within);
+        let whole = plan.cuboid(&moved);
+        let has_tiles = area.is_larger(plan.tile);
+        let (list, square, tile) = (&mut memory.list, &mut memory.square, &mut memory.tile);
+        let thinning = &mut memory.thinning;
+        (thinning.depth, thinning.distance) = (plan.depth, plan.guess.distance);
+        match metric {
+            Metric::Minkowski(p) => dispatch!(self.level, simd => {
+                let measure = Powers(p);
+                list.cull(simd, Cull { measure, pixels: &moved, keep }, points);
+            }),
+            _ => dispatch!(self.level, simd => {
+                let measure = Exact(metric);
+                list.cull(simd, Cull { measure, pixels: &moved, keep }, points);
+                if let Some(rows) = plan.row_axis.filter(|_| plan.thins()) {
+                    let slices = plan.deep_axis;
+                    square.flatten(simd, measure, list, &moved, PictureAxes { rows, slices });
+                    if has_tiles {
+                        tile.thin(simd, metric, square, &whole, thinning);
+                        core::mem::swap(tile, square);
+                    }
+                }
+            }),
+        }
+        limit
+    }
+
+    /// Fills the pixels of a tile from the candidates of its square.
+    fn tile(&self, area: &Area, square: &Square, outs: &mut [Output<'_>], memory: &mut Memory) {
+        let plan = square.plan;
+        match plan.metric {
+            Metric::Minkowski(p) => {
+                dispatch!(self.level, simd => memory.candidates(simd, Powers(p), area, square));
+            }
+            metric => {
+                dispatch!(self.level, simd => memory.candidates(simd, Exact(metric), area, square));
+            }
+        }
+        let is_values = matches!(outs[0], Output::Values(..));
+        if !is_values {
+            let table = if memory.is_wide {
+                &memory.wide_table
+            } else {
+                &memory.table
+            };
+            memory.lookup.fill(&memory.tile, table, memory.low);
+        }
+        let size = match area.columns.len() {
+            TILE if is_values => [TILE; 2],
+            _ => [LANES, TILE],
+        };
+        for slice in area.slices.clone() {
+            if let Some(deep_axis) = plan.deep_axis {
+                let place = memory.slices[slice][deep_axis] - square.pixels.low[deep_axis];
+                let exact = Exact(plan.metric);
+                dispatch!(self.level, simd => memory.slice_terms(simd, exact, area, square, place));
+            }
+            for (register, area) in area.parts(size).enumerate() {
+                let area = Area {
+                    slices: slice..slice + 1,
+                    ..area
+                };
+                let part = Part {
+                    register,
+                    area: &area,
+                    square,
+                };
+                let end = self.fill_part(part, &mut outs[slice], memory);
+                if end < area.rows.end {
+                    memory.unknown.push(Area {
+                        rows: end..area.rows.end,
+                        ..area
+                    });
+                }
+            }
+        }
+    }
+
+    /// Fills one or two registers of columns of a tile, up to the first row with a key beyond the limit, which it returns.
+    fn fill_part(&self, part: Part<'_>, out: &mut Output<'_>, memory: &Memory) -> usize {
+        let metric = part.square.plan.metric;
+        if let Output::Values(values, out) = out {
+            let rows = self.rows_of(part, values, memory);
+            return match metric {
+                Metric::Euclidean => self.fill_values(Squares, part, &rows, out),
+                Metric::Manhattan => self.fill_values(Additive(metric), part, &rows, out),
+                Metric::Chebyshev => self.fill_values(Longest, part, &rows, out),
+                Metric::Minkowski(p) => {
+                    dispatch!(self.level, simd => rows.fill::<_, _, LIMIT>(simd, Powers(p), out))
+                }
+            };
+        }
+        match metric {
+            Metric::Chebyshev => self.fill_tracked(Longest, part, out, memory),
+            metric => self.fill_tracked(Additive(metric), part, out, memory),
+        }
+    }
+
+    /// Fills values.
+    fn fill_values<M: Measure>(
+        &self,
+        measure: M,
+        part: Part<'_>,
+        rows: &Rows<'_>,
+        out: &mut [&mut [f32]],
+    ) -> usize {
+        let level = self.level;
+        match part.square.plan.depth {
+            1 => dispatch!(level, simd => rows.fill::<_, M, 1>(simd, measure, out)),
+            2 => dispatch!(level, simd => rows.fill::<_, M, 2>(simd, measure, out)),
+            _ => dispatch!(level, simd => rows.fill::<_, M, LIMIT>(simd, measure, out)),
+        }
+    }
+
+    /// Fills what shows which points are the nearest.
+    fn fill_tracked<M: Measure>(
+        &self,
+        measure: M,
+        part: Part<'_>,
+        out: &mut Output<'_>,
+        memory: &Memory,
+    ) -> usize {
+        let (level, area) = (self.level, part.area);
+        let mut lines = memory.lines.each_ref().map(|line| &line[..]);
+        lines[0] = &lines[0][area.columns.start..];
+        let rows = TrackedRows {
+            rows: area.rows.clone(),
+            columns: self.columns_of(area),
+            register: part.register,
+            lines,
+            low: part.square.pixels.low,
+            candidates: &memory.candidates[..memory.tile.len],
+            lookup: &memory.lookup,
+            limit: part.square.limit,
+        };
+        let mut put = |found: &Found| self.put(area.slices.start, found, out);
+        if part.square.plan.depth <= 2 {
+            dispatch!(level, simd => rows.fill::<_, M, 2>(simd, measure, &mut put))
+        } else {
+            dispatch!(level, simd => rows.fill::<_, M, LIMIT>(simd, measure, &mut put))
+        }
+    }
+
+    /// The rows of a part, for the kernel.
+    fn rows_of<'a>(&self, part: Part<'_>, values: &'a Values, memory: &'a Memory) -> Rows<'a> {
+        Rows {
+            rows: part.area.rows.clone(),
+            columns: self.columns_of(part.area),
+            register: part.register,
+            candidates: &memory.candidates[..memory.tile.len],
+            limit: part.square.limit,
+            values,
+        }
+    }
+
+    /// The columns of an area, in the window.
+    fn columns_of(&self, area: &Area) -> Range<usize> {
+        let left = self.range.start;
+        left + area.columns.start..left + area.columns.end
+    }
+
+    /// Puts what was found in a row.
+    fn put(&self, slice: usize, found: &Found, out: &mut Output<'_>) {
+        match out {
+            Output::Features(features) => found.put(features),
+            Output::Gradients(tone, rows) => {
+                let metric = self.bands[slice].picture.basis.metric();
+                let n = found.n_axes;
+                let out = &mut rows[found.row][found.columns.start * n..found.columns.end * n];
+                match n {
+                    2 => put_gradients::<2>(tone, metric, found, out),
+                    3 => put_gradients::<3>(tone, metric, found, out),
+                    _ => put_gradients::<4>(tone, metric, found, out),
+                }
+            }
+            Output::Values(..) => {}
+        }
+        for (lane, column) in found.columns.clone().enumerate() {
+            if found.unknown >> lane & 1 == 1 {
+                self.one(slice, column, found.row, out);
+            }
+        }
+    }
+}
+
+/// Puts the gradients of some pixels of a row one after the other.
+fn put_gradients<const N: usize>(tone: &Tone, metric: Metric, found: &Found, out: &mut [f32]) {
+    for (lane, out) in out.as_chunks_mut::<N>().0.iter_mut().enumerate() {
+        *out = tone.gradient(metric, &found.vectors::<N>(lane));
+    }
+}
+
+/// One or two registers of columns of a tile.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    area: &'a Area,
+    /// Which of the registers of the tile's columns comes first.
+    register: usize,
+    square: &'a Square,
+}
