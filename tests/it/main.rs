@@ -5,6 +5,7 @@ mod docs;
 mod examples;
 mod figures;
 mod golden;
+mod periods;
 mod readme;
 mod recipe_code;
 mod recipes;

@@ -13,7 +13,7 @@ use dapple::image::RowWriter;
 use dapple::recipe::{
     Bake, Band, ImageAlpha, Images, Picture, Recipe, RecipeError, RecipeErrorKind,
 };
-use dapple::tile::{Map, repeat};
+use dapple::tile::Map;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::fs::File;

@@ -9,7 +9,6 @@ use dapple_color::{Code, LinearRgb, LinearRgba, Normal};
 
 /// What the pixels of an image are, which decides how they are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
 pub enum Content {
     /// Data such as heights and masks. PNG: gray from 0 to 1, `round(value · max)`, linear, without a color chunk.
     /// OpenEXR: the plane `Y`, any number.

@@ -63,6 +63,10 @@ impl Field for CellValues {
         }
         Ok(())
     }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        self.worley.plane_period()
+    }
 }
 
 /// The number of a point; of a position without a place it is NaN.

@@ -205,6 +205,10 @@ impl Field for Cellular<2> {
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         self.render_plane(&Plane::default(), window, out)
     }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        self.worley.plane_period()
+    }
 }
 
 /// The range of some values, but for one in a thousand at either end.

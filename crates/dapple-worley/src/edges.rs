@@ -21,7 +21,7 @@ use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 #[derive(Clone, Debug)]
 pub struct EdgeDistances<const N: usize> {
     /// With the Euclidean metric.
-    worley: Worley<N>,
+    pub(crate) worley: Worley<N>,
 }
 
 impl<const N: usize> Worley<N>
@@ -73,5 +73,9 @@ impl Field for EdgeDistances<2> {
 
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         self.render_plane(&Plane::default(), window, out)
+    }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        self.worley.plane_period()
     }
 }

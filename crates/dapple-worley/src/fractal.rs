@@ -333,6 +333,17 @@ where
     }
 }
 
+impl<const N: usize> Fractal<N>
+where
+    Axes: Space<N>,
+{
+    /// The cells of the first octave after which the first two axes repeat, as the others do by then.
+    pub(crate) fn plane_period(&self) -> [Option<f64>; 2] {
+        let first = self.octaves.first();
+        first.map_or([None; 2], |octave| octave.worley.plane_period())
+    }
+}
+
 impl Field for Fractal<2> {
     fn sample(&self, position: DVec2) -> f32 {
         self.value(position)
@@ -346,6 +357,10 @@ impl Field for Fractal<2> {
 
     fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         self.render_plane(&Plane::default(), window, out)
+    }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        self.plane_period()
     }
 }
 

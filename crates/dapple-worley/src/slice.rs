@@ -95,6 +95,14 @@ impl Field for Slice {
             Texture::Edges(edges) => edges.render_plane(&self.plane, window, out),
         }
     }
+
+    fn period(&self) -> [Option<f64>; 2] {
+        match &self.texture {
+            Texture::Cellular(cellular) => cellular.worley.plane_period(),
+            Texture::Fractal(fractal) => fractal.plane_period(),
+            Texture::Edges(edges) => edges.worley.plane_period(),
+        }
+    }
 }
 
 #[cfg(test)]

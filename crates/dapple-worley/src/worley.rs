@@ -188,6 +188,14 @@ where
         })
     }
 
+    /// The cells after which the first two axes repeat.
+    pub(crate) fn plane_period(&self) -> [Option<f64>; 2] {
+        [0, 1].map(|axis| match self.lattice.period[axis] {
+            0 => None,
+            cells => Some(cells.into()),
+        })
+    }
+
     /// Repeats the feature points after so many cells along each axis; `None` where the axis does not repeat.
     ///
     /// The repeat is exact, and nothing is blended. Repeats of a point are points of their own with one id, so with a
