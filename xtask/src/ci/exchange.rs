@@ -6,6 +6,7 @@
 //! places.
 
 use anyhow::Context;
+use std::path::{Path, PathBuf};
 use xshell::{Cmd, Shell, cmd};
 
 /// Validates a GLB file: errors and warnings fail.
@@ -105,16 +106,24 @@ pub(super) fn exchange(shell: &Shell) -> anyhow::Result<()> {
             continue;
         }
         let file = folder.path().join(judge.file);
-        let bake = cmd!(
-            shell,
-            "cargo run --quiet --package dapple-cli -- bake rock --size 64x40 --quiet -o {file}"
-        );
+        let dapple = command_of_tests(shell)?;
+        let bake = cmd!(shell, "{dapple} bake rock --size 64x40 --quiet -o {file}");
         let maps = judge.file.ends_with(".npy").then_some(["--maps", "normal"]);
         bake.quiet().args(maps.into_iter().flatten()).run()?;
         let asked = judge.command(shell, judge.code).arg(&file).quiet().run();
         asked.with_context(|| format!("{} refused {}", judge.needs, judge.file))?;
     }
     Ok(())
+}
+
+/// The command as the tests of the workspace use it: it is there after them, and is not built a second time with other
+/// features.
+fn command_of_tests(shell: &Shell) -> anyhow::Result<PathBuf> {
+    cmd!(shell, "cargo test --quiet --workspace --no-run")
+        .quiet()
+        .run()?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into());
+    Ok(Path::new(&target).join("debug").join("dapple"))
 }
 
 impl Judge {
