@@ -110,5 +110,5 @@ fn failure(error: std::io::Error) -> ImageError {
     ImageError::new(ImageErrorKind::Io).because(error)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "png"))]
 mod tests;
