@@ -65,6 +65,9 @@ pub(super) fn evaluate(
 /// The pixels that a thread takes at a time.
 const CHUNK_PIXELS: u32 = 1 << 16;
 
+/// The positions that a warp asks at a time: what is made for them stays in a cache.
+const CHUNK_POSITIONS: usize = 1 << 12;
+
 /// The values of the steps `wanted` at the pixels of a window, on all cores where the feature `rayon` is on.
 pub(super) fn window(
     steps: &[Step],
@@ -170,8 +173,12 @@ fn step(
         } => {
             let [x, y] = [made(&by[0]), made(&by[1])];
             let shifted = shifted(places.positions(), x, y, *amount);
-            let input = evaluate(steps, whole, Places::Positions(&shifted), &[*input], &[])?;
-            Ok(Values::clone(&input[0]))
+            let values =
+                |positions| evaluate(steps, whole, Places::Positions(positions), &[*input], &[]);
+            let (first, rest) = shifted.split_at(CHUNK_POSITIONS.min(count));
+            let rest = rest.chunks(CHUNK_POSITIONS).map(values);
+            let chunks: Result<Vec<_>, _> = core::iter::once(values(first)).chain(rest).collect();
+            Ok(join(chunks?).swap_remove(0))
         }
         Step::Global(..) => match whole {
             Some(whole) => whole.at(index, places),
