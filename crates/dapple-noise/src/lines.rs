@@ -12,9 +12,6 @@ use std::ops::Range;
 /// How many rows of pixels a thread takes at once.
 const ROWS: u32 = 32;
 
-/// Cells with fewer pixels than this in a row are not worth a loop of their own.
-const SHORT_RUN: usize = 6;
-
 /// A plane through the noise, with what the columns of a window share.
 pub(crate) struct Lines<'a, const N: usize, const REST: usize> {
     noise: &'a GradientNoise<N>,
@@ -108,20 +105,12 @@ impl<'a, const N: usize, const REST: usize> Lines<'a, N, REST> {
         }
         corners.move_to(places.map(|place| place.cell), &self.columns, self.noise);
         corners.blend(&places.map(|place| place.offset), self.columns.len());
-        let is_short = values.len() < SHORT_RUN * self.runs.len();
         for run in &self.runs {
             let pixels = run.pixels.clone();
             let sides = run.sides.map(|side| corners.columns[side]);
             let (offsets, fades) = (&self.offsets[pixels.clone()], &self.fades[pixels.clone()]);
             if !run.is_finite {
                 values[pixels].fill(f32::NAN);
-            } else if is_short {
-                // A loop that is not unrolled.
-                let mut values = values[pixels].iter_mut();
-                let mut places = offsets.iter().zip(fades);
-                while let (Some(value), Some((&t, &by))) = (values.next(), places.next()) {
-                    *value = Column::between(sides, t, by);
-                }
             } else {
                 for ((value, &t), &by) in values[pixels].iter_mut().zip(offsets).zip(fades) {
                     *value = Column::between(sides, t, by);
