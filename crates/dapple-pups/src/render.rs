@@ -146,21 +146,6 @@ impl<K: Sink> Band<'_, '_, K> {
             xs: &columns.padded,
             ys: &self.ys.padded,
         };
-        if self.net.shifts.is_empty() {
-            self.add_members::<S, P, false>(simd, &splatter, columns, planes);
-        } else {
-            self.add_members::<S, P, true>(simd, &splatter, columns, planes);
-        }
-    }
-
-    #[inline(always)]
-    fn add_members<S: Simd, P: Profile, const ORIENTED: bool>(
-        &self,
-        simd: S,
-        splatter: &Splatter<P, K>,
-        columns: &Lane,
-        planes: &mut Planes<K>,
-    ) {
         let mut tiles = Tiles::default();
         for &member in &self.members {
             let instance = &self.net.instances[member as usize];
@@ -180,14 +165,10 @@ impl<K: Sink> Band<'_, '_, K> {
             let member = Member {
                 instance,
                 blocks: self.net.blocks(instance),
-                shift: if ORIENTED {
-                    self.net.shifts[instance.point as usize]
-                } else {
-                    [0.0; 2]
-                },
+                shift: self.net.shifts.get(instance.point as usize).copied(),
                 footprint,
             };
-            splatter.add::<S, ORIENTED>(simd, member, &mut tiles, planes);
+            splatter.add(simd, member, &mut tiles, planes);
         }
     }
 

@@ -39,8 +39,8 @@ pub(crate) struct Splatter<'a, P, K> {
 pub(crate) struct Member<'a> {
     pub(crate) instance: &'a Instance,
     pub(crate) blocks: &'a [AxisBlock],
-    /// ε times the orientation in the plane.
-    pub(crate) shift: [f32; 2],
+    /// ε times the orientation in the plane, where there are orientations.
+    pub(crate) shift: Option<[f32; 2]>,
     pub(crate) footprint: Footprint,
 }
 
@@ -64,7 +64,7 @@ impl Footprint {
 impl<P: Profile, K: Sink> Splatter<'_, P, K> {
     /// Adds the weights of a control point to the planes; `tiles` is memory to work in.
     #[inline(always)]
-    pub(crate) fn add<S: Simd, const ORIENTED: bool>(
+    pub(crate) fn add<S: Simd>(
         &self,
         simd: S,
         member: Member,
@@ -73,17 +73,17 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
     ) {
         // Where registers have 16 lanes, there are 32 of them.
         if const { <S::f32s as SimdBase<S>>::LEN < LANES } {
-            self.add_tiles::<S, S::f32s, FEW_ROWS, ORIENTED>(simd, member, tiles, planes);
+            self.add_tiles::<S, S::f32s, FEW_ROWS>(simd, member, tiles, planes);
         } else if member.footprint.n_columns > NARROW {
-            self.add_tiles::<S, S::f32s, ROWS, ORIENTED>(simd, member, tiles, planes);
+            self.add_tiles::<S, S::f32s, ROWS>(simd, member, tiles, planes);
         } else {
-            self.add_tiles::<S, f32x8<S>, FEW_ROWS, ORIENTED>(simd, member, tiles, planes);
+            self.add_tiles::<S, f32x8<S>, FEW_ROWS>(simd, member, tiles, planes);
         }
     }
 
     /// Adds the weights, in tiles as wide as a register `V` and `N` rows high.
     #[inline(always)]
-    fn add_tiles<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize, const ORIENTED: bool>(
+    fn add_tiles<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,
         simd: S,
         member: Member,
@@ -101,27 +101,16 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
             (&self.xs[column..column + n_columns], V::LEN),
             &self.ys[row..row + n_rows],
         );
-        if tiles.are_few() {
-            for strip in 0..n_rows / N {
-                for column in 0..n_columns / V::LEN {
-                    if let Some(tile) = tiles.tile(simd, strip, column) {
-                        self.add_tile::<S, V, N, ORIENTED>(simd, member, tiles, tile, planes);
-                    }
-                }
-            }
-        } else {
-            tiles.sort(simd);
-            for n_axes in 0..=BLOCK {
-                for &tile in tiles.with_axes(n_axes) {
-                    self.add_tile::<S, V, N, ORIENTED>(simd, member, tiles, tile, planes);
-                }
+        for n_axes in tiles.sort(simd)..=BLOCK {
+            for &tile in tiles.with_axes(n_axes) {
+                self.add_tile::<S, V, N>(simd, member, tiles, tile, planes);
             }
         }
     }
 
     /// Adds the weights in one tile.
     #[inline(always)]
-    fn add_tile<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize, const ORIENTED: bool>(
+    fn add_tile<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
         &self,
         simd: S,
         member: Member,
@@ -142,10 +131,10 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
                 weights[row] *= products[row];
             }
         }
-        if ORIENTED {
+        if let Some(shift) = member.shift {
             let mut y = [0.0; N];
             y.copy_from_slice(&strips[0].y[..N]);
-            weights = shift_weights(simd, &weights, member.shift, x, &y);
+            weights = shift_weights(simd, &weights, shift, x, &y);
         }
         let footprint = &member.footprint;
         let column = footprint.first_column(V::LEN) + tile.column as usize * V::LEN;

@@ -110,29 +110,11 @@ impl Tiles {
         }
     }
 
-    /// Whether there are so few tiles that they are not worth sorting.
+    /// Sorts the tiles by how many axes matter, and gives the least number. A few tiles are taken to have all axes.
     #[inline(always)]
-    pub(crate) fn are_few(&self) -> bool {
-        self.n_columns * self.n_strips <= FEW
-    }
-
-    /// A tile, with all axes if any matters; nothing if the control point has no weight there.
-    #[inline(always)]
-    pub(crate) fn tile<S: Simd>(&self, simd: S, strip: usize, column: usize) -> Option<Tile> {
-        let rest = self.strips[strip * self.n_blocks].ends(simd);
-        let (active, has_weight) = self.columns[column].active_axes(simd, rest);
-        // There are less than 2^32 columns and rows of pixels.
-        has_weight.then_some(Tile {
-            column: column as u32,
-            strip: strip as u32,
-            active: if active == 0 { 0 } else { self.axes },
-        })
-    }
-
-    /// Sorts the tiles by how many axes matter.
-    #[inline(always)]
-    pub(crate) fn sort<S: Simd>(&mut self, simd: S) {
+    pub(crate) fn sort<S: Simd>(&mut self, simd: S) -> usize {
         let n_tiles = self.n_columns * self.n_strips;
+        let are_few = n_tiles <= FEW;
         if self.sorted.len() < n_tiles * STRETCHES {
             self.sorted.resize(n_tiles * STRETCHES, Tile::default());
         }
@@ -141,12 +123,15 @@ impl Tiles {
         for strip in 0..self.n_strips {
             let rest = self.strips[strip * self.n_blocks].ends(simd);
             for (column, ends) in columns.iter().enumerate() {
-                let (active, has_weight) = ends.active_axes(simd, rest);
-                let stretch = if has_weight {
-                    active.count_ones() as usize
-                } else {
-                    NOTHING
-                };
+                let (mut active, has_weight) = ends.active_axes(simd, rest);
+                let mut stretch = active.count_ones() as usize;
+                if are_few {
+                    active = if active == 0 { 0 } else { self.axes };
+                    stretch = BLOCK;
+                }
+                if !has_weight {
+                    stretch = NOTHING;
+                }
                 let length = &mut self.lengths[stretch];
                 self.sorted[stretch * n_tiles + *length] = Tile {
                     column: column as u32,
@@ -156,6 +141,7 @@ impl Tiles {
                 *length += 1;
             }
         }
+        if are_few { BLOCK } else { 0 }
     }
 
     /// The tiles in which so many axes matter, after sorting.
