@@ -101,10 +101,10 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
             (&self.xs[column..column + n_columns], V::LEN),
             &self.ys[row..row + n_rows],
         );
-        for n_axes in tiles.sort(simd)..=BLOCK {
-            for &tile in tiles.with_axes(n_axes) {
-                self.add_tile::<S, V, N>(simd, member, tiles, tile, planes);
-            }
+        tiles.sort(simd);
+        let mut place = [0; 2];
+        while let Some(tile) = tiles.next(simd, &mut place) {
+            self.add_tile::<S, V, N>(simd, member, tiles, tile, planes);
         }
     }
 

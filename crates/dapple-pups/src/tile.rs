@@ -110,11 +110,19 @@ impl Tiles {
         }
     }
 
-    /// Sorts the tiles by how many axes matter, and gives the least number. A few tiles are taken to have all axes.
+    /// Whether there are so few tiles that they are not worth sorting.
     #[inline(always)]
-    pub(crate) fn sort<S: Simd>(&mut self, simd: S) -> usize {
+    fn are_few(&self) -> bool {
+        self.n_columns * self.n_strips <= FEW
+    }
+
+    /// Sorts the tiles by how many axes matter, if they are worth it.
+    #[inline(always)]
+    pub(crate) fn sort<S: Simd>(&mut self, simd: S) {
+        if self.are_few() {
+            return;
+        }
         let n_tiles = self.n_columns * self.n_strips;
-        let are_few = n_tiles <= FEW;
         if self.sorted.len() < n_tiles * STRETCHES {
             self.sorted.resize(n_tiles * STRETCHES, Tile::default());
         }
@@ -123,15 +131,12 @@ impl Tiles {
         for strip in 0..self.n_strips {
             let rest = self.strips[strip * self.n_blocks].ends(simd);
             for (column, ends) in columns.iter().enumerate() {
-                let (mut active, has_weight) = ends.active_axes(simd, rest);
-                let mut stretch = active.count_ones() as usize;
-                if are_few {
-                    active = if active == 0 { 0 } else { self.axes };
-                    stretch = BLOCK;
-                }
-                if !has_weight {
-                    stretch = NOTHING;
-                }
+                let (active, has_weight) = ends.active_axes(simd, rest);
+                let stretch = if has_weight {
+                    active.count_ones() as usize
+                } else {
+                    NOTHING
+                };
                 let length = &mut self.lengths[stretch];
                 self.sorted[stretch * n_tiles + *length] = Tile {
                     column: column as u32,
@@ -141,14 +146,41 @@ impl Tiles {
                 *length += 1;
             }
         }
-        if are_few { BLOCK } else { 0 }
     }
 
-    /// The tiles in which so many axes matter, after sorting.
+    /// The next tile with a weight after sorting. `place` leads there: a row and a column of tiles where there are few, else
+    /// a stretch and a place in it, both from 0 on.
     #[inline(always)]
-    pub(crate) fn with_axes(&self, n_axes: usize) -> &[Tile] {
-        let start = n_axes * self.n_columns * self.n_strips;
-        &self.sorted[start..start + self.lengths[n_axes]]
+    pub(crate) fn next<S: Simd>(&self, simd: S, [outer, inner]: &mut [usize; 2]) -> Option<Tile> {
+        if self.are_few() {
+            while *outer < self.n_strips {
+                let (strip, column) = (*outer, *inner);
+                *inner += 1;
+                if *inner == self.n_columns {
+                    (*outer, *inner) = (strip + 1, 0);
+                }
+                let rest = self.strips[strip * self.n_blocks].ends(simd);
+                let (active, has_weight) = self.columns[column].active_axes(simd, rest);
+                if has_weight {
+                    // All axes if any matters. There are less than 2^32 columns and rows of pixels.
+                    return Some(Tile {
+                        column: column as u32,
+                        strip: strip as u32,
+                        active: if active == 0 { 0 } else { self.axes },
+                    });
+                }
+            }
+            return None;
+        }
+        let n_tiles = self.n_columns * self.n_strips;
+        while *outer < NOTHING {
+            if *inner < self.lengths[*outer] {
+                *inner += 1;
+                return Some(self.sorted[*outer * n_tiles + *inner - 1]);
+            }
+            (*outer, *inner) = (*outer + 1, 0);
+        }
+        None
     }
 
     /// The offsets of the columns of a tile.
