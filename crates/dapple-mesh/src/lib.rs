@@ -65,8 +65,6 @@ mod grid;
 mod hierarchy;
 mod idx;
 mod interpolation;
-#[cfg(any(feature = "obj", feature = "ply", feature = "gltf", feature = "off"))]
-pub mod io;
 mod low_pass;
 mod mesh;
 mod model;
@@ -112,7 +110,7 @@ pub use hierarchy::{Hierarchy, HierarchyOptions, Level};
 pub use idx::{FaceIdx, SiteIdx, VertexIdx};
 pub use interpolation::INTERPOLATION_RADIUS;
 pub use low_pass::LowPass;
-pub use mesh::Mesh;
+pub use mesh::{Mesh, POSITION_MAX};
 pub use model::{EncodedImage, ImageFormat, Material, Model};
 pub use nested::nested_points;
 pub use operations::{DOWNSAMPLE_STEPS, DOWNSAMPLE_T};

@@ -164,16 +164,14 @@ impl EncodedImage {
     ///
     /// # Errors
     ///
-    /// [`MeshErrorKind::File`] if they begin neither as a PNG nor as a JPEG file.
+    /// [`MeshErrorKind::Image`] if they begin neither as a PNG nor as a JPEG file.
     pub fn new(bytes: Vec<u8>) -> Result<Self, MeshError> {
         let format = if bytes.starts_with(PNG) {
             ImageFormat::Png
         } else if bytes.starts_with(JPEG) {
             ImageFormat::Jpeg
         } else {
-            let why = "its first bytes are of neither format".to_owned();
-            let format = "PNG or JPEG";
-            return Err(MeshError::new(MeshErrorKind::File { format, why }));
+            return Err(MeshError::new(MeshErrorKind::Image));
         };
         Ok(Self { format, bytes })
     }
@@ -301,10 +299,7 @@ mod tests {
         );
         for bytes in [b"".as_slice(), b"\x89PNG", b"RIFF....WEBP"] {
             let error = EncodedImage::new(bytes.to_vec()).expect_err("neither");
-            assert!(
-                matches!(error.kind(), MeshErrorKind::File { .. }),
-                "{error}"
-            );
+            assert!(matches!(error.kind(), MeshErrorKind::Image), "{error}");
         }
     }
 }

@@ -69,7 +69,8 @@ pub fn point_model(
 /// ```
 /// use dapple_color::LinearRgb;
 /// use dapple_image::{Transfer, encode_png};
-/// use dapple_synth::mesh::{CREASE, EncodedImage, HierarchyOptions, Surface, io::gltf, models};
+/// use dapple_mesh_io::gltf;
+/// use dapple_synth::mesh::{CREASE, EncodedImage, HierarchyOptions, Surface, models};
 /// use dapple_synth::{Atlas, Synthesizer, bake_colors, textured_model};
 ///
 /// let sites = HierarchyOptions { n_sites: 500, ..Default::default() };

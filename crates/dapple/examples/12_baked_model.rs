@@ -1,7 +1,7 @@
 //! A texture grown over a mesh from a small example, baked to a texture map and written as a model: a GLB file that
 //! viewers and engines open.
 //!
-//! The mesh is one of the library's own; `dapple::mesh::io::read_model` reads yours.
+//! The mesh is one of the library's own; `dapple::mesh_io::read_model` reads yours.
 //!
 //! ```sh
 //! cargo run -p dapple --example 12_baked_model
@@ -11,7 +11,8 @@ mod out;
 
 use dapple::color::LinearRgb;
 use dapple::image::{Depth, Transfer, encode_png, write_color_png};
-use dapple::mesh::{CREASE, EncodedImage, HierarchyOptions, glam::DVec3, io, models};
+use dapple::mesh::{CREASE, EncodedImage, HierarchyOptions, glam::DVec3, models};
+use dapple::mesh_io::write_model;
 use dapple::preview::{
     Camera, Light, Material, Mesh, Object, Scene, Shape, Supersampling, Surface,
 };
@@ -52,7 +53,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let shading = zebra.surface().mesh().corner_normals(CREASE);
     let model = textured_model(zebra.surface(), &atlas, shading, EncodedImage::new(png)?)?;
     let path = out::path("12_baked_model.glb")?;
-    io::write_model(&path, &model)?;
+    write_model(&path, &model)?;
     out::wrote(&path);
 
     // A picture of it: a ray meets a triangle, whose corners have texture coordinates.

@@ -2,7 +2,8 @@
 
 use dapple::color::{LinearRgb, Normal};
 use dapple::image::{Depth, write_color_png, write_gray_exr, write_gray_png, write_normal_png};
-use dapple::mesh::{Model, io::write_model, models};
+use dapple::mesh::{Model, models};
+use dapple::mesh_io::write_model;
 use dapple::raster::Raster;
 use std::ffi::OsStr;
 use std::fs;

@@ -5,7 +5,7 @@ use crate::shapes::{sphere, square, synthesizer};
 use crate::{bake_colors, bake_values, displaced_sites};
 use dapple_color::LinearRgb;
 use dapple_image::{Transfer, encode_png};
-use dapple_mesh::io::gltf;
+use dapple_mesh_io::gltf;
 use dapple_raster::Raster;
 use glam::DVec3;
 
