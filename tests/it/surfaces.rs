@@ -4,12 +4,14 @@
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
 use dapple_image::{Limits, read_image};
-use dapple_mesh::{
-    FaceEdge, FaceIdx, Hierarchy, HierarchyOptions, Mesh, SiteIdx, Surface, glam::DVec3, models,
-};
+use dapple_mesh::{FaceEdge, FaceIdx, Mesh, Surface, glam::DVec3};
 use dapple_mesh_io::read_model;
+use dapple_models as models;
 use dapple_raster::Raster;
-use dapple_synth::{Atlas, Direction, Edges, Exemplar, Options, Orientation, Synthesizer, bake};
+use dapple_synth::{
+    Atlas, Direction, Edges, Exemplar, Hierarchy, HierarchyOptions, Options, Orientation, SiteIdx,
+    Synthesizer, bake,
+};
 use std::path::{Path, PathBuf};
 
 /// Upright stripes of this width in pixels, dark and light together: the texture changes along P only.

@@ -4,11 +4,10 @@
 //! also read the neighborhoods.
 
 use crate::atlas::Atlas;
-use crate::columns;
 use crate::ground::{Plain, Samples};
 use crate::mesh_ground::{Interpolation, Lattice, Nearby, interpolate};
-use crate::{SynthError, SynthErrorKind};
-use dapple_mesh::{FaceIdx, Hierarchy, INTERPOLATION_RADIUS, Surface, SurfacePoint};
+use crate::{Hierarchy, INTERPOLATION_RADIUS, SynthError, SynthErrorKind, columns};
+use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
 use dapple_raster::{Raster, simd};
 use glam::DVec3;
 

@@ -89,6 +89,31 @@ pub(crate) fn map<T: Send, U: Send>(
         .collect();
 }
 
+/// Calls `change` with each run of `size` values, the last one perhaps shorter, and the number of the run.
+pub(crate) fn chunks<T: Send>(
+    values: &mut [T],
+    size: usize,
+    change: impl Fn(usize, &mut [T]) + Sync + Send,
+) {
+    #[cfg(feature = "rayon")]
+    values
+        .par_chunks_mut(size)
+        .enumerate()
+        .for_each(|(chunk, values)| change(chunk, values));
+    #[cfg(not(feature = "rayon"))]
+    for (chunk, values) in values.chunks_mut(size).enumerate() {
+        change(chunk, values);
+    }
+}
+
+/// Sorts keys of which no two are equal, so that there is one order only.
+pub(crate) fn sort_keys<T: Ord + Send>(keys: &mut [T]) {
+    #[cfg(feature = "rayon")]
+    keys.par_sort_unstable();
+    #[cfg(not(feature = "rayon"))]
+    keys.sort_unstable();
+}
+
 /// The sum of a number for every row, added within blocks and then block by block, whatever the number of cores.
 pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
     let block = |block: usize| {

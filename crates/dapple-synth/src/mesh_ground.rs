@@ -12,8 +12,8 @@ mod turning;
 
 use crate::ground::{Colors, Ground, Samples, Square};
 use crate::turns::Turns;
-use crate::{Axes, Orientation, Sweep};
-use dapple_mesh::{Hierarchy, INTERPOLATION_RADIUS, SiteIdx, Surface};
+use crate::{Axes, Hierarchy, INTERPOLATION_RADIUS, Orientation, SiteIdx, Sweep};
+use dapple_mesh::Surface;
 use dapple_raster::simd;
 use nearby::Neighborhoods;
 use turning::Turning;

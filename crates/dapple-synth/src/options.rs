@@ -144,7 +144,7 @@ impl Options {
     ///   repeats equations 4 and 5: the averages that those would settle at, but for the weights.
     /// * A level of sites begins with the middles of the edges between the sites before it, where the paper scatters random
     ///   points, and sites push each other with another force than in Turk's paper of 1991 (see
-    ///   [`mesh::nested_points`](crate::mesh::nested_points)).
+    ///   [`nested_points`](crate::nested_points)).
     ///
     /// The documentation of [this crate](crate) lists how it reads what the paper leaves open.
     #[must_use]

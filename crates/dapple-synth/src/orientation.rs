@@ -22,8 +22,7 @@ mod push;
 #[cfg(test)]
 mod tests;
 
-use crate::{SynthError, SynthErrorKind, columns};
-use dapple_mesh::Hierarchy;
+use crate::{Hierarchy, SynthError, SynthErrorKind, columns};
 use glam::DVec3;
 
 /// Shorter squared parts of unit vectors in a tangent plane count as none: a thousandth of a radian off the normal.
@@ -44,8 +43,8 @@ pub struct Direction {
 /// # Examples
 ///
 /// ```
-/// use dapple_mesh::{Hierarchy, HierarchyOptions, Mesh, Surface, glam::DVec3};
-/// use dapple_synth::{Direction, Orientation};
+/// use dapple_mesh::{Mesh, Surface, glam::DVec3};
+/// use dapple_synth::{Direction, Hierarchy, HierarchyOptions, Orientation};
 ///
 /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::ONE - DVec3::Z, DVec3::Y];
 /// let surface = Surface::new(Mesh::new(corners, &[[0, 1, 2], [0, 2, 3]])?)?;
@@ -115,7 +114,7 @@ impl Orientation {
         Self { vectors }
     }
 
-    /// The unit vectors at the sites, in the order of [`SiteIdx`](dapple_mesh::SiteIdx); those of a coarser level are the
+    /// The unit vectors at the sites, in the order of [`SiteIdx`](crate::SiteIdx); those of a coarser level are the
     /// first of them.
     #[must_use]
     pub fn vectors(&self) -> &[DVec3] {

@@ -1,8 +1,8 @@
 //! Small meshes for tests.
 
-use crate::{Orientation, Synthesizer};
+use crate::{Hierarchy, HierarchyOptions, Orientation, Synthesizer};
 use dapple_hash::Seed;
-use dapple_mesh::{Hierarchy, HierarchyOptions, Mesh, Surface};
+use dapple_mesh::{Mesh, Surface};
 use glam::DVec3;
 
 /// A rectangle of `sides` cells, seen from outside with u to the right and v up, mapped by `at`.

@@ -3,11 +3,11 @@
 use crate::engine::{self, Progress};
 use crate::mesh_ground::MeshGround;
 use crate::{
-    Axes, Direction, Exemplar, Options, Orientation, SurfaceTexture, Sweep, SynthError,
-    SynthErrorKind,
+    Axes, Direction, Exemplar, Hierarchy, HierarchyOptions, Options, Orientation, SiteIdx,
+    SurfaceTexture, Sweep, SynthError, SynthErrorKind,
 };
 use core::ops::ControlFlow;
-use dapple_mesh::{Hierarchy, HierarchyOptions, Mesh, SiteIdx, Surface};
+use dapple_mesh::{Mesh, Surface};
 
 /// A surface with its sites, their directions and their order: all that does not depend on the exemplar.
 #[derive(Clone, Debug)]

@@ -6,6 +6,7 @@
 use super::lattice::{Lattice, Row};
 use super::nearby::{Around, Record};
 use crate::ground::{Colors, Samples};
+use crate::sites::weights;
 use core::array;
 use core::ops::Range;
 use fearless_simd::{Level, dispatch, f32x8, prelude::*, u32x8};
@@ -215,10 +216,7 @@ fn add_up_row<S: Simd>(
         let record = &reaching[at as usize];
         let [px, py, pz] = record.position;
         let (dx, dy, dz) = (x - px, y - py, z - pz);
-        // w(x) = 2x³ − 3x² + 1, of distances in radii.
-        let part_sq = (dx * dx + dy * dy + dz * dz) * inverse_sq;
-        let weight = (part_sq.sqrt() * 2.0 - 3.0) * part_sq + 1.0;
-        let mut weight = part_sq.simd_lt(1.0).select(weight, zero);
+        let mut weight = weights(simd, (dx * dx + dy * dy + dz * dz) * inverse_sq);
         if check {
             let [mx, my, mz] = record.normal;
             let opposed = (nx * mx + ny * my + nz * mz).simd_lt(0.0);

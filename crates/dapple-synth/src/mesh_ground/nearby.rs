@@ -4,7 +4,7 @@
 //! million sites.
 
 use crate::cells::Cells;
-use dapple_mesh::{Hierarchy, Sites};
+use crate::{Hierarchy, Sites};
 use fearless_simd::{Level, dispatch, f32x8, prelude::*};
 use glam::{DVec3, Vec3};
 

@@ -2,8 +2,7 @@
 
 use super::{flat_part, tangent};
 use crate::links::LEAST_LENGTH;
-use crate::{Direction, SynthError, SynthErrorKind, columns};
-use dapple_mesh::{Hierarchy, Level, SiteIdx};
+use crate::{Direction, Hierarchy, Level, SiteIdx, SynthError, SynthErrorKind, columns};
 use glam::DVec3;
 
 /// Low-pass steps before a level is thinned, and their strength t of equation 3: together the spread of the filter

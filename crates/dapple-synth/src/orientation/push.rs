@@ -2,11 +2,10 @@
 
 use super::pull::Known;
 use super::{axis_tangent, flat_part};
-use crate::columns;
 use crate::links::Links;
 use crate::parents::Parents;
 use crate::solve::{System, conjugate_gradients};
-use dapple_mesh::{Hierarchy, SiteIdx};
+use crate::{Hierarchy, SiteIdx, columns};
 use glam::DVec3;
 
 /// The diffusion ends where averaging once more would turn no vector by more than this, in radians, ...

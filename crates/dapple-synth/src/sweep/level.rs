@@ -1,11 +1,10 @@
 //! The sweep distances of one level.
 
 use super::Distances;
-use crate::columns;
 use crate::links::Links;
 use crate::parents::Parents;
 use crate::solve::{System, conjugate_gradients};
-use dapple_mesh::{Hierarchy, SiteIdx};
+use crate::{Hierarchy, SiteIdx, columns};
 use glam::DVec3;
 
 /// The coarsest level is solved until equation 5 would change no distance by more than this part of the spacing, ...

@@ -4,8 +4,7 @@ use crate::args::{Axes, Size, seed};
 use crate::input::mesh_endings;
 use clap::ValueEnum;
 use dapple::hash::Seed;
-use dapple::mesh::HierarchyOptions;
-use dapple::synth::{Axes as FieldAxes, Coherence, Edges, Options};
+use dapple::synth::{Axes as FieldAxes, Coherence, Edges, HierarchyOptions, Options};
 use serde::Serialize;
 use std::path::PathBuf;
 

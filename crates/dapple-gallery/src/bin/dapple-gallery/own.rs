@@ -7,8 +7,7 @@ use clap::Args;
 use dapple_gallery::{Own, Picture};
 use dapple_image::{Depth, Limits, read_image, write_color_png};
 use dapple_mesh_io::{read_model, write_model};
-use dapple_synth::mesh::HierarchyOptions;
-use dapple_synth::{Coherence, Direction, Edges};
+use dapple_synth::{Coherence, Direction, Edges, HierarchyOptions};
 use std::fs;
 use std::path::{Path, PathBuf};
 
