@@ -38,11 +38,6 @@ mod oriented;
 mod evenness;
 mod triangles;
 
-#[cfg(test)]
-mod test_shapes;
-#[cfg(test)]
-mod testing;
-
 pub use blend::Blend;
 pub use connect::Connected;
 pub use evenness::{Evenness, evenness, hexagonal_spacing};

@@ -1,8 +1,8 @@
 //! The middles of edges.
 
 use super::{CENTER_REACH, REACH, edges};
+use crate::shapes::{geodesic_sphere, plane};
 use crate::sites::evenness::hexagonal_spacing;
-use crate::sites::test_shapes::{plane, sphere};
 use crate::{repel, scatter};
 use dapple_hash::Seed;
 use dapple_mesh::{Surface, SurfacePoint};
@@ -88,7 +88,7 @@ fn edges_are_those_of_the_triangulation() {
 
 #[test]
 fn a_closed_surface_has_three_edges_for_each_point() {
-    let surface = sphere();
+    let surface = geodesic_sphere(3);
     let n_edges = edges(&surface, &even(&surface, 2000)).len();
     // Euler: 3 n - 6, up to a few that neighbors see differently.
     assert!((5990..=6000).contains(&n_edges), "{n_edges} edges");

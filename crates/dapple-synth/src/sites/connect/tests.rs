@@ -1,7 +1,7 @@
 //! Graphs of sites beside the triangulation of the plane.
 
 use super::*;
-use crate::sites::testing::{even_sites, random_sites, sheets, spacing, sphere, torus};
+use crate::shapes::{even_sites, geodesic_sphere, random_sites, sheets, spacing, torus};
 use dapple_hash::{Seed, hash1, unit_f64};
 
 fn connect(sites: &crate::Sites, spacing: f64) -> Connected {
@@ -10,7 +10,7 @@ fn connect(sites: &crate::Sites, spacing: f64) -> Connected {
 
 #[test]
 fn graph_of_a_sphere_is_nearly_a_triangulation() {
-    let surface = sphere(3);
+    let surface = geodesic_sphere(3);
     let sites = even_sites(&surface, 1000, 1);
     let connected = connect(&sites, spacing(&surface, 1000));
     // Euler: a triangulated sphere has 3 n - 6 edges. Forced edges are few: the research counted up to 1.2 % at 1000
@@ -104,7 +104,7 @@ fn grid_has_no_diagonals() {
 
 #[test]
 fn connected_has_the_same_bits_at_any_number_of_threads() {
-    let surface = sphere(3);
+    let surface = geodesic_sphere(3);
     let sites = random_sites(&surface, 3000, 6);
     let spacing = spacing(&surface, 3000);
     let expected = connect(&sites, spacing);

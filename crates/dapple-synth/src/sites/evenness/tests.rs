@@ -1,7 +1,7 @@
 //! The measure of evenness on points whose distances are known.
 
 use super::{evenness, hexagonal_spacing};
-use crate::sites::test_shapes::{plane, scraps, sheet};
+use crate::shapes::{plane, scraps, sheet};
 use crate::{Sites, scatter};
 use dapple_hash::Seed;
 use dapple_mesh::Surface;

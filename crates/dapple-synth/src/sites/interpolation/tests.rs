@@ -1,11 +1,11 @@
 //! Interpolation beside sums over all sites.
 
 use super::*;
-use crate::sites::testing::{even_sites, sheets, spacing, sphere};
+use crate::shapes::{even_sites, geodesic_sphere, sheets, spacing};
 use crate::{SiteGrid, Sites};
 use dapple_mesh::Surface;
 
-/// Calls `check` with about so many even sites of a surface.
+/// Calls `check` with about the given number of even sites of a surface.
 fn with_sites(surface: &Surface, n_sites: usize, check: impl Fn(&Oriented<'_>)) {
     let sites: Sites = even_sites(surface, n_sites, 11);
     let spacing = spacing(surface, n_sites);
@@ -37,7 +37,7 @@ fn naive(sites: &Oriented<'_>, column: &[f64], position: DVec3, normal: DVec3) -
 
 #[test]
 fn interpolation_equals_the_naive_sum() {
-    let surface = sphere(3);
+    let surface = geodesic_sphere(3);
     with_sites(&surface, 500, |sites| {
         let column: Vec<f64> = sites
             .positions
@@ -69,7 +69,7 @@ fn interpolation_equals_the_naive_sum() {
 
 #[test]
 fn interpolation_of_a_constant_is_the_constant() {
-    let surface = sphere(3);
+    let surface = geodesic_sphere(3);
     with_sites(&surface, 300, |sites| {
         let column = vec![[0.1_f32, 0.7, 0.3]; sites.positions.len()];
         for at in surface.mesh().positions() {
@@ -81,7 +81,7 @@ fn interpolation_of_a_constant_is_the_constant() {
 
 #[test]
 fn interpolation_stays_in_the_range_of_the_sites_in_reach() {
-    let surface = sphere(3);
+    let surface = geodesic_sphere(3);
     with_sites(&surface, 300, |sites| {
         let column: Vec<f64> = (0..sites.positions.len())
             .map(|site| (site * 37 % 101) as f64)

@@ -2,12 +2,12 @@
 
 use super::*;
 use crate::Connected;
-use crate::sites::testing::{even_sites, spacing, sphere};
+use crate::shapes::{even_sites, geodesic_sphere, spacing};
 use dapple_hash::{Seed, hash1, unit_f64};
 
 /// Even sites of a sphere, and their graph.
 fn even(n_sites: usize) -> (Vec<DVec3>, SiteGraph) {
-    let surface = sphere(3);
+    let surface = geodesic_sphere(3);
     let sites = even_sites(&surface, n_sites, 21);
     let spacing = spacing(&surface, n_sites);
     let connected = Connected::new(sites.positions(), sites.normals(), spacing).unwrap();

@@ -1,8 +1,8 @@
 //! Nested points: even on every level, and the same bits everywhere.
 
 use super::{morton, nested_points};
+use crate::shapes::{geodesic_sphere, plane, real, scraps, torus};
 use crate::sites::share::Pieces;
-use crate::sites::test_shapes::{plane, real, scraps, sphere, torus};
 use crate::{Hierarchy, HierarchyOptions, Sites, SynthErrorKind, evenness};
 use dapple_hash::Seed;
 use dapple_mesh::{Mesh, Surface};
@@ -27,7 +27,7 @@ fn assert_even(surface: &Surface, counts: &[usize], seed: u64) {
 
 #[test]
 fn every_level_is_even_on_simple_surfaces() {
-    for surface in [sphere(), torus(), plane()] {
+    for surface in [geodesic_sphere(3), torus(48, 24), plane()] {
         for seed in 0..3 {
             assert_even(&surface, &[750, 3000, 12_000], seed);
         }
@@ -44,7 +44,7 @@ fn every_level_is_even_on_a_real_model() {
 
 #[test]
 fn fewer_levels_are_the_beginning_of_more() {
-    let surface = torus();
+    let surface = torus(48, 24);
     let three = nested_points(&surface, &[100, 400, 1600], Seed(3), ITERATIONS);
     let two = nested_points(&surface, &[100, 400], Seed(3), ITERATIONS);
     assert_eq!(three[..400], two[..]);
@@ -52,7 +52,7 @@ fn fewer_levels_are_the_beginning_of_more() {
 
 #[test]
 fn new_points_of_a_level_are_in_mortons_order() {
-    let surface = sphere();
+    let surface = geodesic_sphere(3);
     let points = nested_points(&surface, &[500, 2000], Seed(5), ITERATIONS);
     let positions: Vec<DVec3> = points
         .iter()
@@ -92,7 +92,7 @@ fn pieces_get_their_shares_on_every_level() {
 
 #[test]
 fn few_points_are_as_many_as_asked_for() {
-    for surface in [sphere(), plane(), scraps(1), scraps(30)] {
+    for surface in [geodesic_sphere(3), plane(), scraps(1), scraps(30)] {
         for n in 1..=10_usize {
             let points = nested_points(&surface, &[n.div_ceil(4), n], Seed(9), ITERATIONS);
             assert_eq!(points.len(), n);
@@ -106,7 +106,7 @@ fn few_points_are_as_many_as_asked_for() {
 
 #[test]
 fn strange_counts_give_no_surprises() {
-    let surface = torus();
+    let surface = torus(48, 24);
     let lengths = |counts: &[usize]| nested_points(&surface, counts, Seed(1), 2).len();
     assert_eq!(lengths(&[]), 0);
     assert_eq!(lengths(&[0]), 0);
@@ -118,7 +118,7 @@ fn strange_counts_give_no_surprises() {
 
 #[test]
 fn bits_do_not_depend_on_the_number_of_threads() {
-    let surface = torus();
+    let surface = torus(48, 24);
     let points = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -154,7 +154,7 @@ proptest! {
 
 #[test]
 fn hierarchies_refuse_counts_out_of_range() {
-    let surface = sphere();
+    let surface = geodesic_sphere(3);
     let refused = |options: HierarchyOptions| match Hierarchy::new(&surface, &options) {
         Err(error) => match error.kind() {
             SynthErrorKind::Count { what, .. } => *what,
@@ -203,7 +203,7 @@ fn hierarchies_refuse_counts_out_of_range() {
 
 #[test]
 fn value_stability_nested_points() {
-    let torus = torus();
+    let torus = torus(48, 24);
     let points = nested_points(&torus, &[500, 2000], Seed(1), ITERATIONS);
     let positions =
         [points[0], points[499], points[1999]].map(|point| torus.position(point).to_array());

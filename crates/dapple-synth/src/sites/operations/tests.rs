@@ -1,7 +1,7 @@
 //! Down- and upsampling beside the plain operations.
 
 use super::*;
-use crate::sites::testing::{sheets, sphere};
+use crate::shapes::{geodesic_sphere, sheets};
 use crate::{HierarchyOptions, SiteIdx, SynthErrorKind};
 use dapple_mesh::Surface;
 
@@ -16,7 +16,7 @@ fn hierarchy(surface: &Surface, n_sites: usize) -> Hierarchy {
 
 #[test]
 fn downsampling_blurs_and_inherits() {
-    let hierarchy = hierarchy(&sphere(3), 1000);
+    let hierarchy = hierarchy(&geodesic_sphere(3), 1000);
     let column: Vec<f64> = hierarchy
         .sites()
         .positions()
@@ -40,7 +40,7 @@ fn downsampling_blurs_and_inherits() {
 
 #[test]
 fn upsampling_interpolates_at_the_finer_sites() {
-    let hierarchy = hierarchy(&sphere(3), 1000);
+    let hierarchy = hierarchy(&geodesic_sphere(3), 1000);
     let coarse: Vec<f64> = hierarchy.sites().positions()[..250]
         .iter()
         .map(|at| at.z)
@@ -57,7 +57,11 @@ fn upsampling_interpolates_at_the_finer_sites() {
 
 #[test]
 fn constant_columns_stay_constant_up_and_down() {
-    for surface in [sphere(2), sheets(&[0.0, 0.01]), sheets(&[0.0, 3.0, 9.0])] {
+    for surface in [
+        geodesic_sphere(2),
+        sheets(&[0.0, 0.01]),
+        sheets(&[0.0, 3.0, 9.0]),
+    ] {
         let hierarchy = hierarchy(&surface, 300);
         let coarse = hierarchy.downsample(0, &[[0.3_f32, 0.9]; 300]).unwrap();
         assert_eq!(coarse, [[0.3, 0.9]; 75], "down");
@@ -81,7 +85,7 @@ fn upsampling_gives_a_value_to_sites_far_from_all_coarser_ones() {
 
 #[test]
 fn operations_have_the_same_bits_at_any_number_of_threads() {
-    let hierarchy = hierarchy(&sphere(3), 5000);
+    let hierarchy = hierarchy(&geodesic_sphere(3), 5000);
     let column: Vec<f32> = hierarchy
         .sites()
         .positions()
@@ -104,7 +108,7 @@ fn operations_have_the_same_bits_at_any_number_of_threads() {
 
 #[test]
 fn operations_refuse_levels_and_columns_that_do_not_fit() {
-    let hierarchy = hierarchy(&sphere(2), 160);
+    let hierarchy = hierarchy(&geodesic_sphere(2), 160);
     let is_range = |error: &SynthError| matches!(error.kind(), SynthErrorKind::Range { .. });
     let is_count = |error: &SynthError| matches!(error.kind(), SynthErrorKind::Count { .. });
     let at = DVec3::X;
@@ -156,7 +160,7 @@ fn operations_refuse_levels_and_columns_that_do_not_fit() {
 
 #[test]
 fn levels_are_connected_on_their_own() {
-    let hierarchy = hierarchy(&sphere(3), 1000);
+    let hierarchy = hierarchy(&geodesic_sphere(3), 1000);
     for level in hierarchy.levels() {
         assert_eq!(level.graph().len(), level.n_sites(), "a row for each site");
         let connected = (0..level.n_sites() as u32)

@@ -1,8 +1,8 @@
 //! Repulsion beside forces from all points, and how even it makes them.
 
 use super::{Crowd, FACING, GAIN_FIRST, MARGIN, repel};
+use crate::shapes::{geodesic_sphere, plane, scraps, sheet, torus};
 use crate::sites::near::CHUNK;
-use crate::sites::test_shapes::{plane, scraps, sheet, sphere, torus};
 use crate::{Sites, evenness, scatter};
 use dapple_hash::Seed;
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
@@ -26,7 +26,7 @@ fn naive_push(surface: &Surface, sites: &Sites, site: usize, radius: f64) -> DVe
 
 #[test]
 fn push_equals_that_of_all_pairs() {
-    for surface in [sphere(), torus(), plane()] {
+    for surface in [geodesic_sphere(3), torus(48, 24), plane()] {
         let points = scatter(&surface, 1500, Seed(3));
         let sites = Sites::new(&surface, points.clone());
         let radius = 2.0 * (surface.area() / 1500.0).sqrt();
@@ -51,7 +51,7 @@ fn push_equals_that_of_all_pairs() {
 
 #[test]
 fn lists_hold_all_neighbors_for_as_long_as_they_are_used() {
-    let surface = torus();
+    let surface = torus(48, 24);
     let mut points = scatter(&surface, 800, Seed(5));
     let radius = 2.0 * (surface.area() / 800.0).sqrt();
     let mut crowd = Crowd::new(&surface, &points, 0, radius);
@@ -70,7 +70,7 @@ fn lists_hold_all_neighbors_for_as_long_as_they_are_used() {
 
 #[test]
 fn repulsion_makes_points_even() {
-    for surface in [sphere(), torus(), plane()] {
+    for surface in [geodesic_sphere(3), torus(48, 24), plane()] {
         let mut points = scatter(&surface, 1000, Seed(7));
         repel(&surface, &mut points, 0, 60);
         let even = evenness(&surface, &Sites::new(&surface, points), 1000);
@@ -80,7 +80,7 @@ fn repulsion_makes_points_even() {
 
 #[test]
 fn fixed_points_stay_to_the_last_bit() {
-    let surface = sphere();
+    let surface = geodesic_sphere(3);
     let mut points = scatter(&surface, 300, Seed(9));
     let before = points.clone();
     repel(&surface, &mut points, 120, 5);
@@ -95,7 +95,7 @@ fn fixed_points_stay_to_the_last_bit() {
 
 #[test]
 fn points_in_one_place_part() {
-    for surface in [sphere(), plane(), scraps(1)] {
+    for surface in [geodesic_sphere(3), plane(), scraps(1)] {
         let point = surface.point(FaceIdx(0), [0.2, 0.3, 0.5]);
         let mut points = vec![point; 12];
         repel(&surface, &mut points, 0, 200);
@@ -152,7 +152,7 @@ fn sheets_that_face_away_do_not_push() {
 
 #[test]
 fn bits_do_not_depend_on_the_number_of_threads() {
-    let surface = torus();
+    let surface = torus(48, 24);
     let repelled = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -189,7 +189,7 @@ fn nothing_bad_happens_without_points_or_area() {
 
 #[test]
 fn value_stability_repel() {
-    let torus = torus();
+    let torus = torus(48, 24);
     let mut points = scatter(&torus, 40, Seed(1));
     repel(&torus, &mut points, 10, 20);
     let positions =

@@ -1,12 +1,12 @@
 //! Random points: as many on each face as its area says.
 
 use super::scatter;
-use crate::sites::test_shapes::{scraps, torus};
+use crate::shapes::{scraps, torus};
 use dapple_hash::Seed;
 
 #[test]
 fn fewer_points_are_the_first_of_more() {
-    let torus = torus();
+    let torus = torus(48, 24);
     assert_eq!(
         scatter(&torus, 1000, Seed(3))[..100],
         scatter(&torus, 100, Seed(3))[..]
@@ -19,7 +19,7 @@ fn fewer_points_are_the_first_of_more() {
 
 #[test]
 fn points_lie_inside_of_their_faces() {
-    let torus = torus();
+    let torus = torus(48, 24);
     for point in scatter(&torus, 2000, Seed(5)) {
         let least = torus.weights(point).into_iter().fold(1.0, f64::min);
         // Rounding in the plane of the face.
@@ -70,7 +70,7 @@ fn points_are_even_inside_of_a_face() {
 
 #[test]
 fn value_stability_scatter() {
-    let torus = torus();
+    let torus = torus(48, 24);
     let positions: Vec<[f64; 3]> = scatter(&torus, 3, Seed(1))
         .into_iter()
         .map(|point| torus.position(point).to_array())

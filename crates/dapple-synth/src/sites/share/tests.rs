@@ -1,7 +1,7 @@
 //! How many points the pieces of a surface get.
 
 use super::Pieces;
-use crate::sites::test_shapes::{scraps, torus};
+use crate::shapes::{scraps, torus};
 
 /// Webster's method, one site after the other.
 fn one_by_one(areas: &[f64], n: usize) -> Vec<usize> {
@@ -38,7 +38,7 @@ fn shares_sum_up_and_never_shrink() {
 
 #[test]
 fn pieces_are_counted_across_edges_only() {
-    assert_eq!(Pieces::new(&torus()).faces.len(), 1);
+    assert_eq!(Pieces::new(&torus(48, 24)).faces.len(), 1);
     let pieces = Pieces::new(&scraps(3));
     assert_eq!(pieces.of_face, [0, 1, 2]);
     assert_eq!(pieces.faces.len(), 3);

@@ -1,7 +1,7 @@
 //! Stars beside those of another triangulation.
 
 use super::*;
-use crate::sites::testing::{even_sites, random_sites, sheets, spacing, sphere, torus};
+use crate::shapes::{even_sites, geodesic_sphere, random_sites, sheets, spacing, torus};
 use crate::{SiteGrid, Sites};
 use dapple_mesh::Surface;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
@@ -60,7 +60,7 @@ fn spade_star(sites: &Oriented<'_>, center: SiteIdx) -> Option<Vec<u32>> {
 #[test]
 fn stars_equal_those_of_spade_on_all_surfaces() {
     for (name, surface) in [
-        ("sphere", sphere(3)),
+        ("sphere", geodesic_sphere(3)),
         ("plane", sheets(&[0.0])),
         ("two sheets", sheets(&[0.0, 0.01])),
         ("torus", torus(24, 12)),

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::SiteGrid;
-use crate::sites::testing::{even_sites, random_sites, sheets, spacing, sphere, torus};
+use crate::shapes::{even_sites, geodesic_sphere, random_sites, sheets, spacing, torus};
 use dapple_hash::{Seed, hash1, unit_f64};
 
 fn triangles(positions: &[DVec3], normals: &[DVec3], spacing: f64) -> SiteTriangles {
@@ -44,7 +44,10 @@ fn euler(mesh: &Mesh) -> i64 {
 
 #[test]
 fn triangles_close_a_sphere_and_a_torus() {
-    for (name, surface, expected) in [("sphere", sphere(3), 2), ("torus", torus(48, 24), 0)] {
+    for (name, surface, expected) in [
+        ("sphere", geodesic_sphere(3), 2),
+        ("torus", torus(48, 24), 0),
+    ] {
         let sites = even_sites(&surface, 1000, 31);
         let made = triangles(sites.positions(), sites.normals(), spacing(&surface, 1000));
         assert_eq!(
@@ -73,7 +76,7 @@ fn triangles_close_a_sphere_and_a_torus() {
 #[test]
 fn triangles_of_random_sites_have_no_edge_with_three() {
     for (surface, seed) in [
-        (sphere(3), 1),
+        (geodesic_sphere(3), 1),
         (torus(24, 12), 2),
         (sheets(&[0.0, 0.02]), 3),
     ] {

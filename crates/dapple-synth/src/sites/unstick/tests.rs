@@ -1,8 +1,8 @@
 //! Points that are wedged between others.
 
 use super::unstick;
+use crate::shapes::{plane, scraps};
 use crate::sites::share::Pieces;
-use crate::sites::test_shapes::{plane, scraps};
 use crate::{Sites, evenness, repel, scatter};
 use dapple_hash::Seed;
 
