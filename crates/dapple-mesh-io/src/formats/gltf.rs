@@ -3,16 +3,19 @@
 //! Reference: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022).
 //!
 //! All triangles of the default scene become one mesh, with the transforms of their nodes applied; without a scene all
-//! nodes count, and each of the copies that `EXT_mesh_gpu_instancing` makes of their meshes. Triangle strips and fans become triangles, point primitives only vertices; lines, skins, morph targets
-//! and animations are left out. Primitives of one node with the same attributes share their vertices. Where only some
-//! primitives have colors or texture coordinates, the others become white and zero; normals are kept only if all have
-//! them. The material is the first that a primitive has. Textures are taken as they are if they are PNG or JPEG and use
-//! the same texture coordinates as the base color; their samplers and transforms are left out, as is everything that
-//! [`Material`] does not have.
+//! nodes count, and each of the copies that `EXT_mesh_gpu_instancing` makes of their meshes. Triangle strips and fans
+//! become triangles, point primitives only vertices; lines, skins, morph targets and animations are left out. Primitives
+//! of one node with the same attributes share their vertices. Where only some primitives have colors or texture
+//! coordinates, the others become white and zero; normals are kept only if all have them. The material is the first that
+//! a primitive has. Textures are taken as they are if they are PNG or JPEG and use the same texture coordinates as the
+//! base color; their samplers and transforms are left out, as is everything that [`Material`] does not have.
 //!
-//! At a seam of the texture a glTF file has two vertices at one position; [`Mesh::repair`](dapple_mesh::Mesh::repair) makes
-//! one of them. Texture coordinates belong to corners and do not mind; [`Repair::face_before`](dapple_mesh::Repair) says whose
-//! they are.
+//! At a seam of the texture a glTF file has two vertices at one position; [`Mesh::repair`](dapple_mesh::Mesh::repair)
+//! makes one of them. Texture coordinates belong to corners and do not mind; [`Repair::face_before`](dapple_mesh::Repair)
+//! says whose they are.
+//!
+//! The reader is ours since the crate `gltf` panics at files that pass its validation (a test shows one), does not know
+//! of copies, and reads no data URIs without an image library; tests use it as a second reader of what is written here.
 
 mod accessor;
 mod container;
@@ -70,7 +73,8 @@ struct Source<'a> {
 /// # Errors
 ///
 /// [`MeshIoErrorKind::File`] if the bytes are not a glTF file, or it requires another file;
-/// [`MeshIoErrorKind::Unsupported`] if its version is not 2, or it requires an extension; and what [`Mesh::new`](dapple_mesh::Mesh::new) and [`Model::check`] refuse.
+/// [`MeshIoErrorKind::Unsupported`] if its version is not 2, or it requires an extension; and what
+/// [`Mesh::new`](dapple_mesh::Mesh::new) and [`Model::check`] refuse.
 ///
 /// # Examples
 ///
@@ -91,7 +95,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 ///
 /// # Errors
 ///
-/// As [`read`]. A missing texture is no error.
+/// Those of [`read`]. A missing texture is no error.
 pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
     let container = Container::read(bytes)?;
     // Other versions have other types in the same places, so that this has to be asked first.

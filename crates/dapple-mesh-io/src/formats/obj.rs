@@ -6,10 +6,13 @@
 //! All faces become one mesh, whatever their objects, groups and materials, since a texture is to run across these; the
 //! material is the first that a face has. Normals, which OBJ gives to corners, become those of vertices if no vertex has
 //! two, and stay with the corners otherwise; where a corner has none, all are left out. Texture coordinates and normals
-//! that corners name and that there are not are left out, too, which [`Model::left_out`] says. Lines, points and free-form
-//! surfaces are left out. Of a material its `Kd` (linear, and only without a texture, since with one it is seldom
-//! meant), `d`, `map_Kd` and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is left
-//! out.
+//! that corners name and that there are not are left out, too, which [`Model::left_out`] says. Lines, points and
+//! free-form surfaces are left out. Of a material its `Kd` (linear, and only without a texture, since with one it is
+//! seldom meant), `d`, `map_Kd` and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is
+//! left out.
+//!
+//! The reader is ours for what is promised of it: all bits of `f64`, errors that name their line, a list of what is left
+//! out, and a limit of memory whatever the file says.
 
 mod mtl;
 mod write;
@@ -44,9 +47,9 @@ pub(super) const OBJ: MeshFormat = MeshFormat {
     }),
 };
 
-/// In place of the number of a texture coordinate or normal that a corner does not have.
+/// The number of a texture coordinate or normal where a corner has none.
 const NONE: u32 = u32::MAX;
-/// In place of the number of one that there cannot be: as any number that is too large.
+/// The number of a texture coordinate or normal that there cannot be, as any number that is too large.
 const MISSING: u32 = u32::MAX - 1;
 
 /// The numbers of the position, texture coordinate and normal of a corner.
@@ -55,7 +58,7 @@ type Corner = [u32; 3];
 #[derive(Default)]
 struct Draft {
     positions: Vec<DVec3>,
-    /// As many as positions up to the last that has one; others are white.
+    /// One for each position up to the last that has one; others are white.
     colors: Vec<LinearRgba>,
     uvs: Vec<DVec2>,
     normals: Vec<DVec3>,
@@ -88,7 +91,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
 ///
 /// # Errors
 ///
-/// As [`read`]; of other files, only a `Kd` beyond single precision is an error.
+/// Those of [`read`]; of other files, only a `Kd` beyond single precision is an error.
 pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
     let mut draft = Draft::default();
     let text = joined(bytes);

@@ -5,8 +5,8 @@
 //! Read are all headers of three dimensions: `OFF` with the letters `ST`, `C` and `N` before it, in this order, for
 //! texture coordinates, colors and normals of the vertices, and none at all, which means `OFF`. The counts may follow
 //! the header on its line, even without a space. Colors are three or four numbers, 0 to 255 if a vertex has only whole
-//! ones and else 0 to 1; those of faces are left out. A vertex is on one line; a face may go on over several. The four-dimensional, n-dimensional and binary variants are
-//! refused.
+//! ones and else 0 to 1; those of faces are left out. A vertex is on one line; a face may go on over several. The
+//! four-dimensional, n-dimensional and binary variants are refused.
 
 use super::MeshFormat;
 use crate::MeshIoError;
@@ -28,7 +28,7 @@ pub(super) const OFF: MeshFormat = MeshFormat {
     writer: None,
 };
 
-/// What the header says that vertices have.
+/// The columns of the vertices, as the header lists them.
 #[derive(Clone, Copy, Default)]
 struct Header {
     texture: bool,
@@ -95,7 +95,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
     vertices.into_model(header, &faces)
 }
 
-/// What the header means, taken off its line.
+/// Takes the header off its line.
 fn take_header(line: &mut Line<'_>) -> Result<Header, MeshIoError> {
     let word = line.words[0];
     if parse::<f64>(word).is_some() {

@@ -10,6 +10,9 @@
 //! in which -1 ends a strip. Everything else is passed over. Colors are coded as
 //! sRGB: 0 to 255, for `ushort` 0 to 65535, and for `float` and `double` 0 to 1. Texture coordinates have v up, as OBJ,
 //! so that v becomes 1 - v.
+//!
+//! The reader is ours for what is promised of it: any scalar type for any property, errors that name their line, and a
+//! limit of memory whatever the header says.
 
 mod body;
 mod header;
@@ -85,8 +88,9 @@ struct Target {
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) if the bytes are not a PLY file, or have fewer elements than the
-/// header says, with the line in the header and in a body of text; and what [`Mesh::new`] and [`Model::check`] refuse.
+/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) if the bytes are not a PLY file, or have fewer elements than
+/// the header says, with the line in the header and in a body of text; and what [`Mesh::new`] and [`Model::check`]
+/// refuse.
 ///
 /// # Examples
 ///

@@ -429,6 +429,29 @@ fn clouds_and_nothing_read_back() {
     );
 }
 
+/// The reason why the reader is ours: a file that is refused here passes the validation of the crate `gltf`, and makes it
+/// panic.
+#[test]
+fn file_that_makes_the_crate_gltf_panic_is_refused() {
+    let mut document = square();
+    document["accessors"][1] =
+        json!({ "bufferView": 0, "componentType": 5126, "count": 4, "type": "SCALAR" });
+    assert_eq!(
+        why(&document),
+        "accessor 1 has a type that is not for indices"
+    );
+    let bytes = document.to_string().into_bytes();
+    let ::gltf::Gltf { document, .. } = ::gltf::Gltf::from_slice(&bytes).expect("it passes");
+    let read = std::panic::AssertUnwindSafe(|| {
+        let primitives = document.meshes().flat_map(|mesh| mesh.primitives());
+        primitives
+            .map(|primitive| primitive.reader(|_| Some(&bytes)).read_indices().is_some())
+            .count()
+    });
+    let panicked = std::panic::catch_unwind(read).is_err();
+    assert!(panicked, "the crate reads it: it may serve by now");
+}
+
 #[test]
 fn written_file_is_valid_for_another_reader() {
     let model = full();
