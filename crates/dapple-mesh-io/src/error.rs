@@ -11,12 +11,12 @@ dapple_raster::error! {
         File {
             /// The format.
             format: &'static str,
-            /// What is wrong, and where.
+            /// The reason, and where in the file it is.
             why: String,
         } => "this is not a valid {format} file: {why}";
         /// A file is valid, but uses a feature that is not read.
         Unsupported {
-            /// What is not read.
+            /// The name of the feature.
             feature: String,
         } => "{feature} is not supported";
         /// A file cannot be read from the disk or written to it.

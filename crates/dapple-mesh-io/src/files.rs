@@ -23,8 +23,8 @@ const BYTES_MAX: u64 = 1 << 32;
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::Io`] if the file cannot be read or has more than 4 GiB; [`MeshIoErrorKind::Format`] if no format has
-/// its ending; and what the reader of the format refuses.
+/// [`MeshIoErrorKind::Io`] if the file cannot be read or has more than 4 GiB; [`MeshIoErrorKind::Format`] if no format
+/// has its ending; and what the reader of the format refuses.
 pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
     let path = path.as_ref();
     let Some(format) = MeshFormat::of_path(path) else {
@@ -39,13 +39,13 @@ pub fn read_model(path: impl AsRef<Path>) -> Result<Model, MeshIoError> {
 
 /// Writes a mesh file, in the format of [`FORMATS`](crate::FORMATS) that is written with the ending of its path.
 ///
-/// A file is written under a temporary name and then renamed, so that nobody ever sees half of it. Files that it names, such
-/// as materials and textures, are written beside it before it, under the same stem.
+/// A file is written under a temporary name and then renamed, so that no program ever sees half of it. Files that it
+/// names, such as materials and textures, are written beside it before it, under the same stem.
 ///
 /// # Errors
 ///
-/// [`MeshIoErrorKind::Io`] if a file cannot be written; [`MeshIoErrorKind::Format`] if nothing is written with this ending;
-/// and what the writer of the format refuses.
+/// [`MeshIoErrorKind::Io`] if a file cannot be written; [`MeshIoErrorKind::Format`] if nothing is written with this
+/// ending; and what the writer of the format refuses.
 pub fn write_model(path: impl AsRef<Path>, model: &Model) -> Result<(), MeshIoError> {
     let path = path.as_ref();
     let ending = ending(path);

@@ -55,7 +55,7 @@ pub enum MaterialPlace {
 /// A lookup of the content of another file by the name that a file has for it; `None` if there is no such file.
 ///
 /// Readers of formats that are spread over several files take one. A name is as in the file, with slashes and without
-/// percent codes; it may try to lead anywhere, so whoever opens files has to look at it first.
+/// percent codes; it may try to lead anywhere, so a caller that opens files has to check it first.
 pub type Beside<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
 
 /// The name and the content of a file that is not written yet.

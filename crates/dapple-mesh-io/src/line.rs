@@ -7,7 +7,7 @@ use glam::DVec3;
 /// A line that has something to say.
 pub(crate) struct Line<'a> {
     format: &'static str,
-    /// From 1; of several lines that go together, the last.
+    /// The number of the line, from 1; of several lines that go together, the last.
     number: usize,
     /// All of it.
     text: &'a [u8],

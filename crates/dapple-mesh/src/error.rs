@@ -7,7 +7,7 @@ dapple_raster::error! {
     MeshErrorKind with Range {
         /// There are more or fewer things than needed.
         Count {
-            /// What is counted.
+            /// The name of the counted things.
             what: &'static str,
             /// How many there are.
             count: usize,

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-/// The rotation by `angle` radians about a unit `axis`, counterclockwise for whoever the axis points at.
+/// The rotation by `angle` radians about a unit `axis`, counterclockwise as seen from the tip of the axis.
 ///
 /// Its bits are the same on every platform; those of the constructors of `glam` differ.
 ///

@@ -16,7 +16,7 @@ const BLOCK: u32 = 8;
 /// The reach within which there is a site of the finest level of a piece of the surface, in spacings.
 const REACH: f64 = 2.0;
 
-/// What texels of a block are worked with.
+/// Memory of a thread that bakes blocks of texels.
 #[derive(Debug, Default)]
 struct Memory {
     /// The texels of a block by face.
@@ -66,7 +66,7 @@ pub fn bake<const N: usize>(
     Ok(Raster::from_vec(size, bands.concat())?)
 }
 
-/// What all blocks read.
+/// The input of all blocks.
 struct Baker<'a> {
     surface: &'a Surface,
     hierarchy: &'a Hierarchy,

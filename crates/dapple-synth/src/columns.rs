@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// [`sum`] adds.
 const BLOCK: usize = 1024;
 
-/// What `make` gives for each number below `count`, in order; each is worth a task of its own.
+/// The values of `make` for each number below `count`, in order; each is worth a task of its own.
 pub(crate) fn tasks<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     #[cfg(feature = "rayon")]
     return (0..count).into_par_iter().map(make).collect();

@@ -37,7 +37,7 @@ pub fn displaced_sites(
 ///
 /// # Errors
 ///
-/// As [`displaced_sites`].
+/// Those of [`displaced_sites`].
 pub fn displaced_mesh(
     synthesizer: &Synthesizer,
     heights: &[f32],

@@ -1,8 +1,9 @@
 //! The paper's two displays as models for files: the sites with their colors, and the input mesh with a texture map.
 //!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 6, <https://doi.org/10.1145/383259.383297>.
-//! `M_1` is a graph and no mesh; [`Hierarchy::triangles`](crate::Hierarchy::triangles) says how triangles are made
-//! of it. The fields of a [`Model`] may be changed: its mesh for one that is [displaced](crate::displaced_mesh), say.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 6,
+//! <https://doi.org/10.1145/383259.383297>. `M_1` is a graph and no mesh;
+//! [`Hierarchy::triangles`](crate::Hierarchy::triangles) says how triangles are made of it. The fields of a [`Model`] may
+//! be changed: its mesh for one that is [displaced](crate::displaced_mesh), say.
 
 use crate::maps::check_column;
 use crate::{Atlas, SynthError, SynthErrorKind, Synthesizer};
@@ -46,7 +47,7 @@ pub fn site_model(synthesizer: &Synthesizer, colors: Vec<LinearRgba>) -> Result<
 ///
 /// # Errors
 ///
-/// As [`site_model`].
+/// Those of [`site_model`].
 pub fn point_model(
     synthesizer: &Synthesizer,
     colors: Vec<LinearRgba>,

@@ -40,11 +40,12 @@
 //! site took.
 //!
 //! So other maps of the exemplar can follow: [`SurfaceTexture::transfer`] copies heights, roughness and normals, which
-//! [`bake_values`] and [`bake_normals`] write to texture maps with the same [`Atlas`] as the colors. What is to be matched
-//! and what is only copied is the caller's choice: see [`Exemplar::from_planes`] and the example of [`bake_values`].
-//! [`textured_model`] and [`site_model`] make what file formats take, [`displaced_sites`] moves the mesh itself.
+//! [`bake_values`] and [`bake_normals`] write to texture maps with the same [`Atlas`] as the colors. What is to be
+//! matched and what is only copied is the caller's choice: see [`Exemplar::from_planes`] and the example of
+//! [`bake_values`]. [`textured_model`] and [`site_model`] make what file formats take, [`displaced_sites`] moves the mesh
+//! itself.
 //!
-//! [`Synthesizer`] keeps all that does not depend on the exemplar; it can be used again, tells of its progress and can be
+//! [`Synthesizer`] keeps all that does not depend on the exemplar; it can be used again, reports its progress and can be
 //! stopped. The same passes on pixels, for plain images and for tiles, are [`synthesize_plane`].
 //!
 //! # The paper's sections
@@ -90,9 +91,9 @@
 //!
 //! # Reproducibility
 //!
-//! Everything follows from the inputs, of which two are seeds: that of the sites and that of [`Options`]. Results have the
-//! same bits on every machine, with every set of vector instructions, and on any number of threads: sites are worked on at
-//! the same time only if they do not read each other.
+//! Everything follows from the inputs, of which two are seeds: that of the sites and that of [`Options`]. Results have
+//! the same bits on every machine, with every set of vector instructions, and on any number of threads: sites are worked
+//! on at the same time only if they do not read each other.
 
 #![forbid(unsafe_code)]
 

@@ -79,11 +79,12 @@ impl Orientation {
 
     /// Interpolates directions over the surface; connected parts without any run along an axis of the caller's.
     ///
-    /// The axis is projected to the tangent planes; where it is normal to the surface, a vector at a right angle to it is.
+    /// The axis is projected to the tangent planes; where it is normal to the surface, a vector at a right angle to it
+    /// is.
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new), and [`SynthErrorKind::Range`] if the axis is zero or not finite.
+    /// Those of [`new`](Self::new), and [`SynthErrorKind::Range`] if the axis is zero or not finite.
     pub fn with_axis(
         hierarchy: &Hierarchy,
         directions: &[Direction],
@@ -134,7 +135,8 @@ fn tangent(vector: DVec3, normal: DVec3) -> Option<DVec3> {
     (part.length_squared() > LEAST_TANGENT_SQ).then(|| part.normalize())
 }
 
-/// The unit tangent along a unit axis, or where that is normal to the plane along another one, so that there always is one.
+/// The unit tangent along a unit axis, or where that is normal to the plane along another one, so that there always is
+/// one.
 fn axis_tangent(axis: DVec3, normal: DVec3) -> DVec3 {
     let across = axis.any_orthonormal_vector();
     tangent(axis, normal)

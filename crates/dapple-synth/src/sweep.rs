@@ -35,7 +35,7 @@ pub struct Sweep {
     levels: Vec<Distances>,
 }
 
-/// What is known of the sites of a level.
+/// Sweep distances and components of the sites of a level.
 #[derive(Clone, Debug, PartialEq)]
 struct Distances {
     /// The sweep distances.

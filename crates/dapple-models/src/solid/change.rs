@@ -94,7 +94,7 @@ pub struct Bent<S> {
     solid: S,
     lift: f64,
     bounds: [DVec3; 2],
-    /// What a distance before the bend is at least after it, as a factor.
+    /// The least factor of distances under the bend.
     shrink: f64,
 }
 

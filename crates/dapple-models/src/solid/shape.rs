@@ -101,7 +101,7 @@ pub(super) struct Spindle {
     axis: DVec3,
     length: f64,
     radius: f64,
-    /// What the radius loses along a unit of the axis.
+    /// The decrease of the radius along a unit of the axis.
     taper: f64,
     /// How far a normal of the mantle goes along the axis while it goes out by a unit.
     lean: f64,

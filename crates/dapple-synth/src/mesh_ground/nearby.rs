@@ -49,7 +49,7 @@ pub(crate) struct Around<'a> {
     records: &'a [Record],
     /// Which of `records` they are.
     numbers: &'a [u32],
-    /// What positions are relative to.
+    /// The position that others are relative to.
     center: [f32; 3],
 }
 

@@ -12,12 +12,12 @@ use crate::columns::tasks;
 use dapple_mesh::{Surface, SurfacePoint};
 use glam::DVec2;
 
-/// Points further apart than so many spacings have no edge.
+/// The largest distance of two points with an edge, in spacings.
 const REACH: f64 = 2.2;
-/// The center of an empty circle is at most so many spacings from the middle of the edge, so that no long edges lie
-/// along borders.
+/// The largest distance of the center of an empty circle from the middle of its edge, in spacings, so that no long edges
+/// lie along borders.
 const CENTER_REACH: f64 = 1.2;
-/// Middles nearer to each other than so many spacings are of crossing edges: only one of them is kept.
+/// The distance of middles, in spacings, below which their edges cross: only one of them is kept.
 const CLASH: f64 = 0.3;
 
 /// An edge between two points, and the way from one to the other.

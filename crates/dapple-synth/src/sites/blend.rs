@@ -1,4 +1,4 @@
-//! What the operations on a hierarchy work on.
+//! Values that the operations on a hierarchy can mix.
 
 use glam::DVec3;
 
@@ -16,7 +16,7 @@ pub trait Blend: Copy + Send + Sync {
     /// The zero of the vector space.
     const ZERO: Self;
 
-    /// This and a part of another one.
+    /// The sum of this value and a part of another one.
     #[must_use]
     fn add_scaled(self, other: Self, weight: f64) -> Self;
 }

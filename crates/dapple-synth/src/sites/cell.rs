@@ -27,9 +27,10 @@ const ROUNDING: f64 = 8.881_784_197_001_252e-16;
 pub(crate) struct Cell {
     /// Counterclockwise.
     sides: Vec<Side>,
-    /// Which of them came last.
+    /// The side that came last.
     newest: usize,
-    /// Of the largest circle through the origin and two neighbors in a row; infinite while the cell is open.
+    /// The squared diameter of the largest circle through the origin and two neighbors in a row; infinite while the cell
+    /// is open.
     diameter_sq: f64,
 }
 
@@ -60,7 +61,7 @@ struct Corner {
 /// A neighbor of the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Neighbor {
-    /// What was given with the point.
+    /// The tag that was given with the point.
     pub(crate) tag: u32,
     /// Whether it makes a triangle with the origin and the next neighbor, counterclockwise.
     pub(crate) joined: bool,

@@ -46,11 +46,12 @@ const BITS: u32 = 21;
 const BRICK_BITS: u32 = 3;
 /// The cells of a brick.
 const BRICK_CELLS: usize = 1 << (3 * BRICK_BITS);
-/// Below so many sites in a brick on average, cells are widened: it bounds the memory to 64 bytes for each site.
+/// The least mean number of sites in a brick; below it cells are widened, which bounds the memory to 64 bytes for each
+/// site.
 const SITES_PER_BRICK: usize = 32;
-/// So many bricks are always granted.
+/// The number of bricks that is always granted.
 const BRICKS_LEAST: usize = 64;
-/// With so many bricks their cells can still be numbered in 32 bits.
+/// The most bricks, whose cells can still be numbered in 32 bits.
 const BRICKS_MOST: usize = (1 << 23) - 1;
 
 impl SiteGrid {

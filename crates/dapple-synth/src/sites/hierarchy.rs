@@ -17,7 +17,7 @@ const LEVELS_MAX: usize = 16;
 /// The most iterations, so that a mistaken number does not take forever.
 const ITERATIONS_MAX: usize = 10_000;
 
-/// How a hierarchy is made.
+/// Options of a hierarchy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HierarchyOptions {
     /// The number of sites of the finest level; by default 65 536. Each coarser level has a quarter, rounded up.

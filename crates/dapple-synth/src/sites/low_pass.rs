@@ -38,7 +38,7 @@ const CHUNK: usize = 2048;
 #[derive(Clone, Debug)]
 pub struct LowPass<'a> {
     graph: &'a SiteGraph,
-    /// Of the neighbors of all sites, row by row.
+    /// The weights of the neighbors of all sites, row by row.
     weights: Vec<f64>,
 }
 
@@ -76,7 +76,7 @@ impl<'a> LowPass<'a> {
         &self.weights[self.graph.row(site)]
     }
 
-    /// Filters a column so many times, each with the part `t`; equation 3. The paper takes 0.1 for `t`.
+    /// Filters a column `steps` times, each with the part `t`; equation 3. The paper takes 0.1 for `t`.
     ///
     /// As long as `t` is at most 0.99, no value leaves the range of the values of the site and its neighbors, not even
     /// by rounding.
@@ -111,7 +111,7 @@ impl<'a> LowPass<'a> {
     ///
     /// # Errors
     ///
-    /// As [`apply`](Self::apply).
+    /// Those of [`apply`](Self::apply).
     pub fn step<T: Blend>(&self, from: &[T], to: &mut [T], t: f64) -> Result<(), SynthError> {
         for column in [from.len(), to.len()] {
             check_length("values", column, self.graph.len())?;

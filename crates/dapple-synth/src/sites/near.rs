@@ -11,7 +11,7 @@ pub(crate) const CHUNK: usize = 1024;
 /// reach, and a heap of sheets must not fill the memory.
 const CROWD_MAX: usize = 48;
 
-/// Where points are in space, and which way they face.
+/// Positions of points in space, and their normals.
 #[derive(Debug, Default)]
 pub(crate) struct Places {
     pub(crate) positions: Vec<DVec3>,

@@ -1,10 +1,10 @@
 //! Nested sets of even points on a surface, each with about four times as many as the one before.
 //!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1: the coarsest
-//! points are repelled, then stay; new ones are added and repelled by all. The paper begins with random points at every
-//! level. Here a level begins with the middles of the edges between the points before it, which is nearly even from the
-//! start; and since the coarsest level is free to move, it is itself made from still coarser ones in this way. The
-//! pieces of the surface get their shares by area.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.1: the
+//! coarsest points are repelled, then stay; new ones are added and repelled by all. The paper begins with random points
+//! at every level. Here a level begins with the middles of the edges between the points before it, which is nearly even
+//! from the start; and since the coarsest level is free to move, it is itself made from still coarser ones in this way.
+//! The pieces of the surface get their shares by area.
 //!
 //! The new points of a level are in Morton order (G. M. Morton, "A Computer Oriented Geodetic Data Base", IBM, 1966):
 //! points near each other are mostly near each other in memory.
@@ -24,7 +24,7 @@ use glam::DVec3;
 const RANDOM_MOST: usize = 256;
 /// Iterations for random points, which cost nothing, for there are few of them.
 const ITERATIONS_RANDOM: usize = 40;
-/// The points of the coarsest count and of those before it, which are few as well, get so many times the iterations.
+/// The points of the coarsest count and of those before it, which are few as well, get this many times the iterations.
 const ITERATIONS_HIDDEN: usize = 4;
 /// Bits of a position along one axis in Morton order.
 const MORTON_BITS: u32 = 21;
@@ -112,7 +112,7 @@ impl Nest<'_> {
     /// Adds points until there are `count`, and makes those from `n_fixed` on even.
     fn add_level(&mut self, count: usize, n_fixed: usize, iterations: usize, seed: Seed) {
         self.grow(count, seed);
-        // Before the repulsion, which reads neighbors all the time, and after it, for whoever comes next.
+        // Before the repulsion, which reads neighbors all the time, and after it, for the steps that follow.
         sort(self.surface, &mut self.points[n_fixed..]);
         self.relax(n_fixed, iterations, seed.child("stuck", 0));
         sort(self.surface, &mut self.points[n_fixed..]);
@@ -197,7 +197,7 @@ fn sort(surface: &Surface, points: &mut [SurfacePoint]) {
         .zip(&positions)
         .map(|(number, &position)| (morton((position - low) * scale), number))
         .collect();
-    // Equal keys are told apart by the numbers, so the order is one.
+    // Equal keys have different numbers, so there is one order only.
     sort_keys(&mut keyed);
     let sorted: Vec<SurfacePoint> = keyed
         .iter()

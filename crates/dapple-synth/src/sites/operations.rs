@@ -72,7 +72,7 @@ impl Hierarchy {
     ///
     /// # Errors
     ///
-    /// As [`upsample_into`](Self::upsample_into).
+    /// Those of [`upsample_into`](Self::upsample_into).
     pub fn upsample<T: Blend>(&self, level: usize, column: &[T]) -> Result<Vec<T>, SynthError> {
         let n_sites = self.finer(level)?.positions.len();
         let mut finer = vec![T::ZERO; n_sites];

@@ -29,7 +29,7 @@ const GAIN_FIRST: f64 = 0.15;
 const GAIN_LAST: f64 = 0.045;
 /// Neighbors are listed as far as this part of the radius beyond it.
 const MARGIN: f64 = 0.2;
-/// Lists are made anew when more than one in so many points wanted to leave its margin.
+/// Lists are made anew when more than one point in this number of points wanted to leave its margin.
 const LIMITED_MOST: usize = 100;
 /// The least product of the normals of neighbors. Neighbors count as such from a right angle on; those a little past it
 /// push too, or else they could come together where the surface bends.
@@ -38,7 +38,7 @@ const FACING: f64 = -0.5;
 const SAME_PLACE: f64 = 1e-6;
 /// The weights of the corners of a face that give each corner.
 const CORNERS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-/// How much a point that goes along a border leans inward, so that rounding does not end its way.
+/// The inward part of the way of a point that goes along a border, so that rounding does not end its way.
 const LEAN: f64 = 1.0 / (1 << 20) as f64;
 
 /// Moves the points from number `n_fixed` on apart; those before it push, but stay.

@@ -201,7 +201,7 @@ impl Edges {
 struct Filler<'a> {
     sites: &'a Oriented<'a>,
     edges: &'a Edges,
-    /// What was cut so far, the lower site first.
+    /// The edges that were cut so far, the lower site first.
     diagonals: BTreeSet<[u32; 2]>,
 }
 

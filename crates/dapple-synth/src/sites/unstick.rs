@@ -15,7 +15,7 @@ use dapple_hash::Seed;
 use dapple_mesh::{Surface, SurfacePoint};
 use glam::DVec3;
 
-/// A point is stuck if its nearest neighbor is nearer than so many spacings.
+/// The distance to the nearest neighbor, in spacings, below which a point is stuck.
 const STUCK: f64 = 0.72;
 /// The random places that are tried.
 const N_PLACES: u64 = 256;
@@ -48,7 +48,7 @@ pub(crate) fn unstick(
     }
 }
 
-/// Where points are while some of them are moved.
+/// Positions of points while some of them are moved.
 struct Crowd {
     places: Places,
     spacing: f64,

@@ -177,7 +177,7 @@ impl Source<'_> {
 }
 
 impl Elements<'_> {
-    /// The numbers of so many elements.
+    /// The numbers of `count` elements.
     fn read(&self, count: usize) -> Result<Vec<f64>, MeshIoError> {
         let size = self.component.size();
         // The last element need not have all of its stride.
@@ -238,7 +238,7 @@ impl Component {
             (Self::U16, &[a, b]) => u16::from_le_bytes([a, b]).into(),
             (Self::U32, &[a, b, c, d]) => u32::from_le_bytes([a, b, c, d]).into(),
             (Self::F32, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]).into(),
-            // Nobody asks for other lengths.
+            // No caller asks for other lengths.
             _ => 0.0,
         }
     }

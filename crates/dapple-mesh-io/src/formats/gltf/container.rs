@@ -1,4 +1,4 @@
-//! What the JSON of glTF comes in: a GLB file with its chunks, buffers, and data URIs.
+//! The containers of glTF: a GLB file with its chunks, buffers, and data URIs.
 
 use super::document::Document;
 use super::{unsupported, wrong};

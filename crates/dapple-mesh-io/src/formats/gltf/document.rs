@@ -4,7 +4,7 @@
 
 use serde::Deserialize;
 
-/// What all versions have.
+/// The part of the document that all versions of glTF have.
 #[derive(Deserialize)]
 pub(super) struct Head {
     pub(super) asset: Asset,
@@ -113,7 +113,7 @@ pub(super) struct SparsePart {
     pub(super) buffer_view: usize,
     #[serde(default)]
     pub(super) byte_offset: usize,
-    /// Only indices have one.
+    /// The type of the numbers; only indices have one.
     pub(super) component_type: Option<u32>,
 }
 

@@ -18,16 +18,16 @@ struct Draft<'a> {
     source: &'a Source<'a>,
     budget: Budget,
     positions: Vec<DVec3>,
-    /// As many as positions, as long as all primitives have them.
+    /// One for each position, as long as all primitives have them.
     normals: Vec<DVec3>,
-    /// As many as positions up to the last that has one; so are texture coordinates.
+    /// One for each position up to the last that has one, as of texture coordinates.
     colors: Vec<LinearRgba>,
     uvs: Vec<DVec2>,
     faces: Vec<[u32; 3]>,
     material: Option<usize>,
 }
 
-/// The model without its material, and the number of that. The file has so many bytes, with its buffers.
+/// The model without its material, and the number of that. The file has `n_bytes` bytes, with its buffers.
 pub(super) fn read(
     source: &Source<'_>,
     n_bytes: usize,
@@ -75,7 +75,7 @@ pub(super) fn read(
     draft.into_model()
 }
 
-/// The roots of the default scene; without scenes, all nodes that are nobody's child.
+/// The roots of the default scene; without scenes, all nodes that are no node's child.
 fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshIoError> {
     let document = &source.document;
     if document.scene.is_none() && document.scenes.is_empty() {

@@ -33,7 +33,7 @@ pub(super) fn trs(
     )
 }
 
-/// What takes normals along with a transform, but for their lengths; also where that has no inverse.
+/// The matrix that transforms normals, but for their lengths; it exists where the transform has no inverse, too.
 pub(super) fn cofactors(transform: DMat4) -> DMat3 {
     let matrix = DMat3::from_mat4(transform);
     let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);

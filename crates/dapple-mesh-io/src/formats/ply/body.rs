@@ -6,7 +6,7 @@ use crate::MeshIoError;
 use crate::text::{in_range, parse};
 use core::fmt::Display;
 
-/// What is still to be read.
+/// The rest of the file, which is still to be read.
 pub(super) struct Body<'a> {
     encoding: Encoding,
     /// All of the file, with its header.

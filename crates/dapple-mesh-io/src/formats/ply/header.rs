@@ -4,7 +4,7 @@ use super::FORMAT;
 use crate::MeshIoError;
 use crate::text::{parse, words};
 
-/// What a PLY file says about its body.
+/// The header of a PLY file, which describes its body.
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
@@ -22,12 +22,12 @@ pub(super) enum Encoding {
 pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: u64,
-    /// Of the file, from 1.
+    /// The number of the line in the file, from 1.
     pub(super) line: usize,
     pub(super) properties: Vec<Property>,
 }
 
-/// What every thing of an element has.
+/// A property that all things of an element have.
 pub(super) struct Property {
     pub(super) name: String,
     pub(super) kind: Kind,

@@ -8,7 +8,7 @@ use dapple_mesh::Model;
 use glam::DVec3;
 use std::fmt::Write as _;
 
-/// Where numbers go: bytes or text.
+/// The target of numbers: bytes or text.
 struct Out {
     bytes: Vec<u8>,
     /// The line so far, for text.
