@@ -4,11 +4,14 @@
 use dapple_color::LinearRgb;
 use dapple_hash::Seed;
 use dapple_image::{Limits, read_image};
-use dapple_mesh::{
-    FaceEdge, FaceIdx, Hierarchy, HierarchyOptions, Mesh, SiteIdx, Surface, glam::DVec3, io, models,
-};
+use dapple_mesh::{FaceEdge, FaceIdx, Mesh, Surface, glam::DVec3};
+use dapple_mesh_io::read_model;
+use dapple_models as models;
 use dapple_raster::Raster;
-use dapple_synth::{Atlas, Direction, Edges, Exemplar, Options, Orientation, Synthesizer, bake};
+use dapple_synth::{
+    Atlas, Direction, Edges, Exemplar, Hierarchy, HierarchyOptions, Options, Orientation, SiteIdx,
+    Synthesizer, bake,
+};
 use std::path::{Path, PathBuf};
 
 /// Upright stripes of this width in pixels, dark and light together: the texture changes along P only.
@@ -246,7 +249,7 @@ fn real_meshes_and_photographs_get_their_textures() {
         let (Some(mesh), Some(exemplar)) = (mesh, exemplar) else {
             return;
         };
-        let map = texture_map(io::read_model(&mesh).unwrap().mesh, &exemplar, 5000);
+        let map = texture_map(read_model(&mesh).unwrap().mesh, &exemplar, 5000);
         let shown = map.pixels().iter().filter(|color| color[0] >= 0.0);
         let colors: Vec<_> = shown.copied().collect();
         let in_range = |color: &[f32; 3]| color.iter().all(|code| (0.0..=1.0).contains(code));

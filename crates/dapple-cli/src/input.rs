@@ -12,7 +12,8 @@ use dapple::color::{Code, LinearRgb, LinearRgba, Normal};
 use dapple::image::{
     Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_image, read_image,
 };
-use dapple::mesh::{MeshErrorKind, Model, io::read_model};
+use dapple::mesh::Model;
+use dapple::mesh_io::{MeshIoErrorKind, read_model, readable_endings};
 use dapple::raster::Raster;
 use dapple::recipe::{ImageAlpha, similar_words};
 use dapple::tile::Map;
@@ -244,11 +245,11 @@ pub(crate) fn model(path: &Path) -> Result<Model> {
     check_file(path, "a mesh")?;
     read_model(path).map_err(|error| {
         let hint = match error.kind() {
-            MeshErrorKind::Format { .. } => {
-                Some("a mesh is a file in .obj, .ply, .glb, .gltf or .off")
+            MeshIoErrorKind::Format { .. } => {
+                Some(format!("a mesh is a file in {}", mesh_endings()))
             }
-            MeshErrorKind::Unsupported { .. } => {
-                Some("export it again without that, or as .obj or .ply")
+            MeshIoErrorKind::Unsupported { .. } => {
+                Some("export it again without that, or as .obj or .ply".to_owned())
             }
             _ => None,
         };
@@ -258,6 +259,14 @@ pub(crate) fn model(path: &Path) -> Result<Model> {
             None => error,
         }
     })
+}
+
+/// The endings of mesh files, as help texts list them.
+pub(crate) fn mesh_endings() -> String {
+    let endings: Vec<_> = readable_endings()
+        .map(|ending| format!(".{ending}"))
+        .collect();
+    endings.join(", ")
 }
 
 /// Reads a text; `-` is standard input.

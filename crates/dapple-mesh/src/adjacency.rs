@@ -96,7 +96,7 @@ impl Adjacency {
         self.across[from.face.index()][usize::from(from.edge)] = to;
     }
 
-    /// What is across the three edges of a face.
+    /// The edges across the three edges of a face, as the faces there have them.
     pub(crate) fn around(&self, face: FaceIdx) -> [Option<FaceEdge>; 3] {
         self.across[face.index()]
     }

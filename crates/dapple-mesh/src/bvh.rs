@@ -14,9 +14,9 @@ use triangle::{Corners, Probe, nearest_weights};
 /// A half line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it begins.
+    /// The position where the ray begins.
     pub origin: DVec3,
-    /// Where it goes: of length 1, so that a parameter along it is a distance.
+    /// The direction of the ray, of length 1, so that a parameter along it is a distance.
     pub direction: DVec3,
 }
 
@@ -46,8 +46,8 @@ pub struct NearestPoint {
 
 /// A hierarchy of boxes around the faces of a mesh (a bounding volume hierarchy), for rays and nearest points.
 ///
-/// Answers are those of a search through all faces, to the last bit; of several faces at one distance it is the one with the
-/// lowest index. Faces are seen from both sides, and those without an area are never met by a ray.
+/// Answers are those of a search through all faces, to the last bit; of several faces at one distance it is the one with
+/// the lowest index. Faces are seen from both sides, and those without an area are never met by a ray.
 ///
 /// # Examples
 ///

@@ -6,7 +6,7 @@ use crate::adjacency::{Adjacency, FaceEdge};
 use crate::{FaceIdx, Mesh};
 use glam::DVec3;
 
-/// The angle of an edge, in radians, above which it is shaded as a crease where nobody says otherwise: 30 degrees.
+/// The angle of an edge, in radians, above which it is shaded as a crease by default: 30 degrees.
 pub const CREASE: f64 = core::f64::consts::FRAC_PI_6;
 
 impl Mesh {

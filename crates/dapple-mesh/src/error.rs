@@ -7,7 +7,7 @@ dapple_raster::error! {
     MeshErrorKind with Range {
         /// There are more or fewer things than needed.
         Count {
-            /// What is counted.
+            /// The name of the counted things.
             what: &'static str,
             /// How many there are.
             count: usize,
@@ -43,40 +43,7 @@ dapple_raster::error! {
              {winding} edges of inconsistent winding; `repair` mends them";
         /// No face of the mesh has an area.
         NoArea => "no face of the mesh has an area";
-        /// A file does not follow its format.
-        File {
-            /// The format.
-            format: &'static str,
-            /// What is wrong, and where.
-            why: String,
-        } => "this is not a valid {format} file: {why}";
-        /// A file is valid, but uses a feature that is not read.
-        Unsupported {
-            /// What is not read.
-            feature: String,
-        } => "{feature} is not supported";
-        /// A file cannot be read or written.
-        Io {
-            /// The path of the file.
-            path: String,
-            /// The error of the operating system, as text.
-            why: String,
-        } => "{path}: {why}";
-        /// No reader, or no writer, has this name.
-        Format {
-            /// The name, as the extension of a path has it.
-            name: String,
-            /// What there is, as text.
-            known: &'static str,
-        } => "no mesh format is named `{name}`; there are {known}";
-    }
-}
-
-impl MeshError {
-    /// Says that a file does not follow its format.
-    #[cfg(any(feature = "obj", feature = "ply", feature = "gltf", feature = "off"))]
-    pub(crate) fn file(format: &'static str, why: impl Into<String>) -> Self {
-        let why = why.into();
-        Self::new(MeshErrorKind::File { format, why })
+        /// The bytes of an image are neither a PNG nor a JPEG file.
+        Image => "the image is neither a PNG nor a JPEG file";
     }
 }

@@ -1,4 +1,4 @@
-//! The numbers of vertices, faces and sites.
+//! The numbers of vertices and faces.
 
 /// The number of a vertex of a mesh, from 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -7,10 +7,6 @@ pub struct VertexIdx(pub u32);
 /// The number of a face of a mesh, from 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FaceIdx(pub u32);
-
-/// The number of a site of a hierarchy, from 0; the sites of the coarsest level come first.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct SiteIdx(pub u32);
 
 impl VertexIdx {
     /// The number as an index into a column.
@@ -22,15 +18,6 @@ impl VertexIdx {
 }
 
 impl FaceIdx {
-    /// The number as an index into a column.
-    #[inline]
-    #[must_use]
-    pub const fn index(self) -> usize {
-        self.0 as usize
-    }
-}
-
-impl SiteIdx {
     /// The number as an index into a column.
     #[inline]
     #[must_use]

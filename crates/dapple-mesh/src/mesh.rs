@@ -3,8 +3,8 @@
 use crate::{MeshError, MeshErrorKind, VertexIdx};
 use glam::DVec3;
 
-/// The largest part of a position, so that squares and their sums stay finite.
-pub(crate) const POSITION_MAX: f64 = 1e30;
+/// The largest absolute value of a part of a position, 1e30: squares and their sums stay finite.
+pub const POSITION_MAX: f64 = 1e30;
 /// The most vertices and the most faces: indices and twice their number fit 32 bits.
 const COUNT_MAX: usize = 1 << 31;
 

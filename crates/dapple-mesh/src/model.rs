@@ -1,4 +1,4 @@
-//! What a mesh file holds: a mesh, its columns, and one material whose textures travel as encoded bytes.
+//! The content of a mesh file: a mesh, its columns, and one material whose textures travel as encoded bytes.
 //!
 //! Colors are linear light. Texture coordinates have v down: (0, 0) is the top left corner of the first row of the
 //! texture, as in glTF; the readers and writers of formats in which v goes up turn it over.
@@ -40,13 +40,13 @@ pub struct Model {
     pub normals: Option<Vec<DVec3>>,
     /// A normal for each corner of each face, which may differ at a crease; they go before those of the vertices.
     pub corner_normals: Option<Vec<[DVec3; 3]>>,
-    /// What all faces are made of.
+    /// The material of all faces.
     pub material: Material,
-    /// What a reader had to leave out of a file that contradicts itself, in words for people; no writer writes it.
+    /// Parts of a file that contradicts itself that a reader left out, in words for people; no writer writes it.
     pub left_out: Vec<String>,
 }
 
-/// What a surface is made of: the metallic-roughness material of glTF 2.0.
+/// The look of a surface: the metallic-roughness material of glTF 2.0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// The factor of the base color, linear; white by default.
@@ -59,8 +59,8 @@ pub struct Material {
     pub metallic_roughness: Option<EncodedImage>,
     /// Ambient occlusion in red; it may be the image of metalness and roughness, which then holds all three.
     pub occlusion: Option<EncodedImage>,
-    /// Whether textures may be shown by the coarser levels of a mipmap; true by default. Where pieces of a texture lie close
-    /// to each other, those mix pieces that are far apart on the mesh.
+    /// Whether textures may be shown by the coarser levels of a mipmap; true by default. Where pieces of a texture lie
+    /// close to each other, those mix pieces that are far apart on the mesh.
     pub mipmaps: bool,
     /// Whether the back of a face is seen, too; false by default.
     pub double_sided: bool,
@@ -164,16 +164,14 @@ impl EncodedImage {
     ///
     /// # Errors
     ///
-    /// [`MeshErrorKind::File`] if they begin neither as a PNG nor as a JPEG file.
+    /// [`MeshErrorKind::Image`] if they begin neither as a PNG nor as a JPEG file.
     pub fn new(bytes: Vec<u8>) -> Result<Self, MeshError> {
         let format = if bytes.starts_with(PNG) {
             ImageFormat::Png
         } else if bytes.starts_with(JPEG) {
             ImageFormat::Jpeg
         } else {
-            let why = "its first bytes are of neither format".to_owned();
-            let format = "PNG or JPEG";
-            return Err(MeshError::new(MeshErrorKind::File { format, why }));
+            return Err(MeshError::new(MeshErrorKind::Image));
         };
         Ok(Self { format, bytes })
     }
@@ -301,10 +299,7 @@ mod tests {
         );
         for bytes in [b"".as_slice(), b"\x89PNG", b"RIFF....WEBP"] {
             let error = EncodedImage::new(bytes.to_vec()).expect_err("neither");
-            assert!(
-                matches!(error.kind(), MeshErrorKind::File { .. }),
-                "{error}"
-            );
+            assert!(matches!(error.kind(), MeshErrorKind::Image), "{error}");
         }
     }
 }

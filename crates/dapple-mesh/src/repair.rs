@@ -19,7 +19,8 @@
 //!    cut along them: every vertex there is split into one for each fan of its faces.
 //! 6. Vertices that no face names are dropped.
 //!
-//! Step 3 leaves no crack in a closed mesh with a few such faces, as tests show; where many lie on top of each other, it may.
+//! Step 3 leaves no crack in a closed mesh with a few such faces, as tests show; where many lie on top of each other, it
+//! may.
 //!
 //! The result has no face or is a [`Surface`](crate::Surface), and repairing it again changes nothing. Non-manifold
 //! edges and vertices stay (but for the cuts): an edge of three faces is a border, and at a vertex of two fans nothing
@@ -30,13 +31,13 @@ mod winding;
 
 use crate::{FaceIdx, Mesh, MeshReport, VertexIdx};
 
-/// What [`Mesh::repair`] did.
+/// The changes that [`Mesh::repair`] made.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Repair {
-    /// What the mesh was like before.
+    /// The report of the mesh before the repair.
     pub before: MeshReport,
-    /// What it is like now.
+    /// The report of the repaired mesh.
     pub after: MeshReport,
     /// For each vertex now the vertex before that it was.
     pub vertex_before: Vec<VertexIdx>,
@@ -52,8 +53,8 @@ impl Mesh {
     /// The mesh without duplicate vertices, unused vertices, degenerate and duplicate faces, and with consistent winding.
     ///
     /// The result has no face, or [`Surface::new`](crate::Surface::new) takes it. Vertices and faces keep their order. A
-    /// mesh that needs nothing stays as it is, and so does one that was repaired. Only cuts in a piece with one side leave
-    /// duplicate vertices.
+    /// mesh that needs nothing stays as it is, and so does one that was repaired. Only cuts in a piece with one side
+    /// leave duplicate vertices.
     ///
     /// Two vertices at one position become one, which closes seams, and makes one sheet of two that coincide.
     ///

@@ -1,4 +1,4 @@
-//! What is wrong with a mesh, as data.
+//! Defects of a mesh, counted.
 
 use crate::adjacency::{Adjacency, names_twice, sorted_edges};
 use crate::triangle::area_vector;

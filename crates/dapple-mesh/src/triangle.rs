@@ -1,9 +1,9 @@
 //! The one rule for which triangles have an area.
 //!
 //! A triangle is *degenerate* if twice its area is at most 2^-50 times the square of its longest edge, or if that edge is
-//! shorter than 1e-60. The first bound is where rounding drowns the normal: the cross product of two edges is off by up to
-//! a quarter of it. The second keeps squares of areas above the smallest number. Every other triangle has a unit normal,
-//! and edges and heights whose squares and reciprocals are finite.
+//! shorter than 1e-60. The first bound is where rounding drowns the normal: the cross product of two edges is off by up
+//! to a quarter of it. The second keeps squares of areas above the smallest number. Every other triangle has a unit
+//! normal, and edges and heights whose squares and reciprocals are finite.
 //!
 //! The rule gives the same answer for the three corners in any order, to the last bit.
 
@@ -13,13 +13,13 @@ use glam::DVec3;
 const FLATNESS_MIN: f64 = 4.0 * f64::EPSILON;
 /// The shortest longest edge that a triangle with an area has, in units of the mesh.
 const LENGTH_MIN: f64 = 1e-60;
-/// What is thin beside the longest edge: 2^-40.
+/// The largest height over the longest edge of a face that counts as thin: 2^-40.
 pub(crate) const THIN_MAX: f64 = 4096.0 * f64::EPSILON;
 
-/// What is wrong with the shape of a triangle.
+/// The kinds of triangles by shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
-    /// Nothing: it has an area.
+    /// A triangle with an area.
     Fair,
     /// Degenerate, and the edge from this corner to the next is the shortest, and short beside the longest.
     Needle { shortest: usize },

@@ -15,7 +15,7 @@ use glam::DVec2;
 /// The most edges that one path crosses, which no path on a sensible mesh comes near to.
 const CROSSINGS_MAX: u32 = 1 << 16;
 
-/// Where a path came to.
+/// The end of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Walk {
     /// The end of the path.
@@ -32,7 +32,8 @@ impl Surface {
     ///
     /// A path ends early at a border of the mesh, and after 65,536 edges. A vector that is to be carried along keeps its
     /// angle to `direction`. A negative distance goes backward; the direction at the end points forward all the same. If
-    /// the point, the direction or the distance is not finite, the path ends where it begins, with all of the distance left.
+    /// the point, the direction or the distance is not finite, the path ends where it begins, with all of the distance
+    /// left.
     ///
     /// # Panics
     ///

@@ -1,4 +1,4 @@
-//! What is seen where no object is: around the scene, and in mirrors.
+//! The environment, seen where no object is: around the scene, and in mirrors.
 
 use crate::PreviewError;
 use core::fmt;

@@ -14,7 +14,7 @@ dapple_raster::error! {
     PreviewErrorKind with Range {
         /// A vector that has to point somewhere has no length, or none that counts.
         NoDirection {
-            /// What the vector is.
+            /// The name of the vector.
             what: &'static str,
         } => "the {what} has no direction";
         /// A shape without an inside cannot be cut.

@@ -23,7 +23,7 @@ use glam::{DVec2, DVec3};
 pub struct Light {
     /// Where the light comes from.
     pub source: LightSource,
-    /// What a white surface shows that is lit straight, from any distance if the light does not fall off.
+    /// The color of a white surface that is lit straight, from any distance if the light does not fall off.
     pub color: LinearRgb,
     /// How the light is blocked. By default hard.
     pub shadows: Shadows,
@@ -165,7 +165,7 @@ pub(crate) struct Lamp {
     pattern: Vec<DVec2>,
 }
 
-/// What a light does at a point, before shadows.
+/// The direction and color of a light at a point, before shadows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Incoming {
     pub(crate) color: LinearRgb,

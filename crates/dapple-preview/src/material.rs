@@ -1,10 +1,10 @@
-//! What a surface looks like at a point.
+//! The material of a surface at a point.
 //!
-//! Light is reflected after Lambert and, for highlights, after Blinn, "Models of Light Reflection for Computer Synthesized
-//! Pictures", SIGGRAPH 1977, doi 10.1145/563858.563893: `color · light · (n·l)` and `specular · light · (n·h)^shininess`.
-//! No factor of π is hidden: white, lit straight by a light of 1, is 1. Mirrors may follow Fresnel's law in the form of
-//! Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", Computer Graphics Forum 13(3), 1994,
-//! doi 10.1111/1467-8659.1330233.
+//! Light is reflected after Lambert and, for highlights, after Blinn, "Models of Light Reflection for Computer
+//! Synthesized Pictures", SIGGRAPH 1977, doi 10.1145/563858.563893: `color · light · (n·l)` and `specular · light ·
+//! (n·h)^shininess`. No factor of π is hidden: white, lit straight by a light of 1, is 1. Mirrors may follow Fresnel's
+//! law in the form of Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", Computer Graphics Forum 13(3),
+//! 1994, doi 10.1111/1467-8659.1330233.
 
 use dapple_color::LinearRgb;
 use glam::DVec3;

@@ -28,7 +28,7 @@ pub struct Object<'a> {
     look: Look<'a>,
 }
 
-/// What an object looks like at a point.
+/// The look of an object at a point.
 type Look<'a> = Box<dyn Fn(&Surface) -> Material + Send + Sync + 'a>;
 
 impl<'a> Object<'a> {

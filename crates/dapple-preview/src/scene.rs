@@ -34,13 +34,13 @@ const BOUNCES_MAX: u32 = 16;
 pub struct Scene<'a> {
     /// Where the picture is seen from.
     pub camera: Camera,
-    /// What is seen.
+    /// The objects.
     pub objects: Vec<Object<'a>>,
-    /// What lights it.
+    /// The lights.
     pub lights: Vec<Light>,
     /// The light that comes from everywhere to every point and is never blocked. By default none.
     pub ambient: LinearRgb,
-    /// What is seen where no object is. By default black.
+    /// The environment, seen where no object is. By default black.
     pub environment: Environment<'a>,
     /// How many times a ray that is mirrored sees the objects, from 0 to 16; after that it sees the environment only. By
     /// default 1.

@@ -17,7 +17,7 @@ use glam::{DVec2, DVec3};
 use solid::{Boundary, Skin, Solid};
 use std::sync::Arc;
 
-/// What an object is, in its own space.
+/// The geometry of an object, in its own space.
 ///
 #[cfg_attr(doc, doc = include_str!("../docs/shape.md"))]
 #[derive(Clone, Debug)]
@@ -142,7 +142,7 @@ enum HitFace {
     Triangle(RayHit),
 }
 
-/// What a body is like where a ray meets it, in the space of the object. The normals may point either way.
+/// Position and normals of a body where a ray meets it, in the space of the object. The normals may point either way.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Detail {
     pub(crate) position: DVec3,

@@ -1,4 +1,4 @@
-//! What is known of a surface where a ray meets it.
+//! The point of a surface where a ray meets it.
 
 use core::f64::consts::{PI, TAU};
 use glam::{DVec2, DVec3};

@@ -15,8 +15,8 @@ use crate::{Environment, Material, PreviewError, Scene, Surface};
 use dapple_color::LinearRgb;
 use glam::DVec3;
 
-/// How far rays start from a surface, as a part of the largest of the numbers that the point was computed from: well above
-/// their rounding, which is about 1e-15, and below what can be seen.
+/// How far rays start from a surface, as a part of the largest of the numbers that the point was computed from: well
+/// above their rounding, which is about 1e-15, and below what can be seen.
 const LIFT: f64 = 1e-9;
 
 /// A ray that light comes along, and its history.
@@ -182,7 +182,7 @@ impl<'a> World<'a> {
         light
     }
 
-    /// What a surface scatters of the lights and of the ambient light, and its highlights.
+    /// The light that a surface scatters of the lights and of the ambient light, and its highlights.
     fn local_light(&self, lit: &Lit, material: &Material) -> [LinearRgb; 2] {
         let mut scattered = times(material.color, self.ambient);
         let mut highlights = LinearRgb::BLACK;

@@ -9,7 +9,7 @@ use glam::{DMat3, DQuat, DVec3};
 /// # Examples
 ///
 /// ```
-/// use dapple_mesh::solid::rotation;
+/// use dapple_mesh::rotation;
 /// use dapple_preview::{Transform, glam::DVec3};
 ///
 /// let tilted = Transform::from_translation(DVec3::Y).with_rotation(rotation(DVec3::X, 0.3));

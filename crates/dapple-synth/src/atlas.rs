@@ -1,9 +1,9 @@
 //! Where the faces of a mesh are in a texture map (section 6).
 //!
 //! Reference: Marc Soucy, Guy Godin and Marc Rioux, "A texture-mapping approach for the compression of colored 3D
-//! triangulations", The Visual Computer 12(10), 1996: every face is mapped to a right triangle of its own, two of which share a
-//! square tile. Here tiles are all of one size, or of sizes that follow the areas of the faces; or the map is the caller's.
-//! No tile is mirrored: what is counterclockwise from outside is so in the picture.
+//! triangulations", The Visual Computer 12(10), 1996: every face is mapped to a right triangle of its own, two of which
+//! share a square tile. Here tiles are all of one size, or of sizes that follow the areas of the faces; or the map is the
+//! caller's. No tile is mirrored: what is counterclockwise from outside is so in the picture.
 //!
 //! Texel (x, y) has its center at `(x + 0.5, y + 0.5)`; row 0 is the top, and uv go from 0 to 1, v down.
 
@@ -42,20 +42,21 @@ impl Atlas {
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Range`] if a tile would have fewer texels than padding needs, saying the side that is needed, or if
-    /// the map is larger than 2^14.
+    /// [`SynthErrorKind::Range`] if a tile would have fewer texels than padding needs, saying the side that is needed, or
+    /// if the map is larger than 2^14.
     pub fn uniform(surface: &Surface, side: u32) -> Result<Self, SynthError> {
         tiles::uniform(surface, side, tiles::padding(surface, side))
     }
 
-    /// As [`uniform`](Self::uniform), with a padding of the caller's, from 1 to 1024.
+    /// Right triangles of one size with a padding of the caller's, from 1 to 1024 texels.
     ///
     /// With a padding of `2^k` texels and a side that is a multiple of it, bilinear reading of a mipmap's first `k + 1`
-    /// levels, each the mean of 2 x 2 texels of the one before, mixes in no other face: tiles begin at multiples of `2^k`.
+    /// levels, each the mean of 2 x 2 texels of the one before, mixes in no other face: tiles begin at multiples of
+    /// `2^k`.
     ///
     /// # Errors
     ///
-    /// As [`uniform`](Self::uniform), and [`SynthErrorKind::Range`] for another padding.
+    /// Those of [`uniform`](Self::uniform), and [`SynthErrorKind::Range`] for another padding.
     pub fn uniform_padded(surface: &Surface, side: u32, padding: u32) -> Result<Self, SynthError> {
         tiles::uniform(surface, side, padding)
     }
@@ -65,25 +66,25 @@ impl Atlas {
     ///
     /// # Errors
     ///
-    /// As [`uniform`](Self::uniform).
+    /// Those of [`uniform`](Self::uniform).
     pub fn by_area(surface: &Surface, side: u32) -> Result<Self, SynthError> {
         tiles::by_area(surface, side, tiles::padding(surface, side))
     }
 
-    /// As [`by_area`](Self::by_area), with a padding of the caller's, as in [`uniform_padded`](Self::uniform_padded).
+    /// Right triangles by area with a padding of the caller's, as in [`uniform_padded`](Self::uniform_padded).
     ///
     /// # Errors
     ///
-    /// As [`uniform_padded`](Self::uniform_padded).
+    /// Those of [`uniform_padded`](Self::uniform_padded).
     pub fn by_area_padded(surface: &Surface, side: u32, padding: u32) -> Result<Self, SynthError> {
         tiles::by_area(surface, side, padding)
     }
 
-    /// The caller's own layout: uv of the three corners of every face, v down. Whole turns are taken off, so that a face may
-    /// lie in any unit square, but not across two of them; what lies outside is not shown.
+    /// The caller's own layout: uv of the three corners of every face, v down. Whole turns are taken off, so that a face
+    /// may lie in any unit square, but not across two of them; what lies outside is not shown.
     ///
-    /// Where faces overlap, the one with the lower index is shown. `padding` texels around what is covered are filled, too;
-    /// with as many as the map has, all are, and no level of a mipmap mixes in texels without a face.
+    /// Where faces overlap, the one with the lower index is shown. `padding` texels around what is covered are filled,
+    /// too; with as many as the map has, all are, and no level of a mipmap mixes in texels without a face.
     ///
     /// # Errors
     ///
@@ -111,8 +112,8 @@ impl Atlas {
         self.corners.iter().map(|face| face.map(uv)).collect()
     }
 
-    /// Whether every level of a mipmap can be shown. Not in a layout of tiles: past a level that the padding allows, texels
-    /// mix faces that are far apart on the surface, and no padding is wide enough for the coarsest levels.
+    /// Whether every level of a mipmap can be shown. Not in a layout of tiles: past a level that the padding allows,
+    /// texels mix faces that are far apart on the surface, and no padding is wide enough for the coarsest levels.
     pub(crate) fn mipmaps(&self) -> bool {
         self.mipmaps
     }

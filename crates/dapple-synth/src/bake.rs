@@ -4,11 +4,10 @@
 //! also read the neighborhoods.
 
 use crate::atlas::Atlas;
-use crate::columns;
 use crate::ground::{Plain, Samples};
 use crate::mesh_ground::{Interpolation, Lattice, Nearby, interpolate};
-use crate::{SynthError, SynthErrorKind};
-use dapple_mesh::{FaceIdx, Hierarchy, INTERPOLATION_RADIUS, Surface, SurfacePoint};
+use crate::{Hierarchy, INTERPOLATION_RADIUS, SynthError, SynthErrorKind, columns};
+use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
 use dapple_raster::{Raster, simd};
 use glam::DVec3;
 
@@ -17,7 +16,7 @@ const BLOCK: u32 = 8;
 /// The reach within which there is a site of the finest level of a piece of the surface, in spacings.
 const REACH: f64 = 2.0;
 
-/// What texels of a block are worked with.
+/// Memory of a thread that bakes blocks of texels.
 #[derive(Debug, Default)]
 struct Memory {
     /// The texels of a block by face.
@@ -67,7 +66,7 @@ pub fn bake<const N: usize>(
     Ok(Raster::from_vec(size, bands.concat())?)
 }
 
-/// What all blocks read.
+/// The input of all blocks.
 struct Baker<'a> {
     surface: &'a Surface,
     hierarchy: &'a Hierarchy,

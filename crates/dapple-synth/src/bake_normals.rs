@@ -34,14 +34,17 @@ use glam::DVec3;
 ///
 /// ```
 /// use dapple_color::{Normal, NormalY};
-/// use dapple_synth::mesh::{CREASE, HierarchyOptions, Surface, models};
-/// use dapple_synth::{Atlas, Synthesizer, bake_normals};
+/// use dapple_synth::mesh::{CREASE, Mesh, Surface, glam::DVec3};
+/// use dapple_synth::{Atlas, HierarchyOptions, Synthesizer, bake_normals};
 ///
 /// let sites = HierarchyOptions { n_sites: 500, ..Default::default() };
-/// let ray = Synthesizer::new(Surface::new(models::ray(500)?)?, &[], &sites)?;
-/// let atlas = Atlas::uniform(ray.surface(), 128)?;
-/// let shading = ray.surface().mesh().corner_normals(CREASE);
-/// let map = bake_normals(&ray, &[Normal::FLAT; 500], NormalY::OpenGl, &atlas, &shading)?;
+/// // A tetrahedron; `dapple_mesh_io::read_model` reads yours.
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = Mesh::new(corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let covered = Synthesizer::new(Surface::new(mesh)?, &[], &sites)?;
+/// let atlas = Atlas::uniform(covered.surface(), 128)?;
+/// let shading = covered.surface().mesh().corner_normals(CREASE);
+/// let map = bake_normals(&covered, &[Normal::FLAT; 500], NormalY::OpenGl, &atlas, &shading)?;
 /// assert!(map.pixels().iter().all(|&normal| normal == Normal::FLAT));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -6,12 +6,12 @@
 //! for each all channels. Values are multiplied with the root of the part's weight, so that plain squared distances
 //! between rows are the weighted ones.
 //!
-//! Pixels whose neighborhoods reach past an edge are left out, as in the paper. It leaves open what to do on small levels,
-//! where nearly none remains: of 8 × 8 pixels, ten have H(7, 0). Where fewer than [`FEW`] remain, here all pixels are
-//! compared, and the exemplar is mirrored at its edges.
+//! Pixels whose neighborhoods reach past an edge are left out, as in the paper. It leaves open what to do on small
+//! levels, where nearly none remains: of 8 × 8 pixels, ten have H(7, 0). Where fewer than [`FEW`] remain, here all pixels
+//! are compared, and the exemplar is mirrored at its edges.
 //!
-//! So it is on all levels where pixels are to be used evenly ([`Options::evenness`]): of 128 × 128 pixels the first of three
-//! levels would see only two thirds. Measured on four such exemplars, colors come nearer by a third
+//! So it is on all levels where pixels are to be used evenly ([`Options::evenness`]): of 128 × 128 pixels the first of
+//! three levels would see only two thirds. Measured on four such exemplars, colors come nearer by a third
 //! ([`Likeness`](crate::Likeness)). Only the passes that read both levels leave the pixels at the edges out even then:
 //! narrow pieces at an edge, mirrored, gave specks.
 //!
@@ -27,8 +27,8 @@ use crate::{Edges, Exemplar, Options, Pyramid};
 
 /// Where fewer neighborhoods lie within the exemplar, those that reach past an edge are compared, too.
 ///
-/// Measured on leaves of 64 × 64 pixels with three levels: the distance of patches ([`Likeness`](crate::Likeness)) is 0.061
-/// with no limit, 0.039 with 200, 0.024 with 400 and 0.023 with 1000.
+/// Measured on leaves of 64 × 64 pixels with three levels: the distance of patches ([`Likeness`](crate::Likeness)) is
+/// 0.061 with no limit, 0.039 with 200, 0.024 with 400 and 0.023 with 1000.
 const FEW: usize = 400;
 
 /// Where a neighborhood on the coarser level is centered, for a pixel whose coordinates halved are not whole.
@@ -51,7 +51,7 @@ pub struct Candidates {
     pub(crate) rows: Vec<f32>,
     /// The pixel of each row, as `row * width + column` of the pass' level of the pyramid; ascending.
     pub(crate) pixels: Vec<u32>,
-    /// What lies past the edges of the pass' level, and its size.
+    /// The pixels past the edges of the pass' level, and its size.
     edges: Edges,
     size: [u32; 2],
     /// The rectangle of the pixels that have rows.
@@ -66,18 +66,19 @@ struct Inner {
 }
 
 impl Candidates {
-    /// The neighborhoods of all pixels of the pass' level that do not reach past an edge; of all pixels where the exemplar
-    /// wraps, and where fewer than 400 would remain.
+    /// The neighborhoods of all pixels of the pass' level that do not reach past an edge; of all pixels where the
+    /// exemplar wraps, and where fewer than 400 would remain.
     ///
     /// # Errors
     ///
     /// [`SynthErrorKind::Exemplar`] for a level that has less than half of a neighborhood's side, and the errors of
-    /// [`Schedule::check`](crate::Schedule::check) for levels that the pyramid does not have and parts out of their ranges.
+    /// [`Schedule::check`](crate::Schedule::check) for levels that the pyramid does not have and parts out of their
+    /// ranges.
     pub fn new(pyramid: &Pyramid, pass: &Pass, center: CoarserCenter) -> Result<Self, SynthError> {
         Self::within(pyramid, pass, center, FEW)
     }
 
-    /// The neighborhoods that a pass compares with when it is told these options.
+    /// The neighborhoods that a pass compares with under these options.
     pub(crate) fn for_options(
         pyramid: &Pyramid,
         pass: &Pass,

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// [`sum`] adds.
 const BLOCK: usize = 1024;
 
-/// What `make` gives for each number below `count`, in order; each is worth a task of its own.
+/// The values of `make` for each number below `count`, in order; each is worth a task of its own.
 pub(crate) fn tasks<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     #[cfg(feature = "rayon")]
     return (0..count).into_par_iter().map(make).collect();
@@ -87,6 +87,31 @@ pub(crate) fn map<T: Send, U: Send>(
         .enumerate()
         .map(|(row, value)| change(row, value))
         .collect();
+}
+
+/// Calls `change` with each run of `size` values, the last one perhaps shorter, and the number of the run.
+pub(crate) fn chunks<T: Send>(
+    values: &mut [T],
+    size: usize,
+    change: impl Fn(usize, &mut [T]) + Sync + Send,
+) {
+    #[cfg(feature = "rayon")]
+    values
+        .par_chunks_mut(size)
+        .enumerate()
+        .for_each(|(chunk, values)| change(chunk, values));
+    #[cfg(not(feature = "rayon"))]
+    for (chunk, values) in values.chunks_mut(size).enumerate() {
+        change(chunk, values);
+    }
+}
+
+/// Sorts keys of which no two are equal, so that there is one order only.
+pub(crate) fn sort_keys<T: Ord + Send>(keys: &mut [T]) {
+    #[cfg(feature = "rayon")]
+    keys.par_sort_unstable();
+    #[cfg(not(feature = "rayon"))]
+    keys.sort_unstable();
 }
 
 /// The sum of a number for every row, added within blocks and then block by block, whatever the number of cores.

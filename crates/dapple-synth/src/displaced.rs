@@ -10,7 +10,7 @@ use crate::{SynthError, Synthesizer};
 use dapple_mesh::Mesh;
 use glam::DVec3;
 
-/// The triangles of the finest sites ([`Hierarchy::triangles`](dapple_mesh::Hierarchy::triangles)), with every site moved
+/// The triangles of the finest sites ([`Hierarchy::triangles`](crate::Hierarchy::triangles)), with every site moved
 /// along its normal by its height times `scale`.
 ///
 /// # Errors
@@ -37,7 +37,7 @@ pub fn displaced_sites(
 ///
 /// # Errors
 ///
-/// As [`displaced_sites`].
+/// Those of [`displaced_sites`].
 pub fn displaced_mesh(
     synthesizer: &Synthesizer,
     heights: &[f32],

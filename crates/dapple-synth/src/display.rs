@@ -1,8 +1,9 @@
 //! The paper's two displays as models for files: the sites with their colors, and the input mesh with a texture map.
 //!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 6, <https://doi.org/10.1145/383259.383297>.
-//! `M_1` is a graph and no mesh; [`Hierarchy::triangles`](dapple_mesh::Hierarchy::triangles) says how triangles are made
-//! of it. The fields of a [`Model`] may be changed: its mesh for one that is [displaced](crate::displaced_mesh), say.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, section 6,
+//! <https://doi.org/10.1145/383259.383297>. `M_1` is a graph and no mesh;
+//! [`Hierarchy::triangles`](crate::Hierarchy::triangles) says how triangles are made of it. The fields of a [`Model`] may
+//! be changed: its mesh for one that is [displaced](crate::displaced_mesh), say.
 
 use crate::maps::check_column;
 use crate::{Atlas, SynthError, SynthErrorKind, Synthesizer};
@@ -20,13 +21,16 @@ use glam::{DVec2, DVec3};
 ///
 /// ```
 /// use dapple_color::{LinearRgb, LinearRgba};
-/// use dapple_synth::mesh::{HierarchyOptions, Surface, models};
-/// use dapple_synth::{Synthesizer, point_model, site_model};
+/// use dapple_synth::mesh::{Mesh, Surface, glam::DVec3};
+/// use dapple_synth::{HierarchyOptions, Synthesizer, point_model, site_model};
 ///
 /// let sites = HierarchyOptions { n_sites: 2000, ..Default::default() };
-/// let tori = Synthesizer::new(Surface::new(models::blended_tori(1000)?)?, &[], &sites)?;
+/// // A tetrahedron; `dapple_mesh_io::read_model` reads yours.
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = Mesh::new(corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let covered = Synthesizer::new(Surface::new(mesh)?, &[], &sites)?;
 /// let colors = vec![LinearRgba::opaque(LinearRgb::gray(0.5)); 2000];
-/// let (triangles, points) = (site_model(&tori, colors.clone())?, point_model(&tori, colors)?);
+/// let (triangles, points) = (site_model(&covered, colors.clone())?, point_model(&covered, colors)?);
 /// assert!(triangles.mesh.faces().len() > 3900);
 /// assert_eq!(triangles.mesh.positions(), points.mesh.positions());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -39,11 +43,11 @@ pub fn site_model(synthesizer: &Synthesizer, colors: Vec<LinearRgba>) -> Result<
 /// The finest sites as a cloud of points with normals and a color for each.
 ///
 /// The directions of the texture, in the same order, are [`Orientation::vectors`](crate::Orientation::vectors), and the
-/// sizes of discs that touch are about half of [`Level::spacing`](dapple_mesh::Level::spacing).
+/// sizes of discs that touch are about half of [`Level::spacing`](crate::Level::spacing).
 ///
 /// # Errors
 ///
-/// As [`site_model`].
+/// Those of [`site_model`].
 pub fn point_model(
     synthesizer: &Synthesizer,
     colors: Vec<LinearRgba>,
@@ -69,16 +73,20 @@ pub fn point_model(
 /// ```
 /// use dapple_color::LinearRgb;
 /// use dapple_image::{Transfer, encode_png};
-/// use dapple_synth::mesh::{CREASE, EncodedImage, HierarchyOptions, Surface, io::gltf, models};
-/// use dapple_synth::{Atlas, Synthesizer, bake_colors, textured_model};
+/// use dapple_mesh_io::gltf;
+/// use dapple_synth::mesh::{CREASE, EncodedImage, Mesh, Surface, glam::DVec3};
+/// use dapple_synth::{Atlas, HierarchyOptions, Synthesizer, bake_colors, textured_model};
 ///
 /// let sites = HierarchyOptions { n_sites: 500, ..Default::default() };
-/// let ray = Synthesizer::new(Surface::new(models::ray(500)?)?, &[], &sites)?;
-/// let atlas = Atlas::uniform(ray.surface(), 128)?;
-/// let map = bake_colors(&ray, &[LinearRgb::gray(0.2); 500], &atlas)?;
+/// // A tetrahedron; `dapple_mesh_io::read_model` reads yours.
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = Mesh::new(corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let covered = Synthesizer::new(Surface::new(mesh)?, &[], &sites)?;
+/// let atlas = Atlas::uniform(covered.surface(), 128)?;
+/// let map = bake_colors(&covered, &[LinearRgb::gray(0.2); 500], &atlas)?;
 /// let png = encode_png(map.map(|color| color.to_srgb::<u8>()).view(), Transfer::Srgb)?;
-/// let shading = ray.surface().mesh().corner_normals(CREASE);
-/// let model = textured_model(ray.surface(), &atlas, shading, EncodedImage::new(png)?)?;
+/// let shading = covered.surface().mesh().corner_normals(CREASE);
+/// let model = textured_model(covered.surface(), &atlas, shading, EncodedImage::new(png)?)?;
 /// let glb = gltf::write(&model)?;
 /// assert!(glb.starts_with(b"glTF"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

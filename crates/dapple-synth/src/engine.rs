@@ -11,7 +11,7 @@ use core::ops::ControlFlow;
 use core::sync::atomic::AtomicU32;
 use dapple_hash::{Seed, hash1};
 
-/// How far a synthesis has come.
+/// The progress of a synthesis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// The pass, from 0.
@@ -24,11 +24,11 @@ pub struct Progress {
     pub n_sites: usize,
 }
 
-/// What is called now and then on the way; it can stop the synthesis.
+/// A callback for progress; it can stop the synthesis.
 pub(crate) type Callback<'a> = &'a mut dyn FnMut(Progress) -> ControlFlow<()>;
 
-/// Runs all passes. For each level, the finest first, the pixel that each site is from, as `row * width + column` of the same
-/// level of the pyramid; nothing for a level that no pass visited.
+/// Runs all passes. For each level, the finest first, the pixel that each site is from, as `row * width + column` of the
+/// same level of the pyramid; nothing for a level that no pass visited.
 pub(crate) fn run<G: Ground>(
     ground: &G,
     pyramid: &Pyramid,
@@ -83,8 +83,8 @@ fn random_pixels(n_sites: usize, pyramid: &Pyramid, level: usize, seed: Seed) ->
     (0..n_sites as i64).map(pixel).collect()
 }
 
-/// The side of the coarser square of the next pass, if that can be kept from this one: it is on the same level and no larger,
-/// and nothing that it reads changes in between.
+/// The side of the coarser square of the next pass, if that can be kept from this one: it is on the same level and no
+/// larger, and nothing that it reads changes in between.
 fn side_to_keep(pass: &Pass, next: Option<&Pass>) -> u32 {
     let coarser_side = |pass: &Pass| {
         let coarser = |part: &&Part| part.reads == Reads::Coarser;

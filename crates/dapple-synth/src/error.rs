@@ -11,7 +11,7 @@ dapple_raster::error! {
     SynthErrorKind with Range {
         /// There are more or fewer things than needed.
         Count {
-            /// What is counted.
+            /// The name of the counted things.
             what: &'static str,
             /// How many there are.
             count: usize,
@@ -54,7 +54,7 @@ dapple_raster::error! {
             format: &'static str,
             /// The number of the line, from 1.
             line: usize,
-            /// What is wrong.
+            /// The reason.
             why: String,
         } => "line {line} of the {format}: {why}";
         /// The caller's callback asked to stop.

@@ -23,14 +23,14 @@ pub(crate) const MAX_LEVELS: usize = 16;
 /// The largest value of a pixel, times the root of its weight: no sum of squares can overflow.
 const MAX_VALUE: f32 = 1e12;
 
-/// What lies past the edges of an exemplar, or of a texture in the plane.
+/// The pixels past the edges of an exemplar, or of a texture in the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Edges {
-    /// Nothing: neighborhoods of an exemplar that reach past an edge are not compared.
+    /// None: neighborhoods of an exemplar that reach past an edge are not compared.
     #[default]
     Cut,
-    /// The same again: it tiles.
+    /// Those of the opposite side: the image tiles.
     Wrap,
 }
 
@@ -150,7 +150,7 @@ impl Exemplar {
         self.n_channels
     }
 
-    /// What lies past the edges.
+    /// The pixels past the edges.
     #[must_use]
     pub fn edges(&self) -> Edges {
         self.edges

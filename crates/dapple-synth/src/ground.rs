@@ -1,10 +1,10 @@
-//! What a texture grows on: sites on several levels, their order, and how neighborhoods are read.
+//! The ground of a texture: sites on several levels, their order, and how neighborhoods are read.
 
 use crate::turns::Turns;
 use core::ops::RangeInclusive;
 use core::sync::atomic::{AtomicU32, Ordering};
 
-/// What is at each site, or at each pixel of a grid.
+/// The colors of sites, or of the pixels of a grid.
 pub(crate) trait Colors: Copy + Sync {
     /// The number of values of each.
     fn n_channels(&self) -> usize;
@@ -62,9 +62,9 @@ pub(crate) struct Samples {
 
 /// Sites on several levels, 0 the finest.
 pub(crate) trait Ground: Sync {
-    /// What a pass needs to read squares.
+    /// Tables that a pass needs to read squares.
     type Prepared: Sync;
-    /// What `read` works in.
+    /// Memory of `read`, kept from square to square.
     type Memory: Default + Send;
 
     /// The number of sites of a level.
@@ -73,7 +73,8 @@ pub(crate) trait Ground: Sync {
     /// The sites of a level in the order of the sweep.
     fn order(&self, level: usize) -> Vec<u32>;
 
-    /// What a pass over a level needs that reads squares of these halves on the level itself and on the next coarser one.
+    /// The tables of a pass over a level that reads squares of these halves on the level itself and on the next coarser
+    /// one.
     fn prepare(&self, level: usize, same: Option<i32>, coarser: Option<i32>) -> Self::Prepared;
 
     /// The order in which threads share the sites of a level, in a pass that reads squares on the level itself.
@@ -118,7 +119,7 @@ impl Painted<'_> {
     /// The pixel of a site.
     #[inline(always)]
     pub(crate) fn source(&self, site: usize) -> u32 {
-        // Whoever reads a site that another thread writes waits for its turn to be over, which makes an order of both.
+        // A thread that reads a site that another one writes waits for its turn to be over, which makes an order of both.
         self.sources[site].load(Ordering::Relaxed)
     }
 }

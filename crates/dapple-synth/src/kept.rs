@@ -2,7 +2,7 @@
 
 use crate::ground::{Samples, Square};
 
-/// What a pass keeps: for every site a square, `side` samples wide.
+/// The squares that a pass keeps: for every site one, `side` samples wide.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Kept {
     side: usize,
@@ -11,7 +11,7 @@ pub(crate) struct Kept {
     nearest: Vec<u32>,
 }
 
-/// What is kept of one site.
+/// The square of one site.
 #[derive(Debug)]
 pub(crate) struct KeptSite<'a> {
     side: usize,

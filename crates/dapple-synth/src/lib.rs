@@ -7,8 +7,8 @@
 //! ```
 //! use dapple_color::LinearRgb;
 //! use dapple_raster::Raster;
-//! use dapple_synth::mesh::{HierarchyOptions, glam::DVec3, models};
-//! use dapple_synth::{Atlas, Direction, Edges, Exemplar, Options, bake_colors, synthesize};
+//! use dapple_synth::mesh::{Mesh, glam::DVec3};
+//! use dapple_synth::{Atlas, Direction, Edges, Exemplar, HierarchyOptions, Options, bake_colors, synthesize};
 //!
 //! let checker = Raster::from_fn([16, 16], |x, y| match (x / 4 + y / 4) % 2 {
 //!     0 => LinearRgb::new(0.8, 0.6, 0.2),
@@ -16,14 +16,15 @@
 //! })?;
 //! let exemplar = Exemplar::new(&checker, Edges::Wrap)?;
 //!
-//! // The pattern runs from the snout to the tail.
-//! let back = Direction { at: models::ray::SNOUT, vector: DVec3::NEG_Z };
+//! // A tetrahedron; `dapple_mesh_io::read_model` reads yours. The pattern runs down from its top.
+//! let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+//! let mesh = Mesh::new(corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+//! let down = Direction { at: DVec3::Y, vector: DVec3::NEG_Y };
 //! let sites = HierarchyOptions { n_sites: 2000, ..HierarchyOptions::default() };
-//! let (ray, texture) =
-//!     synthesize(models::ray(1000)?, &exemplar, &[back], &sites, &Options::default())?;
+//! let (covered, texture) = synthesize(mesh, &exemplar, &[down], &sites, &Options::default())?;
 //!
-//! let atlas = Atlas::uniform(ray.surface(), 256)?;
-//! let map = bake_colors(&ray, &texture.transfer(&checker)?, &atlas)?;
+//! let atlas = Atlas::uniform(covered.surface(), 256)?;
+//! let map = bake_colors(&covered, &texture.transfer(&checker)?, &atlas)?;
 //! assert_eq!(map.size(), [256, 256]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -31,7 +32,7 @@
 //! # How it works
 //!
 //! Even points, the *sites*, are scattered over the surface on several levels, each four times as dense as the next
-//! coarser one; they are the pixels of the texture ([`Hierarchy`](mesh::Hierarchy)). The directions are interpolated to a
+//! coarser one; they are the pixels of the texture ([`Hierarchy`]). The directions are interpolated to a
 //! unit vector at every site ([`Orientation`]), which is the "down" of the texture there, and sites are put in an order
 //! that runs along it ([`Sweep`]). Then, from the coarsest level to the finest, every site looks at the colors around it,
 //! as they lie to the right of it and below it, and takes the color of that pixel of the exemplar around which it looks
@@ -39,19 +40,20 @@
 //! site took.
 //!
 //! So other maps of the exemplar can follow: [`SurfaceTexture::transfer`] copies heights, roughness and normals, which
-//! [`bake_values`] and [`bake_normals`] write to texture maps with the same [`Atlas`] as the colors. What is to be matched
-//! and what is only copied is the caller's choice: see [`Exemplar::from_planes`] and the example of [`bake_values`].
-//! [`textured_model`] and [`site_model`] make what file formats take, [`displaced_sites`] moves the mesh itself.
+//! [`bake_values`] and [`bake_normals`] write to texture maps with the same [`Atlas`] as the colors. What is to be
+//! matched and what is only copied is the caller's choice: see [`Exemplar::from_planes`] and the example of
+//! [`bake_values`]. [`textured_model`] and [`site_model`] make what file formats take, [`displaced_sites`] moves the mesh
+//! itself.
 //!
-//! [`Synthesizer`] keeps all that does not depend on the exemplar; it can be used again, tells of its progress and can be
+//! [`Synthesizer`] keeps all that does not depend on the exemplar; it can be used again, reports its progress and can be
 //! stopped. The same passes on pixels, for plain images and for tiles, are [`synthesize_plane`].
 //!
 //! # The paper's sections
 //!
 //! | section | what it says | here |
 //! |---|---|---|
-//! | 3.1 | points on several levels, by repulsion, and their neighbors | [`mesh::Hierarchy`] |
-//! | 3.2 | interpolation, low-pass filter, down- and upsampling | [`mesh::Hierarchy::interpolate`] and beside it |
+//! | 3.1 | points on several levels, by repulsion, and their neighbors | [`Hierarchy`] |
+//! | 3.2 | interpolation, low-pass filter, down- and upsampling | [`Hierarchy::interpolate`] and beside it |
 //! | 4.1 | vector fields from a few directions, by pull and push | [`Orientation`], [`Direction`] |
 //! | 4.2, eq. 4, 5 | how far downstream a site is, and the order | [`Sweep`] |
 //! | 5.1 | one level | [`Schedule::single_level`] |
@@ -89,9 +91,9 @@
 //!
 //! # Reproducibility
 //!
-//! Everything follows from the inputs, of which two are seeds: that of the sites and that of [`Options`]. Results have the
-//! same bits on every machine, with every set of vector instructions, and on any number of threads: sites are worked on at
-//! the same time only if they do not read each other.
+//! Everything follows from the inputs, of which two are seeds: that of the sites and that of [`Options`]. Results have
+//! the same bits on every machine, with every set of vector instructions, and on any number of threads: sites are worked
+//! on at the same time only if they do not read each other.
 
 #![forbid(unsafe_code)]
 
@@ -123,6 +125,7 @@ mod plane;
 mod regularity;
 #[cfg(test)]
 mod shapes;
+mod sites;
 mod solve;
 mod surface_texture;
 mod sweep;
@@ -148,6 +151,11 @@ pub use neighborhood::{Part, Pass, Reads, Schedule, Shape};
 pub use options::{Axes, Coherence, Options};
 pub use orientation::{Direction, Orientation};
 pub use plane::{PlaneTexture, synthesize_plane, synthesize_plane_with};
+pub use sites::{
+    Blend, Connected, DOWNSAMPLE_STEPS, DOWNSAMPLE_T, Evenness, Hierarchy, HierarchyOptions,
+    INTERPOLATION_RADIUS, Level, LowPass, STAR_RADIUS, SiteGraph, SiteGrid, SiteIdx, SiteTriangles,
+    Sites, evenness, hexagonal_spacing, nested_points, repel, scatter,
+};
 pub use surface_texture::SurfaceTexture;
 pub use sweep::Sweep;
 pub use synthesizer::{Synthesizer, synthesize};

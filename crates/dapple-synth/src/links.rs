@@ -4,8 +4,7 @@
 //! so that the weights are symmetric and the averages are the fixed points of a symmetric system, which
 //! [`conjugate_gradients`](crate::solve::conjugate_gradients) solves.
 
-use crate::columns;
-use dapple_mesh::{Hierarchy, SiteGraph, SiteIdx};
+use crate::{Hierarchy, SiteGraph, SiteIdx, columns};
 
 /// Edges shorter than this part of the spacing weigh as if they were so long, so that no site outvotes all others.
 pub(crate) const LEAST_LENGTH: f64 = 1e-3;

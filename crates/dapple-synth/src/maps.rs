@@ -53,8 +53,8 @@ pub fn bake_colors(
 ///
 /// ```
 /// use dapple_raster::Raster;
-/// use dapple_synth::mesh::{HierarchyOptions, models};
-/// use dapple_synth::{Atlas, Edges, Exemplar, Options, bake_values, synthesize};
+/// use dapple_synth::mesh::{Mesh, glam::DVec3};
+/// use dapple_synth::{Atlas, Edges, Exemplar, HierarchyOptions, Options, bake_values, synthesize};
 ///
 /// let bright = Raster::from_fn([16, 16], |x, y| f32::from((x / 4 + y / 4) % 2 == 0))?;
 /// let height = bright.map(|&bright| 0.25 * bright);
@@ -63,12 +63,15 @@ pub fn bake_colors(
 /// let exemplar = Exemplar::from_planes(&[(&bright, 1.0), (&height, 0.5)], Edges::Wrap)?;
 /// let sites = HierarchyOptions { n_sites: 1000, n_levels: 2, ..Default::default() };
 /// let options = Options { n_levels: 2, ..Default::default() };
-/// let (tori, texture) = synthesize(models::blended_tori(500)?, &exemplar, &[], &sites, &options)?;
+/// // A tetrahedron; `dapple_mesh_io::read_model` reads yours.
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = Mesh::new(corners, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let (tetrahedron, texture) = synthesize(mesh, &exemplar, &[], &sites, &options)?;
 ///
-/// let atlas = Atlas::uniform(tori.surface(), 128)?;
+/// let atlas = Atlas::uniform(tetrahedron.surface(), 128)?;
 /// let maps: Result<Vec<Raster<f32>>, _> = [&bright, &height, &roughness]
 ///     .into_iter()
-///     .map(|map| bake_values(&tori, &texture.transfer(map)?, &atlas))
+///     .map(|map| bake_values(&tetrahedron, &texture.transfer(map)?, &atlas))
 ///     .collect();
 /// let maps = maps?;
 /// // The three still belong together.

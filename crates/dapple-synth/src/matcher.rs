@@ -1,11 +1,11 @@
 //! The row that is nearest to a query: exactly the one that comparing with all of them finds.
 //!
-//! Rows are turned to the directions in which they differ most (principal components; Reference: Hertzmann, Jacobs, Oliver,
-//! Curless and Salesin, Image Analogies, SIGGRAPH 2001, who search approximately in the first of them), and the first ones
-//! are kept, in sixteen bits. There a part of a distance is known after few numbers, and most rows can be skipped: whole
-//! leaves of a k-d tree by their boxes, sixteen rows at a time after every eighth number. What is left is compared as it
-//! is, by [`distance_sq`]. Bounds on all rounding ([`margin`]) make sure that nothing nearer is skipped, so that the
-//! result does not depend on the tree, the directions, or the machine.
+//! Rows are turned to the directions in which they differ most (principal components; Reference: Hertzmann, Jacobs,
+//! Oliver, Curless and Salesin, Image Analogies, SIGGRAPH 2001, who search approximately in the first of them), and the
+//! first ones are kept, in sixteen bits. There a part of a distance is known after few numbers, and most rows can be
+//! skipped: whole leaves of a k-d tree by their boxes, sixteen rows at a time after every eighth number. What is left is
+//! compared as it is, by [`distance_sq`]. Bounds on all rounding ([`margin`]) make sure that nothing nearer is skipped,
+//! so that the result does not depend on the tree, the directions, or the machine.
 
 mod basis;
 mod distance;
@@ -34,7 +34,7 @@ const FEW: usize = 64;
 /// Longer rows than this are all compared: the covariance grows with the square.
 const MOST_DIMS: usize = 1024;
 
-/// What [`Matcher::nearest`] found.
+/// The nearest row that [`Matcher::nearest`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Match {
     /// The row.
@@ -64,7 +64,7 @@ pub struct MatcherMemory {
     order: Vec<u64>,
 }
 
-/// What is looked for.
+/// A row to find the nearest one of.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Query<'a> {
     pub(crate) values: &'a [f32],
@@ -72,7 +72,7 @@ pub(crate) struct Query<'a> {
     pub(crate) below: f32,
     /// A row that may be near.
     pub(crate) hint: Option<u32>,
-    /// What the squared distance of each row is multiplied by, at least 1; it counts as the row's distance everywhere.
+    /// The factor of the squared distance of each row, at least 1; it counts as the row's distance everywhere.
     pub(crate) factors: Option<&'a [f32]>,
 }
 
@@ -86,11 +86,11 @@ struct Index {
 }
 
 impl Matcher {
-    /// Prepares rows of `dims` numbers each, one after the other. What is left over at the end does not count, nor do rows
-    /// after the first 2³² - 1.
+    /// Prepares rows of `dims` numbers each, one after the other. What is left over at the end does not count, nor do
+    /// rows after the first 2³² - 1.
     ///
-    /// Any numbers are good, but rows are found slowly, by comparing with all of them, if one is not finite or farther than
-    /// 10¹⁵ from the mean, or if they have more than 1024 numbers. A row that is not finite is never the nearest.
+    /// Any numbers are good, but rows are found slowly, by comparing with all of them, if one is not finite or farther
+    /// than 10¹⁵ from the mean, or if they have more than 1024 numbers. A row that is not finite is never the nearest.
     ///
     /// # Examples
     ///
@@ -126,8 +126,8 @@ impl Matcher {
 
     /// The row nearest to a query; of several at one distance the first. Nothing if none is nearer than `below`.
     ///
-    /// `below` is a squared distance, infinity for no limit. `hint` is a row that may be near, which saves time and changes
-    /// nothing else. A query that is not finite or that has not as many numbers as the rows has no nearest row.
+    /// `below` is a squared distance, infinity for no limit. `hint` is a row that may be near, which saves time and
+    /// changes nothing else. A query that is not finite or that has not as many numbers as the rows has no nearest row.
     #[must_use]
     pub fn nearest(
         &self,

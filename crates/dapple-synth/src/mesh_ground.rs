@@ -1,9 +1,9 @@
 //! Sites on a surface: squares of samples are laid out by walking along O and P.
 //!
-//! A sample at the offset (i, j) is found by going i spacings along P, to the right, and from there j spacings along O, down,
-//! on the polygons of the surface; both directions are carried along, and turn as the field does ([`turning`]). Its value is
-//! that of equation 1, with distances in space. The sites that count are those within reach of the square as it would be on a
-//! plane.
+//! A sample at the offset (i, j) is found by going i spacings along P, to the right, and from there j spacings along O,
+//! down, on the polygons of the surface; both directions are carried along, and turn as the field does ([`turning`]). Its
+//! value is that of equation 1, with distances in space. The sites that count are those within reach of the square as it
+//! would be on a plane.
 
 mod interpolate;
 mod lattice;
@@ -12,8 +12,8 @@ mod turning;
 
 use crate::ground::{Colors, Ground, Samples, Square};
 use crate::turns::Turns;
-use crate::{Axes, Orientation, Sweep};
-use dapple_mesh::{Hierarchy, INTERPOLATION_RADIUS, SiteIdx, Surface};
+use crate::{Axes, Hierarchy, INTERPOLATION_RADIUS, Orientation, SiteIdx, Sweep};
+use dapple_mesh::Surface;
 use dapple_raster::simd;
 use nearby::Neighborhoods;
 use turning::Turning;
@@ -43,7 +43,7 @@ pub(crate) struct Prepared {
     coarser: Option<Neighborhoods>,
 }
 
-/// What reading a square works in.
+/// Memory of reading squares, kept from square to square.
 #[derive(Debug, Default)]
 pub(crate) struct MeshMemory {
     nearby: Nearby,

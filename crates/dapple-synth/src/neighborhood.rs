@@ -1,8 +1,8 @@
 //! The shapes of neighborhoods, and in which order they are used.
 //!
-//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297, figure 4 and section 5;
-//! the causal shape is from Li-Yi Wei and Marc Levoy, "Fast Texture Synthesis using Tree-structured Vector Quantization",
-//! SIGGRAPH 2000, DOI 10.1145/344779.345009.
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI 10.1145/383259.383297, figure 4 and section
+//! 5; the causal shape is from Li-Yi Wei and Marc Levoy, "Fast Texture Synthesis using Tree-structured Vector
+//! Quantization", SIGGRAPH 2000, DOI 10.1145/344779.345009.
 //!
 //! | the paper's | is | with side 7 |
 //! |---|---|---|
@@ -70,7 +70,7 @@ impl Part {
         }
     }
 
-    /// The same part with another weight.
+    /// This part with another weight.
     #[must_use]
     pub const fn with_weight(self, weight: f32) -> Self {
         Self { weight, ..self }
@@ -116,7 +116,7 @@ impl Part {
 pub struct Pass {
     /// The level, 0 the finest.
     pub level: usize,
-    /// What is compared: all parts together.
+    /// The parts that are compared, all together.
     pub parts: Vec<Part>,
 }
 
@@ -164,8 +164,8 @@ impl Schedule {
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Count`] for no pass, a pass without parts and no visit of level 0; [`SynthErrorKind::Range`] for a
-    /// level that is not there, a side that is not odd and from 3 to 15, and a weight that is not above 0 and at most
+    /// [`SynthErrorKind::Count`] for no pass, a pass without parts and no visit of level 0; [`SynthErrorKind::Range`] for
+    /// a level that is not there, a side that is not odd and from 3 to 15, and a weight that is not above 0 and at most
     /// 10^6; [`SynthErrorKind::Unfilled`] for a pass that reads a coarser level that no pass before it visited.
     pub fn check(&self, n_levels: usize) -> Result<(), SynthError> {
         check_any(self.passes.len(), "passes")?;

@@ -1,4 +1,4 @@
-//! What a synthesis can be told.
+//! Options of a synthesis.
 
 use crate::{CoarserCenter, Exemplar, Schedule, SynthError, SynthErrorKind};
 use core::num::ParseFloatError;
@@ -8,11 +8,11 @@ use dapple_hash::Seed;
 /// The most that may be asked of [`Options::evenness`]: no factor can make a distance infinite.
 const MAX_EVENNESS: f32 = 1000.0;
 
-/// The regularity from which on the least distance wins: between those of the exemplars that look better so, from 0.93, and
-/// of those that look better with a coherence of 2, up to 0.86.
+/// The regularity from which on the least distance wins: between those of the exemplars that look better so, from 0.93,
+/// and of those that look better with a coherence of 2, up to 0.86.
 const REGULAR: f64 = 0.9;
 
-/// How a texture is made from an exemplar.
+/// Options of a synthesis from an exemplar.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -20,7 +20,7 @@ const REGULAR: f64 = 0.9;
     serde(default, deny_unknown_fields)
 )]
 pub struct Options {
-    /// What the first colors are drawn from; by default `Seed(0)`.
+    /// The seed of the first colors; by default `Seed(0)`.
     pub seed: Seed,
     /// The levels of the pyramid and of the sites; by default 3.
     pub n_levels: usize,
@@ -30,7 +30,8 @@ pub struct Options {
     pub center: CoarserCenter,
     /// Which way neighborhoods on surfaces go on away from their site; by default as the field does.
     pub axes: Axes,
-    /// How much worse a match may be that continues the source of a neighboring site; by default as the exemplar asks for.
+    /// How much worse a match may be that continues the source of a neighboring site; by default as the exemplar asks
+    /// for.
     pub coherence: Coherence,
     /// How evenly the pixels of the exemplar are used, from 0 to 1000, by default 1.
     ///
@@ -50,23 +51,23 @@ pub struct Options {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Coherence {
-    /// A factor of 2; but for a regular exemplar, one whose [`Exemplar::regularity`] is above 0.9, the least distance wins in
-    /// passes that read a coarser level.
+    /// A factor of 2; but for a regular exemplar, one whose [`Exemplar::regularity`] is above 0.9, the least distance
+    /// wins in passes that read a coarser level.
     ///
     /// Where the exemplar has what fits, as hooks that interlock and courses of bricks, the least distance finds it, and
-    /// with 2 the texture tears instead. In photographs no detail occurs twice, and the least distance blurs it away: leaves
-    /// keep 0.65 of their standard deviation with 0, and 0.87 with 2.
+    /// with 2 the texture tears instead. In photographs no detail occurs twice, and the least distance blurs it away:
+    /// leaves keep 0.65 of their standard deviation with 0, and 0.87 with 2.
     ///
-    /// In passes that read no coarser level the factor is 1 for any exemplar, as with a coherence of 2. There the sweep begins
-    /// among random colors, and their averages resemble only a few pixels of the exemplar. With 0 those are taken again and
-    /// again: the squares of a checker run together where the sweep begins.
+    /// In passes that read no coarser level the factor is 1 for any exemplar, as with a coherence of 2. There the sweep
+    /// begins among random colors, and their averages resemble only a few pixels of the exemplar. With 0 those are taken
+    /// again and again: the squares of a checker run together where the sweep begins.
     ///
     /// Measuring the regularity takes some tens of milliseconds.
     #[default]
     Auto,
-    /// It wins if its squared distance is at most 1 + this times the least; in passes that read no coarser level, where no
-    /// later one can mend what does not fit together, 1 + half of this times. Finite and at least 0; at 0 the least always
-    /// wins, as in the paper.
+    /// It wins if its squared distance is at most 1 + this times the least; in passes that read no coarser level, where
+    /// no later one can mend what does not fit together, 1 + half of this times. Finite and at least 0; at 0 the least
+    /// always wins, as in the paper.
     Factor(f32),
 }
 
@@ -130,10 +131,10 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The paper at its word: neighborhoods on the coarser level are centered at rounded coordinates and laid out straight
-    /// on, and the least difference always wins.
+    /// The paper at its word: neighborhoods on the coarser level are centered at rounded coordinates and laid out
+    /// straight on, and the least difference always wins.
     ///
-    /// What differs from its text all the same, on every surface and with any options:
+    /// Differences from its text remain, on every surface and with any options:
     ///
     /// * Where fewer than 400 neighborhoods of a level lie within an exemplar that does not wrap, those that reach past its
     ///   edges are compared as well, as if it were mirrored there. The paper compares none of them; of 8 × 8 pixels, which
@@ -144,7 +145,7 @@ impl Options {
     ///   repeats equations 4 and 5: the averages that those would settle at, but for the weights.
     /// * A level of sites begins with the middles of the edges between the sites before it, where the paper scatters random
     ///   points, and sites push each other with another force than in Turk's paper of 1991 (see
-    ///   [`mesh::nested_points`](crate::mesh::nested_points)).
+    ///   [`nested_points`](crate::nested_points)).
     ///
     /// The documentation of [this crate](crate) lists how it reads what the paper leaves open.
     #[must_use]

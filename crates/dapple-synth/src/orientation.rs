@@ -22,8 +22,7 @@ mod push;
 #[cfg(test)]
 mod tests;
 
-use crate::{SynthError, SynthErrorKind, columns};
-use dapple_mesh::Hierarchy;
+use crate::{Hierarchy, SynthError, SynthErrorKind, columns};
 use glam::DVec3;
 
 /// Shorter squared parts of unit vectors in a tangent plane count as none: a thousandth of a radian off the normal.
@@ -44,8 +43,8 @@ pub struct Direction {
 /// # Examples
 ///
 /// ```
-/// use dapple_mesh::{Hierarchy, HierarchyOptions, Mesh, Surface, glam::DVec3};
-/// use dapple_synth::{Direction, Orientation};
+/// use dapple_mesh::{Mesh, Surface, glam::DVec3};
+/// use dapple_synth::{Direction, Hierarchy, HierarchyOptions, Orientation};
 ///
 /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::ONE - DVec3::Z, DVec3::Y];
 /// let surface = Surface::new(Mesh::new(corners, &[[0, 1, 2], [0, 2, 3]])?)?;
@@ -80,11 +79,12 @@ impl Orientation {
 
     /// Interpolates directions over the surface; connected parts without any run along an axis of the caller's.
     ///
-    /// The axis is projected to the tangent planes; where it is normal to the surface, a vector at a right angle to it is.
+    /// The axis is projected to the tangent planes; where it is normal to the surface, a vector at a right angle to it
+    /// is.
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new), and [`SynthErrorKind::Range`] if the axis is zero or not finite.
+    /// Those of [`new`](Self::new), and [`SynthErrorKind::Range`] if the axis is zero or not finite.
     pub fn with_axis(
         hierarchy: &Hierarchy,
         directions: &[Direction],
@@ -115,7 +115,7 @@ impl Orientation {
         Self { vectors }
     }
 
-    /// The unit vectors at the sites, in the order of [`SiteIdx`](dapple_mesh::SiteIdx); those of a coarser level are the
+    /// The unit vectors at the sites, in the order of [`SiteIdx`](crate::SiteIdx); those of a coarser level are the
     /// first of them.
     #[must_use]
     pub fn vectors(&self) -> &[DVec3] {
@@ -135,7 +135,8 @@ fn tangent(vector: DVec3, normal: DVec3) -> Option<DVec3> {
     (part.length_squared() > LEAST_TANGENT_SQ).then(|| part.normalize())
 }
 
-/// The unit tangent along a unit axis, or where that is normal to the plane along another one, so that there always is one.
+/// The unit tangent along a unit axis, or where that is normal to the plane along another one, so that there always is
+/// one.
 fn axis_tangent(axis: DVec3, normal: DVec3) -> DVec3 {
     let across = axis.any_orthonormal_vector();
     tangent(axis, normal)

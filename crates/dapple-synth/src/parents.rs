@@ -5,7 +5,8 @@
 //! over gaps, to other components and to other sheets, where sweep distances have nothing in common; and it needs no
 //! search.
 
-use dapple_mesh::{Hierarchy, INTERPOLATION_RADIUS, SiteIdx};
+use crate::sites::weight;
+use crate::{Hierarchy, INTERPOLATION_RADIUS, SiteIdx};
 
 /// The most coarser sites that count; even sites have about five in reach.
 const MOST: usize = 16;
@@ -63,7 +64,7 @@ impl Parents {
         }
     }
 
-    /// Equation 1, with `w(x) = 2x³ − 3x² + 1`.
+    /// Gives the sites the weights of equation 1.
     fn weigh(&mut self, hierarchy: &Hierarchy, site: SiteIdx, radius: f64) {
         let positions = hierarchy.sites().positions();
         let at = positions[site.index()];
@@ -74,7 +75,7 @@ impl Parents {
                 nearest = (distance, parent);
             }
             let x = (distance / radius).min(1.0);
-            self.weights[parent] = (2.0 * x - 3.0) * x * x + 1.0;
+            self.weights[parent] = weight(x);
             sum += self.weights[parent];
         }
         if sum < 1e-9 && self.count > 0 {

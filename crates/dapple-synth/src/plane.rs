@@ -1,15 +1,15 @@
 //! Textures on a plane or on a torus: the passes of the surface, with pixels for sites.
 //!
-//! References: Li-Yi Wei and Marc Levoy, "Fast Texture Synthesis using Tree-structured Vector Quantization", SIGGRAPH 2000,
-//! DOI 10.1145/344779.345009, for the plane; Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI
+//! References: Li-Yi Wei and Marc Levoy, "Fast Texture Synthesis using Tree-structured Vector Quantization", SIGGRAPH
+//! 2000, DOI 10.1145/344779.345009, for the plane; Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, DOI
 //! 10.1145/383259.383297, for the passes.
 //!
-//! A pixel of the texture is a site, its neighborhood lies in memory, and nothing is interpolated but the coarser level at
-//! half pixels. A level has half of the pixels of the next finer one along each axis, rounded up.
+//! A pixel of the texture is a site, its neighborhood lies in memory, and nothing is interpolated but the coarser level
+//! at half pixels. A level has half of the pixels of the next finer one along each axis, rounded up.
 //!
 //! The sweep goes row by row. Along rows that wrap that would be one long chain, each pixel waiting for the one before it
-//! all around the torus; there the finer levels, where every pixel has a color before the sweep begins to refine it, go in
-//! slanted lines instead, which change the texture no more than another seed and can be visited on all cores.
+//! all around the torus; there the finer levels, where every pixel has a color before the sweep begins to refine it, go
+//! in slanted lines instead, which change the texture no more than another seed and can be visited on all cores.
 
 use crate::candidates::halves;
 use crate::engine::{self, Progress};
@@ -72,11 +72,12 @@ pub fn synthesize_plane(
     )
 }
 
-/// As [`synthesize_plane`], with a callback that hears of the progress and can stop it.
+/// Synthesizes a texture like [`synthesize_plane`], with a callback that hears of the progress and can stop it.
 ///
 /// # Errors
 ///
-/// As [`synthesize_plane`], and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if the callback breaks.
+/// Those of [`synthesize_plane`], and [`SynthErrorKind::Cancelled`](crate::SynthErrorKind::Cancelled) if the callback
+/// breaks.
 pub fn synthesize_plane_with(
     exemplar: &Exemplar,
     size: [u32; 2],
@@ -105,8 +106,8 @@ impl PlaneTexture {
         &self.sources
     }
 
-    /// What a map of the exemplar's size has at the sources: the texture's colors, from the image of the exemplar, and
-    /// heights, normals and roughness that follow them.
+    /// The values of a map of the exemplar's size at the sources: the texture's colors, from the image of the exemplar,
+    /// and heights, normals and roughness that follow them.
     ///
     /// # Errors
     ///

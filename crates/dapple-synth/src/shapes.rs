@@ -1,51 +1,65 @@
-//! Small meshes for tests.
+//! Meshes and sites for tests.
 
-use crate::{Orientation, Synthesizer};
-use dapple_hash::Seed;
-use dapple_mesh::{Hierarchy, HierarchyOptions, Mesh, Surface};
+use crate::{Hierarchy, HierarchyOptions, Orientation, Sites, Synthesizer, hexagonal_spacing};
+use dapple_hash::{Seed, hash1, unit_f64};
+use dapple_mesh::{FaceIdx, Mesh, Surface, SurfacePoint};
 use glam::DVec3;
+use std::collections::BTreeMap;
 
-/// A rectangle of `sides` cells, seen from outside with u to the right and v up, mapped by `at`.
-fn sheet([across, up]: [u32; 2], at: impl Fn(f64, f64) -> DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+/// A rectangle of `n` squares, each in two triangles, seen from outside with u to the right and v up, mapped by `at`: `open`
+/// tells for each axis whether it does not close up on itself.
+pub(crate) fn sheet(n: [u32; 2], open: [bool; 2], at: impl Fn(f64, f64) -> DVec3) -> Mesh {
+    let [columns, rows] = [0, 1].map(|axis| n[axis] + u32::from(open[axis]));
     let mut positions = Vec::new();
-    let mut faces = Vec::new();
-    for j in 0..=up {
-        for i in 0..=across {
-            positions.push(at(
-                f64::from(i) / f64::from(across),
-                f64::from(j) / f64::from(up),
-            ));
-            if i < across && j < up {
-                let corner = j * (across + 1) + i;
-                let above = corner + across + 1;
-                faces.push([corner, corner + 1, above + 1]);
-                faces.push([corner, above + 1, above]);
-            }
+    for row in 0..rows {
+        for column in 0..columns {
+            let [u, v] = [(column, n[0]), (row, n[1])].map(|(i, n)| f64::from(i) / f64::from(n));
+            positions.push(at(u, v));
         }
     }
-    (positions, faces)
+    let vertex = |column: u32, row: u32| (row % rows) * columns + column % columns;
+    let mut faces = Vec::new();
+    for row in 0..n[1] {
+        for column in 0..n[0] {
+            let [a, b] = [vertex(column, row), vertex(column + 1, row)];
+            let [c, d] = [vertex(column, row + 1), vertex(column + 1, row + 1)];
+            faces.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    Mesh::new(positions, &faces).unwrap()
+}
+
+/// The faces of several meshes as those of one.
+fn joined(meshes: &[Mesh]) -> Mesh {
+    let (mut positions, mut faces) = (Vec::new(), Vec::new());
+    for mesh in meshes {
+        let first = positions.len() as u32;
+        positions.extend_from_slice(mesh.positions());
+        faces.extend(
+            mesh.faces()
+                .iter()
+                .map(|face| face.map(|vertex| vertex.0 + first)),
+        );
+    }
+    Mesh::new(positions, &faces).unwrap()
 }
 
 /// The unit square in the plane z = 0.
 pub(crate) fn square() -> Mesh {
-    let (positions, faces) = sheet([4, 4], |u, v| DVec3::new(u, v, 0.0));
-    Mesh::new(positions, &faces).unwrap()
+    sheet([4; 2], [true; 2], |u, v| DVec3::new(u, v, 0.0))
 }
 
 /// The unit square and one of a quarter of the area far above it.
 pub(crate) fn two_squares() -> Mesh {
-    let (mut positions, mut faces) = sheet([4, 4], |u, v| DVec3::new(u, v, 0.0));
-    let (more, upper) = sheet([2, 2], |u, v| DVec3::new(0.5 * u, 0.5 * v, 3.0));
-    let first = positions.len() as u32;
-    positions.extend(more);
-    faces.extend(upper.iter().map(|face| face.map(|vertex| vertex + first)));
-    Mesh::new(positions, &faces).unwrap()
+    let upper = sheet([2; 2], [true; 2], |u, v| DVec3::new(0.5 * u, 0.5 * v, 3.0));
+    joined(&[square(), upper])
 }
 
 /// A quarter of the unit sphere's width around the point [0, 0, 1].
 pub(crate) fn cap() -> Mesh {
-    let (positions, faces) = sheet([8, 8], |u, v| DVec3::new(u - 0.5, v - 0.5, 1.0).normalize());
-    Mesh::new(positions, &faces).unwrap()
+    sheet([8; 2], [true; 2], |u, v| {
+        DVec3::new(u - 0.5, v - 0.5, 1.0).normalize()
+    })
 }
 
 /// The unit sphere: a cube's sides pushed out, with welded seams.
@@ -63,8 +77,9 @@ pub(crate) fn sphere() -> Mesh {
     ] {
         let side =
             |u: f64, v: f64| right.cross(up) + right * (2.0 * u - 1.0) + up * (2.0 * v - 1.0);
-        let (points, side_faces) = sheet([n, n], side);
-        let welded: Vec<u32> = points
+        let side = sheet([n; 2], [true; 2], side);
+        let welded: Vec<u32> = side
+            .positions()
             .iter()
             .map(|point| {
                 let found = positions
@@ -76,11 +91,8 @@ pub(crate) fn sphere() -> Mesh {
                 }) as u32
             })
             .collect();
-        faces.extend(
-            side_faces
-                .iter()
-                .map(|face| face.map(|corner| welded[corner as usize])),
-        );
+        let faces_of_side = side.faces().iter();
+        faces.extend(faces_of_side.map(|face| face.map(|corner| welded[corner.index()])));
     }
     let positions = positions.into_iter().map(DVec3::normalize).collect();
     Mesh::new(positions, &faces).unwrap()
@@ -88,21 +100,103 @@ pub(crate) fn sphere() -> Mesh {
 
 /// An open tube of radius 1 and length 4 along z.
 pub(crate) fn tube() -> Mesh {
-    let n = 48;
-    let (positions, faces) = sheet([n, 24], |u, v| {
+    sheet([48, 24], [false, true], |u, v| {
         let angle = u * core::f64::consts::TAU;
         DVec3::new(libm::cos(angle), libm::sin(angle), 4.0 * v)
+    })
+}
+
+/// The unit square in the plane z = 0, of 5 by 5 squares.
+pub(crate) fn plane() -> Surface {
+    Surface::new(sheet([5; 2], [true; 2], |u, v| DVec3::new(u, v, 0.0))).unwrap()
+}
+
+/// The unit square at several heights; those at odd places of the list face down.
+pub(crate) fn sheets(heights: &[f64]) -> Surface {
+    let sheets = heights.iter().enumerate().map(|(place, &z)| {
+        let up = sheet([4; 2], [true; 2], |u, v| DVec3::new(u, v, z));
+        let turn = |[a, b, c]: [u32; 3]| if place % 2 == 1 { [a, c, b] } else { [a, b, c] };
+        let faces = up
+            .faces()
+            .iter()
+            .map(|face| turn(face.map(|vertex| vertex.0)));
+        Mesh::new(up.positions().to_vec(), &faces.collect::<Vec<_>>()).unwrap()
     });
-    // The last column is the first one again.
-    let weld = |vertex: u32| {
-        if vertex % (n + 1) == n {
-            vertex - n
-        } else {
-            vertex
-        }
+    Surface::new(joined(&sheets.collect::<Vec<_>>())).unwrap()
+}
+
+/// A torus around the z axis with the radii 1 and 0.4.
+pub(crate) fn torus(columns: u32, rows: u32) -> Surface {
+    let torus = |u: f64, v: f64| {
+        let [u, v] = [u, v].map(|part| part * core::f64::consts::TAU);
+        let radius = 1.0 + 0.4 * libm::cos(v);
+        DVec3::new(
+            radius * libm::cos(u),
+            radius * libm::sin(u),
+            0.4 * libm::sin(v),
+        )
     };
-    let faces: Vec<[u32; 3]> = faces.iter().map(|face| face.map(weld)).collect();
-    Mesh::new(positions, &faces).unwrap()
+    Surface::new(sheet([columns, rows], [false; 2], torus)).unwrap()
+}
+
+/// A sphere of radius 1: an octahedron whose faces were cut into four, `cuts` times.
+pub(crate) fn geodesic_sphere(cuts: u32) -> Surface {
+    let mut positions: Vec<DVec3> = DVec3::AXES.iter().flat_map(|&axis| [axis, -axis]).collect();
+    let mut faces = Vec::new();
+    for x in [0, 1] {
+        for y in [2, 3] {
+            for z in [4, 5] {
+                // Mirrored octants go around the other way.
+                let is_mirrored = (x + y + z) % 2 == 1;
+                faces.push(if is_mirrored { [x, z, y] } else { [x, y, z] });
+            }
+        }
+    }
+    for _ in 0..cuts {
+        let mut middles = BTreeMap::new();
+        let mut middle = |a: u32, b: u32, positions: &mut Vec<DVec3>| {
+            *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                positions.push((positions[a as usize] + positions[b as usize]).normalize());
+                positions.len() as u32 - 1
+            })
+        };
+        let mut finer = Vec::new();
+        for [a, b, c] in faces {
+            let ab = middle(a, b, &mut positions);
+            let bc = middle(b, c, &mut positions);
+            let ca = middle(c, a, &mut positions);
+            finer.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
+        }
+        faces = finer;
+    }
+    Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
+}
+
+/// Triangles that share no vertices: a large one, and ever smaller ones beside it.
+pub(crate) fn scraps(n: u32) -> Surface {
+    let mut positions = Vec::new();
+    let mut faces = Vec::new();
+    let mut side = 1.0;
+    for scrap in 0..n {
+        let corner = DVec3::new(2.0 * f64::from(scrap), 0.0, 0.0);
+        positions.extend([corner, corner + DVec3::X * side, corner + DVec3::Y * side]);
+        faces.push([0, 1, 2].map(|vertex| 3 * scrap + vertex));
+        side *= 0.5;
+    }
+    Surface::new(Mesh::new(positions, &faces).unwrap()).unwrap()
+}
+
+/// The model of this name among the real ones beside the workspace, or nothing and a message where they are absent.
+pub(crate) fn real(name: &str) -> Option<Mesh> {
+    let path = format!(
+        "{}/../../../shared/data/meshes/{name}",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    if !std::path::Path::new(&path).exists() {
+        println!("skipped: there is no {path}");
+        return None;
+    }
+    Some(dapple_mesh_io::read_model(path).unwrap().mesh)
 }
 
 /// A mesh with its positions changed.
@@ -131,6 +225,57 @@ pub(crate) fn sites_on(mesh: Mesh, n_sites: usize, n_levels: usize) -> Hierarchy
     Hierarchy::new(&Surface::new(mesh).unwrap(), &options).unwrap()
 }
 
+/// The distance of neighbors in a hexagonal lattice of `n_sites` sites on a surface.
+pub(crate) fn spacing(surface: &Surface, n_sites: usize) -> f64 {
+    hexagonal_spacing(surface.area(), n_sites)
+}
+
+/// A random point of a surface.
+fn random(surface: &Surface, seed: Seed, number: i64) -> SurfacePoint {
+    let n_faces = surface.mesh().faces().len() as u32;
+    let largest = (0..n_faces)
+        .map(|face| surface.face_area(FaceIdx(face)))
+        .fold(0.0, f64::max);
+    let mut counter = 0;
+    let mut next = || {
+        counter += 1;
+        unit_f64(hash1(seed, [number], counter))
+    };
+    loop {
+        let face = FaceIdx((next() * f64::from(n_faces)) as u32);
+        let root = next().sqrt();
+        let other = next();
+        if next() * largest < surface.face_area(face) {
+            return surface.point(face, [1.0 - root, root * (1.0 - other), root * other]);
+        }
+    }
+}
+
+/// Random sites, as many as asked for.
+pub(crate) fn random_sites(surface: &Surface, n_sites: usize, seed: u64) -> Sites {
+    let seed = Seed(seed);
+    let points = (0..n_sites as i64).map(|number| random(surface, seed, number));
+    Sites::new(surface, points.collect())
+}
+
+/// About as many sites as asked for, none nearer to another one on its side than 0.7 spacings.
+pub(crate) fn even_sites(surface: &Surface, n_sites: usize, seed: u64) -> Sites {
+    let seed = Seed(seed);
+    let least = 0.75 * spacing(surface, n_sites);
+    let mut kept: Vec<(SurfacePoint, DVec3, DVec3)> = Vec::new();
+    for number in 0..20 * n_sites as i64 {
+        let point = random(surface, seed, number);
+        let (at, normal) = (surface.position(point), surface.normal(point));
+        let is_far = |(_, other, up): &(SurfacePoint, DVec3, DVec3)| {
+            at.distance(*other) > least || up.dot(normal) < 0.0
+        };
+        if kept.iter().all(is_far) {
+            kept.push((point, at, normal));
+        }
+    }
+    Sites::new(surface, kept.into_iter().map(|(point, ..)| point).collect())
+}
+
 /// Sites on a mesh that run along a field of positions and normals.
 pub(crate) fn synthesizer(
     mesh: Mesh,
@@ -143,7 +288,7 @@ pub(crate) fn synthesizer(
     Synthesizer::from_parts(surface, hierarchy, orientation, None).unwrap()
 }
 
-/// What `work` gives on 1, 2 and 7 threads.
+/// The results of `work` on 1, 2 and 7 threads.
 #[cfg(feature = "rayon")]
 pub(crate) fn on_threads<T: Send>(work: impl Fn() -> T + Sync) -> [T; 3] {
     [1, 2, 7].map(|n_threads| {

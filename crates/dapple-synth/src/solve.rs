@@ -5,8 +5,7 @@
 //! of the National Bureau of Standards 49 (6), 1952, <https://doi.org/10.6028/jres.049.044>; with the diagonal as the
 //! preconditioner. Sums are added in a fixed order, so the bits do not depend on the cores.
 
-use crate::columns;
-use dapple_mesh::Blend;
+use crate::{Blend, columns};
 use dapple_mesh::glam::DVec3;
 
 /// A value of a column that is solved for.

@@ -1,4 +1,4 @@
-//! What a synthesis on a surface made.
+//! The result of a synthesis on a surface.
 
 use crate::ground::Colors as _;
 use crate::{Pyramid, SynthError, SynthErrorKind};
@@ -11,7 +11,7 @@ pub struct SurfaceTexture {
     n_channels: usize,
 }
 
-/// What is known at every site of a level; nothing if no pass visited it.
+/// Colors and sources of every site of a level; empty if no pass visited it.
 #[derive(Clone, Debug, PartialEq)]
 struct Level {
     values: Vec<f32>,
@@ -46,8 +46,8 @@ impl SurfaceTexture {
         self.n_channels
     }
 
-    /// The values at the sites of a level, 0 the finest, `n_channels` for each, as the exemplar has them; empty for a level
-    /// that no pass visited.
+    /// The values at the sites of a level, 0 the finest, `n_channels` for each, as the exemplar has them; empty for a
+    /// level that no pass visited.
     ///
     /// # Panics
     ///
@@ -71,12 +71,13 @@ impl SurfaceTexture {
             .map(move |pixel| [pixel % width, pixel / width])
     }
 
-    /// What another map of the exemplar's size has at the sources of the finest sites: how colors, heights, normals and
-    /// roughness follow what was matched.
+    /// The values of another map of the exemplar's size at the sources of the finest sites: how colors, heights, normals
+    /// and roughness follow what was matched.
     ///
     /// # Errors
     ///
-    /// [`SynthErrorKind::Raster`] for a map of another size, [`SynthErrorKind::Count`] if no pass visited the finest level.
+    /// [`SynthErrorKind::Raster`] for a map of another size, [`SynthErrorKind::Count`] if no pass visited the finest
+    /// level.
     pub fn transfer<T: Copy>(&self, map: &Raster<T>) -> Result<Vec<T>, SynthError> {
         let Level { size, sources, .. } = &self.levels[0];
         map.check_same_size(*size)?;

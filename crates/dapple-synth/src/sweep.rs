@@ -25,8 +25,7 @@ mod level;
 mod tests;
 
 use crate::links::components;
-use crate::{Orientation, SynthError, SynthErrorKind};
-use dapple_mesh::{Hierarchy, SiteIdx};
+use crate::{Hierarchy, Orientation, SiteIdx, SynthError, SynthErrorKind, columns};
 use level::LevelSweep;
 
 /// The sweep distance s at every site, for every level.
@@ -36,7 +35,7 @@ pub struct Sweep {
     levels: Vec<Distances>,
 }
 
-/// What is known of the sites of a level.
+/// Sweep distances and components of the sites of a level.
 #[derive(Clone, Debug, PartialEq)]
 struct Distances {
     /// The sweep distances.
@@ -120,10 +119,7 @@ impl Sweep {
             .zip(components.iter().zip(distances))
             .map(|(site, (&component, &distance))| (component, rising(distance), site))
             .collect();
-        #[cfg(feature = "rayon")]
-        rayon::slice::ParallelSliceMut::par_sort_unstable(keys.as_mut_slice());
-        #[cfg(not(feature = "rayon"))]
-        keys.sort_unstable();
+        columns::sort_keys(&mut keys);
         keys.into_iter().map(|(_, _, site)| SiteIdx(site)).collect()
     }
 

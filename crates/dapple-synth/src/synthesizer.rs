@@ -3,11 +3,11 @@
 use crate::engine::{self, Progress};
 use crate::mesh_ground::MeshGround;
 use crate::{
-    Axes, Direction, Exemplar, Options, Orientation, SurfaceTexture, Sweep, SynthError,
-    SynthErrorKind,
+    Axes, Direction, Exemplar, Hierarchy, HierarchyOptions, Options, Orientation, SiteIdx,
+    SurfaceTexture, Sweep, SynthError, SynthErrorKind,
 };
 use core::ops::ControlFlow;
-use dapple_mesh::{Hierarchy, HierarchyOptions, Mesh, SiteIdx, Surface};
+use dapple_mesh::{Mesh, Surface};
 
 /// A surface with its sites, their directions and their order: all that does not depend on the exemplar.
 #[derive(Clone, Debug)]
@@ -22,7 +22,7 @@ pub struct Synthesizer {
 ///
 /// # Errors
 ///
-/// As [`Synthesizer::new`] and [`Synthesizer::synthesize`].
+/// Those of [`Synthesizer::new`] and [`Synthesizer::synthesize`].
 pub fn synthesize(
     mesh: Mesh,
     exemplar: &Exemplar,
@@ -40,7 +40,7 @@ impl Synthesizer {
     ///
     /// # Errors
     ///
-    /// As [`Hierarchy::new`], [`Orientation::new`] and [`Sweep::new`].
+    /// Those of [`Hierarchy::new`], [`Orientation::new`] and [`Sweep::new`].
     pub fn new(
         surface: Surface,
         directions: &[Direction],
@@ -83,8 +83,8 @@ impl Synthesizer {
     ///
     /// # Errors
     ///
-    /// Typed errors for an exemplar that is too small, for options out of their ranges, and for more levels than the sites
-    /// have.
+    /// Typed errors for an exemplar that is too small, for options out of their ranges, and for more levels than the
+    /// sites have.
     pub fn synthesize(
         &self,
         exemplar: &Exemplar,
@@ -93,11 +93,12 @@ impl Synthesizer {
         self.synthesize_with(exemplar, options, |_| ControlFlow::Continue(()))
     }
 
-    /// As [`synthesize`](Self::synthesize), with a callback that hears of the progress and can stop it.
+    /// Synthesizes a texture like [`synthesize`](Self::synthesize), with a callback that hears of the progress and can
+    /// stop it.
     ///
     /// # Errors
     ///
-    /// As [`synthesize`](Self::synthesize), and [`SynthErrorKind::Cancelled`] if the callback breaks.
+    /// Those of [`synthesize`](Self::synthesize), and [`SynthErrorKind::Cancelled`] if the callback breaks.
     pub fn synthesize_with(
         &self,
         exemplar: &Exemplar,
@@ -117,7 +118,7 @@ impl Synthesizer {
         Ok(SurfaceTexture::new(&pyramid, sources))
     }
 
-    /// What the texture grows on.
+    /// The surface, its sites and their orientation, on which the texture grows.
     pub(crate) fn ground(&self, axes: Axes) -> MeshGround<'_> {
         MeshGround {
             surface: &self.surface,

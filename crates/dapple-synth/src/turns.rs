@@ -1,10 +1,11 @@
 //! The order in which threads share the sites of a pass.
 //!
-//! A site waits for all earlier sites of the sweep that it may read, and all later ones wait for it; what is left over is free.
-//! So the texture has the bits of the sites one after the other in the order of the sweep, on any number of threads.
+//! A site waits for all earlier sites of the sweep that it may read, and all later ones wait for it; what is left over is
+//! free. So the texture has the bits of the sites one after the other in the order of the sweep, on any number of
+//! threads.
 //!
-//! Sites that wait for nobody come first, then those that wait only for these, and so on. Threads take turns in this order,
-//! and each turn says how many of the turns before it must be over; seldom does one have to wait.
+//! Sites that wait for no other come first, then those that wait only for these, and so on. Threads take turns in this
+//! order, and each turn says how many of the turns before it must be over; seldom does one have to wait.
 
 use crate::cells::Cells;
 use core::hint::spin_loop;
@@ -33,8 +34,8 @@ impl Turns {
 
     /// The sites of `order` with as little waiting as can be.
     ///
-    /// Every site has a place, of which there are `n_places`, and may read sites at places near its own. `latest` gives the
-    /// largest mark at the places near a site, its own among them: places are near each other, or both are not.
+    /// Every site has a place, of which there are `n_places`, and may read sites at places near its own. `latest` gives
+    /// the largest mark at the places near a site, its own among them: places are near each other, or both are not.
     pub(crate) fn new(
         order: &[u32],
         n_places: usize,
@@ -111,13 +112,13 @@ fn by_generation(order: &[u32], generations: &[u32]) -> Vec<u32> {
 /// Where threads say which turns they have: some turns in a row, all turns before them being over.
 #[derive(Debug)]
 pub(crate) struct Board {
-    /// The first turn that nobody has.
+    /// The first turn that no thread has.
     next: AtomicUsize,
     end: usize,
     /// Each thread's turn; all that it had before is over. Of a thread that has none, the largest number.
     ///
-    /// All orderings are sequentially consistent: a thread that has no turn and takes one shows a number before it does, so
-    /// that whoever had a turn earlier and did not see the number waits only for turns that are still earlier.
+    /// All orderings are sequentially consistent: a thread that has no turn and takes one shows a number before it does,
+    /// so that a thread that had a turn earlier and did not see the number waits only for turns that are still earlier.
     turns: Vec<AtomicUsize>,
 }
 

@@ -1,15 +1,16 @@
 //! How often the pixels of the exemplar were used, and what that costs them.
 //!
-//! Where the least distance alone decides, a few pixels are used again and again: those that are like everything a little.
-//! Colors that are rare in the exemplar vanish. The remedy here is a penalty on what was used, as Kaspar, Neubert,
-//! Lischinski, Pauly and Kopf have it for patches ("Self Tuning Texture Optimization", Computer Graphics Forum 34, 2015).
-//! Here it is one factor for each pixel: its squared distances are multiplied by 1, and by as much more as
+//! Where the least distance alone decides, a few pixels are used again and again: those that are like everything a
+//! little. Colors that are rare in the exemplar vanish. The remedy here is a penalty on what was used, as Kaspar,
+//! Neubert, Lischinski, Pauly and Kopf have it for patches ("Self Tuning Texture Optimization", Computer Graphics Forum
+//! 34, 2015). Here it is one factor for each pixel: its squared distances are multiplied by 1, and by as much more as
 //! [`Options::evenness`](crate::Options::evenness) says for the uses around it.
 //!
-//! A use is spread over [`REACH`] pixels to all sides. Where only the pixel itself cost more, its neighbors would not, and
-//! the texture would rather break off in the middle of a brick than go on with a pixel that was used once more than others.
+//! A use is spread over [`REACH`] pixels to all sides. Where only the pixel itself cost more, its neighbors would not,
+//! and the texture would rather break off in the middle of a brick than go on with a pixel that was used once more than
+//! others.
 //!
-//! What is used depends on all sites before, so such a pass goes one site after the other on one thread. Only passes that
+//! Usage depends on all sites before, so such a pass goes one site after the other on one thread. Only passes that
 //! read no coarser level count, those of the coarsest level in the paper's schedule: the finer levels follow it.
 
 use crate::Candidates;
@@ -23,7 +24,7 @@ const N_PIXELS: i64 = (2 * REACH + 1) * (2 * REACH + 1);
 /// The uses around the pixel of each row, and its factor.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Usage {
-    /// What one use within reach adds to a factor.
+    /// The increment of a factor for one use within reach.
     cost: f64,
     counts: Vec<u32>,
     /// At least 1 each; empty if nothing is counted.
@@ -31,7 +32,7 @@ pub(crate) struct Usage {
 }
 
 impl Usage {
-    /// Nothing is used yet. `evenness` is what it costs if all pixels were used equally often by `n_sites` sites.
+    /// Counts without any use. `evenness` is the cost if all pixels were used equally often by `n_sites` sites.
     pub(crate) fn new(evenness: f32, n_rows: usize, n_sites: usize) -> Self {
         if evenness == 0.0 {
             return Self::default();

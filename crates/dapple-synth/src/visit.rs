@@ -51,7 +51,7 @@ struct Term {
     root_weight: f32,
 }
 
-/// What a thread works in.
+/// Memory of a thread.
 struct Worker<M> {
     same: Samples,
     coarser: Samples,
@@ -61,13 +61,13 @@ struct Worker<M> {
     ground: M,
 }
 
-/// What all threads read; [`Painted`] of the level itself is also written.
+/// The input of all threads; [`Painted`] of the level itself is also written.
 #[derive(Clone, Copy)]
 struct State<'a> {
     here: Painted<'a>,
     coarser: Option<Painted<'a>>,
     kept: &'a Kept,
-    /// What the rows' squared distances are multiplied by.
+    /// The factors of the rows' squared distances.
     factors: Option<&'a [f32]>,
 }
 

@@ -1,7 +1,7 @@
 //! A texture grown over a mesh from a small example, baked to a texture map and written as a model: a GLB file that
 //! viewers and engines open.
 //!
-//! The mesh is one of the library's own; `dapple::mesh::io::read_model` reads yours.
+//! The mesh is a ring that is made here; `dapple::mesh_io::read_model` reads yours.
 //!
 //! ```sh
 //! cargo run -p dapple --example 12_baked_model
@@ -11,17 +11,38 @@ mod out;
 
 use dapple::color::LinearRgb;
 use dapple::image::{Depth, Transfer, encode_png, write_color_png};
-use dapple::mesh::{CREASE, EncodedImage, HierarchyOptions, glam::DVec3, io, models};
+use dapple::mesh::{self, CREASE, EncodedImage, MeshError, glam::DVec3, rotation};
+use dapple::mesh_io::write_model;
 use dapple::preview::{
     Camera, Light, Material, Mesh, Object, Scene, Shape, Supersampling, Surface,
 };
 use dapple::raster::{Raster, Window, Wrap};
 use dapple::synth::{
-    Atlas, Direction, Edges, Exemplar, Options, bake_colors, synthesize, textured_model,
+    Atlas, Direction, Edges, Exemplar, HierarchyOptions, Options, bake_colors, synthesize,
+    textured_model,
 };
+use std::f64::consts::TAU;
+
+/// A torus around the y axis with the radii 1 and 0.4, of 48 by 24 squares.
+fn ring() -> Result<mesh::Mesh, MeshError> {
+    let [columns, rows] = [48, 24];
+    let turn = |part: u32, of: u32| TAU * f64::from(part) / f64::from(of);
+    let at = |column: u32, row: u32| (row % rows) * columns + column % columns;
+    let (mut positions, mut faces) = (Vec::new(), Vec::new());
+    for row in 0..rows {
+        for column in 0..columns {
+            let out = rotation(DVec3::Z, turn(row, rows)) * DVec3::X;
+            positions.push(rotation(DVec3::Y, turn(column, columns)) * (DVec3::X + 0.4 * out));
+            let [a, b] = [at(column, row), at(column + 1, row)];
+            let [c, d] = [at(column + 1, row + 1), at(column, row + 1)];
+            faces.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    mesh::Mesh::new(positions, &faces)
+}
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Stripes, slightly bent, that run down the example, and on the animal from the back to the belly.
+    // Stripes, slightly bent, that run down the example, and on the ring around its tube.
     let stripes = Raster::from_window(&Window::unit([48, 48])?, |at| {
         let across = 5.0 * at.x + 0.6 * (at.y - at.y * at.y);
         LinearRgb::gray(if across - across.floor() < 0.5 {
@@ -31,28 +52,27 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         })
     })?;
     let exemplar = Exemplar::new(&stripes, Edges::Cut)?;
-    let back = Direction {
-        at: models::zebra::BACK,
-        vector: DVec3::X,
+    let outside = Direction {
+        at: DVec3::X * 1.4,
+        vector: DVec3::NEG_Y,
     };
     let sites = HierarchyOptions {
         n_sites: 6_000,
         ..HierarchyOptions::default()
     };
-    let zebra = models::zebra(4_000)?;
-    let (zebra, texture) = synthesize(zebra, &exemplar, &[back], &sites, &Options::default())?;
+    let (ring, texture) = synthesize(ring()?, &exemplar, &[outside], &sites, &Options::default())?;
 
     // The texture map: the triangles of the mesh, packed into a square with room for mip levels.
-    let atlas = Atlas::by_area(zebra.surface(), 1024)?;
-    let map = bake_colors(&zebra, &texture.transfer(&stripes)?, &atlas)?;
+    let atlas = Atlas::by_area(ring.surface(), 1024)?;
+    let map = bake_colors(&ring, &texture.transfer(&stripes)?, &atlas)?;
     let png = encode_png(
         map.map(|color| color.to_srgb::<u8>()).view(),
         Transfer::Srgb,
     )?;
-    let shading = zebra.surface().mesh().corner_normals(CREASE);
-    let model = textured_model(zebra.surface(), &atlas, shading, EncodedImage::new(png)?)?;
+    let shading = ring.surface().mesh().corner_normals(CREASE);
+    let model = textured_model(ring.surface(), &atlas, shading, EncodedImage::new(png)?)?;
     let path = out::path("12_baked_model.glb")?;
-    io::write_model(&path, &model)?;
+    write_model(&path, &model)?;
     out::wrote(&path);
 
     // A picture of it: a ray meets a triangle, whose corners have texture coordinates.
@@ -67,7 +87,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         });
         Material::matte(color)
     };
-    let shape = Shape::mesh(Mesh::from_mesh(zebra.surface().mesh().clone()));
+    let shape = Shape::mesh(Mesh::from_mesh(ring.surface().mesh().clone()));
     let scene = Scene::new(Camera::look_at(DVec3::new(4.0, 1.0, 2.6), DVec3::ZERO).with_fov(0.5))
         .with_object(Object::new(shape, look))
         .with_light(Light::directional(

@@ -40,7 +40,8 @@
 //! | their triangulation and other graphs | [`graph`] | [`delaunay`](graph::delaunay()) |
 //! | colors, normals, occlusion, curvature of heights | [`color`] | [`Palette`](color::Palette), [`normal_map`](color::normal_map) |
 //! | files: PNG and OpenEXR | [`image`] | [`write_color_png`](image::write_color_png), [`read_image`](image::read_image) |
-//! | meshes and their files: OBJ, PLY, glTF, OFF | [`mesh`] | [`read_model`](mesh::io::read_model), [`Surface`](mesh::Surface) |
+//! | meshes | [`mesh`] | [`Mesh`](mesh::Mesh), [`Surface`](mesh::Surface) |
+//! | mesh files: OBJ, PLY, glTF, OFF | [`mesh_io`] | [`read_model`](mesh_io::read_model), [`write_model`](mesh_io::write_model) |
 //! | a lit picture of a texture on a thing | [`preview`] | [`Scene`](preview::Scene) |
 //!
 //! All of them speak of [`raster`] (pixels, and where they lie) and [`hash`] (seeds). Vectors are those of `glam`, which is
@@ -97,7 +98,6 @@
 //! | feature | what it adds |
 //! |---|---|
 //! | `rayon` | work on all cores; the bits do not change |
-//! | `mesh-io` | mesh files |
 //! | `json` | seam reports and directions as JSON |
 
 #![forbid(unsafe_code)]
@@ -146,9 +146,13 @@ pub use dapple_tile as tile;
 #[cfg(feature = "recipe")]
 pub use dapple_recipe as recipe;
 
-/// Triangle meshes, and their files with the feature `mesh-io`.
+/// Triangle meshes: repair, walking, nearest points.
 #[cfg(feature = "mesh")]
 pub use dapple_mesh as mesh;
+
+/// Mesh files: OBJ, PLY, glTF, OFF.
+#[cfg(feature = "mesh-io")]
+pub use dapple_mesh_io as mesh_io;
 
 /// Textures from an example image, on meshes and in the plane.
 #[cfg(feature = "synth")]

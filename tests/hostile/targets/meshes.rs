@@ -3,7 +3,8 @@
 use super::accepted;
 use dapple::color::{LinearRgb, LinearRgba};
 use dapple::mesh::glam::{DVec2, DVec3};
-use dapple::mesh::{EncodedImage, Mesh, MeshError, Model, Surface, io};
+use dapple::mesh::{EncodedImage, Mesh, Model, Surface};
+use dapple::mesh_io::{self as io, MeshIoError};
 
 /// A model or a refusal; what is read can be mended, laid out and written, and is the same when it is read again.
 pub fn obj(bytes: &[u8]) {
@@ -44,7 +45,7 @@ pub fn off(bytes: &[u8]) {
     check(io::off::read(bytes), |model| Ok(model.clone()));
 }
 
-fn check(read: Result<Model, MeshError>, again: impl Fn(&Model) -> Result<Model, MeshError>) {
+fn check(read: Result<Model, MeshIoError>, again: impl Fn(&Model) -> Result<Model, MeshIoError>) {
     let Some(model) = accepted(read) else {
         return;
     };

@@ -5,7 +5,9 @@
 use crate::harness::Bench;
 use crate::row::{Case, Must, Unit};
 use anyhow::{Result, ensure};
-use dapple_mesh::{Evenness, Hierarchy, HierarchyOptions, Surface, evenness, models};
+use dapple_mesh::Surface;
+use dapple_models as models;
+use dapple_synth::{Evenness, Hierarchy, HierarchyOptions, evenness};
 
 const MEAN: Case = Case {
     group: "mesh",

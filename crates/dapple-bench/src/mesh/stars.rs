@@ -10,9 +10,11 @@
 use crate::harness::{Bench, Done, Side};
 use crate::row::{Case, Must, Unit};
 use anyhow::{Result, ensure};
-use dapple_mesh::{
-    Connected, HierarchyOptions, STAR_RADIUS, SiteGraph, SiteGrid, SiteIdx, Sites, Surface,
-    hexagonal_spacing, models, nested_points,
+use dapple_mesh::Surface;
+use dapple_models as models;
+use dapple_synth::{
+    Connected, HierarchyOptions, STAR_RADIUS, SiteGraph, SiteGrid, SiteIdx, Sites,
+    hexagonal_spacing, nested_points,
 };
 use glam::{DVec2, DVec3};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation as _};

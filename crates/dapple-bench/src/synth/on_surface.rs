@@ -12,9 +12,9 @@ use crate::harness::{Bench, median};
 use crate::row::{Case, Must, Unit};
 use anyhow::{Context as _, Result, ensure};
 use dapple_color::LinearRgb;
-use dapple_mesh::{FaceEdge, FaceIdx, INTERPOLATION_RADIUS, SiteIdx};
+use dapple_mesh::{FaceEdge, FaceIdx};
 use dapple_raster::Raster;
-use dapple_synth::{Edges, Exemplar, Options, Synthesizer};
+use dapple_synth::{Edges, Exemplar, INTERPOLATION_RADIUS, Options, SiteIdx, Synthesizer};
 use glam::{DMat2, DVec2, DVec3};
 
 const ORIENTATION: Case = Case {

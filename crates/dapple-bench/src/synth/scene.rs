@@ -4,10 +4,12 @@ use super::drawings::{self, Drawing, draw};
 use anyhow::{Result, ensure};
 use dapple_color::LinearRgb;
 use dapple_image::{Limits, read_image};
-use dapple_mesh::models::bunny;
-use dapple_mesh::{HierarchyOptions, Surface};
+use dapple_mesh::Surface;
+use dapple_models::bunny;
 use dapple_raster::Raster;
-use dapple_synth::{Coherence, Direction, Edges, Exemplar, Options, SurfaceTexture, Synthesizer};
+use dapple_synth::{
+    Coherence, Direction, Edges, Exemplar, HierarchyOptions, Options, SurfaceTexture, Synthesizer,
+};
 use glam::DVec3;
 use std::fmt::Write as _;
 use std::path::PathBuf;

@@ -4,8 +4,7 @@ use super::table_1::TORI;
 use crate::harness::Bench;
 use crate::row::{Case, Must, Unit};
 use anyhow::Result;
-use dapple_mesh::Hierarchy;
-use dapple_synth::{Orientation, Sweep};
+use dapple_synth::{Hierarchy, Orientation, Sweep};
 
 const FIELD: Case = Case {
     group: "synth",

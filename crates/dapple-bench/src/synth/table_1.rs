@@ -2,7 +2,7 @@
 //!
 //! `cargo xtask bench "table 1"` makes it. Ours is the wall time of the synthesis on two threads, the lesser of two runs, with
 //! an exact search; what comes before it (points, graph, directions and sweep), which the paper's times may have or not, is
-//! in the note. The models are those of `dapple_mesh::models`, the exemplars are drawn.
+//! in the note. The models are those of `dapple_models`, the exemplars are drawn.
 
 use super::drawings::{self, Drawing, draw};
 use super::scene::{count, exact};
@@ -10,14 +10,15 @@ use crate::harness::Bench;
 use crate::report::three_digits;
 use crate::row::{Case, Must, Unit};
 use anyhow::{Result, ensure};
-use dapple_mesh::{HierarchyOptions, Mesh, MeshError, Surface, models};
-use dapple_synth::{Direction, Edges, Exemplar, Synthesizer};
+use dapple_mesh::{Mesh, Surface};
+use dapple_models::{self as models, ModelError};
+use dapple_synth::{Direction, Edges, Exemplar, HierarchyOptions, Synthesizer};
 use glam::DVec3;
 
 /// A row of the table.
 pub(super) struct Row {
     case: Case,
-    model: fn(usize) -> Result<Mesh, MeshError>,
+    model: fn(usize) -> Result<Mesh, ModelError>,
     /// Where directions are given, and which.
     directions: &'static [[DVec3; 2]],
     n_sites: usize,

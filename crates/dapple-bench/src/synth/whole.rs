@@ -3,8 +3,8 @@
 use super::scene::{self, Model, N_SITES};
 use anyhow::Result;
 use dapple_image::{Transfer, encode_png};
-use dapple_mesh::io::{gltf, obj};
 use dapple_mesh::{CREASE, EncodedImage, Mesh};
+use dapple_mesh_io::{gltf, obj};
 use dapple_synth::{Atlas, Exemplar, Options, bake, textured_model};
 
 /// The side of the texture map.

@@ -11,6 +11,7 @@ use crate::output::Target;
 use anyhow::{Context as _, Result};
 use channels::{Channel, channels, format};
 use clap::ValueEnum;
+use dapple::mesh_io::MeshFormat;
 use dapple::tile::{ChannelReport, SeamOptions, SeamReports};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -32,8 +33,10 @@ stands out by 2.5 standard deviations or more among the boundaries inside.";
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Images, or meshes (.obj, .ply, .glb, .gltf, .off). `-` is an image from standard input.
-    #[arg(value_name = "FILE", required = true)]
+    #[arg(value_name = "FILE", required = true, help = format!(
+        "Images, or meshes ({}). `-` is an image from standard input",
+        input::mesh_endings()
+    ))]
     files: Vec<PathBuf>,
 
     /// Look only at this part of images, in pixels.
@@ -97,7 +100,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     job.claim_sidecar(&target)?;
     let (mut texts, mut reports, mut is_good) = (Vec::new(), Vec::new(), true);
     for path in &args.files {
-        let findings = if mesh::is_mesh(path) {
+        let findings = if MeshFormat::of_path(path).is_some() {
             mesh::findings(path)?
         } else {
             image_findings(path, args)?

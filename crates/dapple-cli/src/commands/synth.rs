@@ -35,19 +35,13 @@ Examples:
 The example is best 64 to 256 pixels wide: its features should be a tenth of it or
 less. More sites make the features smaller on the mesh, and take longer.
 
-What the ending of the output gives for a mesh:
-  .glb         the mesh with its texture in one file
-  .obj         the mesh, with its material (.mtl) and texture (.png) beside it
-  .ply         the sites as a mesh, with a color for each and no texture
-  .png, .exr   the texture alone
-
 Directions are lines x,y,z,dx,dy,dz (CSV) or [{\"at\": [x,y,z], \"vector\": [dx,dy,dz]}]
 (JSON): at a place on the mesh, where the down of the example points. One or a few are
 enough; in between they are interpolated.";
 
 /// Grow a texture from an example: an image or a tile of any size, or one that covers a mesh (Turk 2001).
 #[derive(clap::Args, Debug, Serialize)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = format!("{EXAMPLES}\n\n{}", surface::endings()))]
 pub(crate) struct Args {
     /// The example. PNG and JPEG are sRGB, gray or color, and OpenEXR is linear. Color is matched in sRGB, gray as it is.
     #[arg(value_name = "IMAGE")]

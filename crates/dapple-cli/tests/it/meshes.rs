@@ -1,8 +1,8 @@
 //! What covered meshes look like: hard edges, and sheets that are seen from both sides.
 
 use crate::support::{Folder, assert_done, stdout};
-use dapple::mesh::io::{read_model, write_model};
 use dapple::mesh::{CREASE, FaceIdx, Mesh, Model};
+use dapple::mesh_io::{read_model, write_model};
 use dapple::points::glam::DVec3;
 
 /// The cube from 0 to 1.

@@ -2,7 +2,7 @@
 
 use crate::support::{Folder, assert_done, assert_refused, stdout};
 use dapple::image::{Limits, PngPixels, decode_png, read_image};
-use dapple::mesh::io::gltf;
+use dapple::mesh_io::gltf;
 use dapple::raster::Raster;
 use std::fs;
 

@@ -3,7 +3,7 @@
 use crate::support::{Folder, assert_done, stderr, stdout};
 use dapple::hash::Seed;
 use dapple::image::{Depth, Limits, decode_image, read_image, write_gray_png};
-use dapple::mesh::io::read_model;
+use dapple::mesh_io::read_model;
 use dapple::raster::glam::DVec2;
 use dapple::raster::{Field as _, Raster, Window};
 use dapple::tile::{Method, Seamless, SoftCut};

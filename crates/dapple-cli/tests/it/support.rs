@@ -2,7 +2,8 @@
 
 use dapple::color::{LinearRgb, Normal};
 use dapple::image::{Depth, write_color_png, write_gray_exr, write_gray_png, write_normal_png};
-use dapple::mesh::{Model, io::write_model, models};
+use dapple::mesh::Model;
+use dapple::mesh_io::write_model;
 use dapple::raster::Raster;
 use std::ffi::OsStr;
 use std::fs;
@@ -157,7 +158,7 @@ pub(crate) fn assert_refused(output: &Output, code: i32, part: &str, what: &str)
 /// A small model; it takes a while to make, so it is made once.
 fn model() -> &'static Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
-    MODEL.get_or_init(|| models::ray(300).unwrap().into())
+    MODEL.get_or_init(|| dapple_models::ray(300).unwrap().into())
 }
 
 /// Colors of a smooth hill.

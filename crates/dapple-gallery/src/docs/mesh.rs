@@ -1,4 +1,4 @@
-//! The picture of `dapple-mesh`: the models that come with it.
+//! The picture of `dapple-mesh`: the models of `dapple-models`.
 
 use super::Documented;
 use super::picture::{BANNER, row};

@@ -5,7 +5,7 @@ use super::{Documented, Strip};
 use crate::Panel;
 use core::f64::consts::PI;
 use dapple_color::LinearRgb;
-use dapple_mesh::models;
+use dapple_models as models;
 use dapple_preview::{
     Camera, Cut, Environment, Light, Material, Mesh, Mirror, Object, Scene, Shadows, Shape, Sky,
     Supersampling, Surface,

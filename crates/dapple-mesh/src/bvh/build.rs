@@ -67,7 +67,7 @@ pub(crate) struct Builder {
     margin: f64,
 }
 
-/// Where to split a range of triangles.
+/// A split of a range of triangles.
 struct Split {
     axis: usize,
     /// The bins before this one go to the first half.

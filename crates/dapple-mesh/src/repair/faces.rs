@@ -77,8 +77,8 @@ impl Draft {
         welded
     }
 
-    /// Flips the longest edges of caps, the longest of all first, drops caps that have no neighbor there, and says whether
-    /// it did anything.
+    /// Flips the longest edges of caps, the longest of all first, drops caps that have no neighbor there, and says
+    /// whether it did anything.
     fn flip_caps(&mut self, caps: Vec<Cap>) -> bool {
         let edges = sorted_edges(&self.mesh);
         let mut across = Adjacency::paired(self.mesh.faces.len(), &edges);
@@ -129,8 +129,8 @@ impl Draft {
                 .all(|corners| area_vector(corners).is_some())
     }
 
-    /// What is across the other two edges of a cap, and of its neighbor: at the start of the edge as the neighbor goes through
-    /// it, and at the end.
+    /// The faces across the other two edges of a cap, and of its neighbor: at the start of the edge as the neighbor goes
+    /// through it, and at the end.
     fn sides(&self, cap: FaceEdge, to: FaceEdge, across: &Adjacency) -> [[Option<FaceEdge>; 2]; 2] {
         let after = |at: FaceEdge, steps| across.across(step(at, steps));
         let [past_end, past_start] = [1, 2].map(|steps| after(to, steps));

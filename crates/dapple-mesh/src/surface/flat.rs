@@ -17,11 +17,11 @@ pub(crate) struct Flat {
     pub(crate) width: f64,
     /// The third corner.
     pub(crate) apex: DVec2,
-    /// What is across the three edges.
+    /// The faces across the three edges.
     pub(crate) across: [Option<Fold>; 3],
 }
 
-/// How the plane of the face across an edge continues this one's.
+/// The motion that takes the plane of a face to that of the face across an edge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fold {
     pub(crate) to: FaceEdge,
@@ -71,8 +71,8 @@ impl Flat {
 
 /// The rigid motion of the plane that takes an edge of one face to where the other face has it.
 ///
-/// `along` is the edge in space; its directions in both planes give the turn. Those between the corners as they are in the
-/// planes would be less precise for short edges of needles.
+/// `along` is the edge in space; its directions in both planes give the turn. Those between the corners as they are in
+/// the planes would be less precise for short edges of needles.
 pub(super) fn fold(here: &Flat, edge: u8, there: &Flat, to: FaceEdge, along: DVec3) -> Fold {
     let direction = |flat: &Flat| DVec2::new(along.dot(flat.x), along.dot(flat.y)).normalize();
     let (a, b) = (direction(here), direction(there));

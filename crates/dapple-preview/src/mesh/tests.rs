@@ -1,4 +1,4 @@
-//! What a mesh knows of its surface, and what it refuses.
+//! Normals and positions on a mesh, and the meshes that are refused.
 
 use super::Mesh;
 use crate::PreviewErrorKind;

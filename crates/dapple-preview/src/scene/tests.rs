@@ -6,7 +6,7 @@ use crate::{
 };
 use core::f64::consts::PI;
 use dapple_color::LinearRgb;
-use dapple_mesh::solid::rotation;
+use dapple_mesh::rotation;
 use dapple_raster::Raster;
 use glam::{DQuat, DVec3};
 

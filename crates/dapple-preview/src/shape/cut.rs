@@ -10,7 +10,7 @@ use crate::ray::Ray;
 use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 
-/// What is left of a solid, in the space of the object. The faces of the cut are closed and belong to the solid.
+/// A solid with parts cut away, in the space of the object. The faces of the cut are closed and belong to the solid.
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/cut.md"))]
 ///
@@ -103,7 +103,7 @@ impl Wedge {
         self.faces[face].0
     }
 
-    /// What is left of the stretches of a ray within a solid. `None` has no length.
+    /// The stretches of a ray within a solid that the cut leaves. `None` has no length.
     pub(crate) fn apply(&self, ray: &Ray, stretches: [Option<Stretch>; 2]) -> [Option<Stretch>; 4] {
         let wedge = self.stretch(ray);
         match (self.keeps, wedge) {

@@ -1,10 +1,10 @@
 //! Spheres and tori as solids: the stretches of a ray that are inside.
 //!
-//! A torus is met where a quartic is zero. Along a ray from its point nearest to the center the quartic has no cubic term,
-//! and its roots are isolated by those of its derivatives, each found by Newton steps that never leave a bracket with a
-//! change of sign: Cem Yuksel, "High-Performance Polynomial Root Finding for Graphics", Proceedings of the ACM on Computer
-//! Graphics and Interactive Techniques 5(3), 2022, doi 10.1145/3543865. Only `+ − × ÷ sqrt` are used. Where a ray touches
-//! the torus in a double root, rounding decides; either answer is a stretch of next to no length.
+//! A torus is met where a quartic is zero. Along a ray from its point nearest to the center the quartic has no cubic
+//! term, and its roots are isolated by those of its derivatives, each found by Newton steps that never leave a bracket
+//! with a change of sign: Cem Yuksel, "High-Performance Polynomial Root Finding for Graphics", Proceedings of the ACM on
+//! Computer Graphics and Interactive Techniques 5(3), 2022, doi 10.1145/3543865. Only `+ − × ÷ sqrt` are used. Where a
+//! ray touches the torus in a double root, rounding decides; either answer is a stretch of next to no length.
 
 use super::cut::Wedge;
 use crate::ray::Ray;
@@ -55,7 +55,7 @@ impl Stretch {
         (self.enter.distance < self.exit.distance).then_some(self)
     }
 
-    /// What is left before a boundary.
+    /// The part before a boundary.
     pub(crate) fn before(mut self, end: Boundary) -> Option<Self> {
         if end.distance < self.exit.distance {
             self.exit = end;
@@ -63,7 +63,7 @@ impl Stretch {
         self.checked()
     }
 
-    /// What is left after a boundary.
+    /// The part after a boundary.
     pub(crate) fn after(mut self, start: Boundary) -> Option<Self> {
         if start.distance > self.enter.distance {
             self.enter = start;
@@ -71,7 +71,7 @@ impl Stretch {
         self.checked()
     }
 
-    /// What is in both.
+    /// The part that both have.
     pub(crate) fn and(self, other: Self) -> Option<Self> {
         self.after(other.enter)?.before(other.exit)
     }

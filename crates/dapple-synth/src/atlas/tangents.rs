@@ -17,7 +17,7 @@ pub(crate) struct Tangents {
     is_mirrored: Vec<bool>,
 }
 
-/// What corners have in common that share a tangent: the vertex, the bits of the place in the map and of the normal, and
+/// The key of corners that share a tangent: the vertex, the bits of the place in the map and of the normal, and
 /// the handedness.
 type Key = (u32, [u64; 2], [u64; 3], bool);
 

@@ -6,7 +6,7 @@ use dapple_mesh::{FaceIdx, Surface};
 use dapple_raster::Raster;
 use glam::DVec2;
 
-/// What is left around the triangles of a tile.
+/// The padding around the triangles of a tile.
 #[derive(Clone, Copy)]
 struct Frame {
     padding: u32,
@@ -19,8 +19,8 @@ impl Frame {
         Ok(Self { padding })
     }
 
-    /// What a tile's side has more than the legs of its triangles: padding at both ends of the legs, and twice between the
-    /// long sides, where it is counted along an axis; and half a texel at both ends.
+    /// The excess of a tile's side over the legs of its triangles: padding at both ends of the legs, and twice between
+    /// the long sides, where it is counted along an axis; and half a texel at both ends.
     fn width(self) -> u32 {
         4 * self.padding + 1
     }
@@ -30,7 +30,7 @@ impl Frame {
         self.width() + 1
     }
 
-    /// What the places of tiles are multiples of: the largest power of two up to the padding.
+    /// The grid of the places of tiles: the largest power of two up to the padding.
     fn step(self) -> u32 {
         1 << self.padding.ilog2()
     }

@@ -1,9 +1,9 @@
 //! Maps of small surfaces, beside texels that are mixed one by one.
 
 use super::bake;
-use crate::{Atlas, SynthErrorKind};
+use crate::{Atlas, Hierarchy, HierarchyOptions, SynthErrorKind};
 use dapple_hash::Seed;
-use dapple_mesh::{Hierarchy, HierarchyOptions, Mesh, Surface};
+use dapple_mesh::{Mesh, Surface};
 use glam::DVec3;
 
 fn octahedron() -> Surface {

@@ -5,7 +5,7 @@ use crate::shapes::{sphere, square, synthesizer};
 use crate::{bake_colors, bake_values, displaced_sites};
 use dapple_color::LinearRgb;
 use dapple_image::{Transfer, encode_png};
-use dapple_mesh::io::gltf;
+use dapple_mesh_io::gltf;
 use dapple_raster::Raster;
 use glam::DVec3;
 
@@ -111,7 +111,7 @@ fn halved(level: &Raster<f32>) -> Raster<f32> {
     Raster::from_fn(size, mean).unwrap()
 }
 
-/// What is between the texels of a level that repeats.
+/// The value between the texels of a level that repeats.
 fn bilinear(level: &Raster<f32>, uv: DVec2) -> f64 {
     let side = f64::from(level.width());
     let at = uv * side - 0.5;
@@ -128,8 +128,8 @@ fn bilinear(level: &Raster<f32>, uv: DVec2) -> f64 {
     )
 }
 
-/// The unit square is shown by levels of a mipmap as by its map itself. Its values rise by 1 over its side, along which the
-/// map has `texels`.
+/// The unit square is shown by levels of a mipmap as by its map itself. Its values rise by 1 over its side, along which
+/// the map has `texels`.
 fn assert_shown(atlas: &Atlas, n_levels: u32, texels: f64) {
     let plane = synthesizer(square(), N, |_, _| DVec3::NEG_Y);
     let sites = plane.hierarchy().sites().positions().iter();

@@ -5,13 +5,13 @@ use crate::ground::{Ground, Plain, Rows, Samples, Square};
 use crate::mesh_ground::MeshGround;
 use crate::neighborhood::{Part, Pass, Reads};
 use crate::{
-    Axes, Candidates, Coherence, Edges, Exemplar, Options, Pyramid, Schedule, Shape,
-    SynthErrorKind, Synthesizer, distance_sq,
+    Axes, Candidates, Coherence, Edges, Exemplar, HierarchyOptions, Options, Pyramid, Schedule,
+    Shape, SynthErrorKind, Synthesizer, distance_sq,
 };
 use core::ops::ControlFlow;
 use dapple_color::LinearRgb;
 use dapple_hash::{Seed, hash2, unit_f32};
-use dapple_mesh::{HierarchyOptions, Surface};
+use dapple_mesh::Surface;
 use dapple_raster::Raster;
 
 /// Stripes and noise, 16 pixels square.

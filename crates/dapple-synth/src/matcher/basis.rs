@@ -4,7 +4,7 @@
 //! largest eigenvalues, by orthogonal iteration with a Rayleigh-Ritz step (Golub and Van Loan, Matrix Computations, 4th
 //! edition, sections 8.2 and 8.5), all in `f64` and in a fixed order.
 //!
-//! Nothing of the search relies on how good they are: any matrix gives the same nearest row, if its norm is known. It is
+//! The search does not rely on how good they are: any matrix gives the same nearest row, if its norm is known. It is
 //! measured, for the matrix as it is stored, in [`Basis::norm_sq`].
 
 use crate::columns;
@@ -39,7 +39,7 @@ const SUMS: usize = 4;
 /// Directions, the one with the largest variance first.
 #[derive(Clone, Debug)]
 pub(crate) struct Basis {
-    /// What is subtracted from rows and queries.
+    /// The mean, which is subtracted from rows and queries.
     mean: Vec<f32>,
     /// For each group of [`LANES`] directions, for each value of a row, the factors: the matrix W, transposed in groups.
     groups: Vec<[f32; LANES]>,
@@ -222,7 +222,8 @@ fn principal(dims: usize, n_directions: usize, matrix: &[f64]) -> Vec<f64> {
     sorted
 }
 
-/// An upper bound of the square of the spectral norm of W: the largest sum of magnitudes in a line of W times its transpose.
+/// An upper bound of the square of the spectral norm of W: the largest sum of magnitudes in a line of W times its
+/// transpose.
 ///
 /// The products are exact in `f64`, and their sums are off by less than the factor that is added.
 fn norm_sq(dims: usize, groups: &[[f32; LANES]]) -> f64 {
@@ -264,7 +265,8 @@ fn add_lines(factors: &[f64], lines: &[f64], sums: &mut [f64]) {
     }
 }
 
-/// Makes directions orthogonal to those before them, and unit; those that depend on them become zero (modified Gram-Schmidt).
+/// Makes directions orthogonal to those before them, and unit; those that depend on them become zero (modified
+/// Gram-Schmidt).
 fn orthonormalize(dims: usize, directions: &mut [f64]) {
     for i in 0..directions.len() / dims {
         let (before, rest) = directions.split_at_mut(i * dims);

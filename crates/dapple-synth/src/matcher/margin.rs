@@ -1,10 +1,10 @@
 //! When a row may be skipped: the bound on rounding that makes the search exact.
 //!
 //! Write x for a row, q for the query, D for [`distance_sq`](super::distance_sq) as it is computed, W for the matrix of k
-//! directions and m for the mean as they are stored, y and z for the rotated row and query as they are computed, and P for
-//! the sum of squares of differences of their whole coordinates ([`Lattice`]), or of some of them, or of the distances
-//! from a box. u = 2^-24 is the most by which `f32` rounds, relatively; below the normal numbers additions are exact, and a
-//! product is off by at most v = 2^-150.
+//! directions and m for the mean as they are stored, y and z for the rotated row and query as they are computed, and P
+//! for the sum of squares of differences of their whole coordinates ([`Lattice`]), or of some of them, or of the
+//! distances from a box. u = 2^-24 is the most by which `f32` rounds, relatively; below the normal numbers additions are
+//! exact, and a product is off by at most v = 2^-150.
 //!
 //! 1. A term of D is rounded at most `a` times ([`distance::roundings`]), so that D >= (1 - a u) |x - q|^2 - 2 dims v, and
 //!    |x - q| <= sqrt((D + 2 dims v) / (1 - a u)).
@@ -16,9 +16,9 @@
 //! 4. By the triangle inequality, sqrt(P) <= |W| |x - q| + E, with E for the errors of 2 and 3, of the row and of the query.
 //!    P itself is exact, a part of a sum of squares is not larger than the sum, and a box is not farther than what is in it.
 //!
-//! Together, a row whose D is at most B has a P of at most T(B), which [`Margin::threshold`] gives. What has a larger P has
-//! a larger D than B: to skip it loses neither the nearest row nor one that is equally near. T is computed in `f64`, whose
-//! own rounding the factor [`SLACK`] covers many times over.
+//! Together, a row whose D is at most B has a P of at most T(B), which [`Margin::threshold`] gives. What has a larger P
+//! has a larger D than B: to skip it loses neither the nearest row nor one that is equally near. T is computed in `f64`,
+//! whose own rounding the factor [`SLACK`] covers many times over.
 //!
 //! No number may overflow on the way: centered rows and queries have at most the length [`LONGEST`].
 
@@ -47,7 +47,7 @@ pub(crate) struct Margin {
     units_sq: f64,
     /// 1.01 b u sqrt(k) |W| in units.
     rotation: f64,
-    /// What is left of E for a row and a query of length zero.
+    /// The value of E for a row and a query of length zero.
     fixed: f64,
 }
 
@@ -73,7 +73,8 @@ impl Margin {
         self.rotation * length + self.fixed
     }
 
-    /// T: the largest sum of squares of a row with a distance of at most `distance_sq`. Infinity gives the largest number.
+    /// T: the largest sum of squares of a row with a distance of at most `distance_sq`. Infinity gives the largest
+    /// number.
     #[inline(always)]
     pub(crate) fn threshold(&self, distance_sq: f32, error: f64) -> i32 {
         let distance_sq = (f64::from(distance_sq) + self.distance_underflow) * self.units_sq;

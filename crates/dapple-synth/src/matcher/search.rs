@@ -12,7 +12,7 @@ pub(crate) struct Search<'a, S> {
     pub(crate) tree: &'a Tree,
     pub(crate) margin: &'a Margin,
     pub(crate) rows: &'a PaddedRows,
-    /// What the squared distance of each row is multiplied by. Since none is below 1, what is too far without its factor
+    /// The factor of the squared distance of each row. Since none is below 1, what is too far without its factor
     /// is too far with it, and the bounds of the tree stay right.
     pub(crate) factors: Option<&'a [f32]>,
     /// The query, filled up with zeros.
@@ -87,8 +87,8 @@ impl<S: Simd> Search<'_, S> {
 
     /// Compares the rows of leaves that may be near: those of the sixteen from `first` on that have a bit in `near`.
     ///
-    /// All of them take a step before one takes the next, and which ones stay is found without a branch: a processor could
-    /// not predict it.
+    /// All of them take a step before one takes the next, and which ones stay is found without a branch: a processor
+    /// could not predict it.
     #[inline(always)]
     fn visit_leaves(&mut self, first: usize, mut near: u64) {
         let mut sums = [[0_i32; LANES]; LANES];

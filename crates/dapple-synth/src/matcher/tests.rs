@@ -12,7 +12,7 @@ fn brute_force(dims: usize, rows: &[f32], query: &[f32], below: f32) -> Option<M
     brute_force_times(dims, rows, query, below, |_| 1.0)
 }
 
-/// The same with a factor for each row.
+/// The nearest row by comparing all, with a factor for each.
 fn brute_force_times(
     dims: usize,
     rows: &[f32],

@@ -1,11 +1,12 @@
 //! Equation 1 for all samples of a square at once.
 //!
-//! The lanes of a register are samples of a row. A row takes the sites that can reach it, one after the other in the order of
-//! [`Around`], so that sums have one order at every SIMD level. Sites out of reach would add zeros.
+//! The lanes of a register are samples of a row. A row takes the sites that can reach it, one after the other in the
+//! order of [`Around`], so that sums have one order at every SIMD level. Sites out of reach would add zeros.
 
 use super::lattice::{Lattice, Row};
 use super::nearby::{Around, Record};
 use crate::ground::{Colors, Samples};
+use crate::sites::weights;
 use core::array;
 use core::ops::Range;
 use fearless_simd::{Level, dispatch, f32x8, prelude::*, u32x8};
@@ -15,7 +16,8 @@ const WEIGHT_MIN: f32 = 1e-4;
 /// Two unit vectors that have at least this product with a third one are at most a right angle apart; with a margin for
 /// rounding.
 const SAME_SHEET: f32 = 0.7072;
-/// What is added to the reach of a site before rows are left out, as a part of the radius: far more than rounding.
+/// The margin that is added to the reach of a site before rows are left out, as a part of the radius: far more than
+/// rounding.
 const MARGIN: f32 = 1e-3;
 /// The channels that are added up at once.
 const CHANNELS: usize = 4;
@@ -24,7 +26,7 @@ const LANES: usize = 8;
 /// How many rows of samples most sites reach at the most: rows are a spacing apart, and a site reaches 1.1 to both sides.
 const USUAL_ROWS: usize = 3;
 
-/// What interpolation works in.
+/// Memory of interpolation, kept from square to square.
 #[derive(Debug, Default)]
 pub(crate) struct Interpolation {
     /// The sites that can reach a row, and their values.
@@ -36,7 +38,8 @@ pub(crate) struct Interpolation {
     lengths: Vec<[usize; LANES]>,
 }
 
-/// What can reach eight rows: how far down, and how far to the right of the middle of the square, a site may be.
+/// The bounds of sites that can reach eight rows: how far down, and how far to the right of the middle of the square, a
+/// site may be.
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     least: [[f32; LANES]; 2],
@@ -215,10 +218,7 @@ fn add_up_row<S: Simd>(
         let record = &reaching[at as usize];
         let [px, py, pz] = record.position;
         let (dx, dy, dz) = (x - px, y - py, z - pz);
-        // w(x) = 2x³ − 3x² + 1, of distances in radii.
-        let part_sq = (dx * dx + dy * dy + dz * dz) * inverse_sq;
-        let weight = (part_sq.sqrt() * 2.0 - 3.0) * part_sq + 1.0;
-        let mut weight = part_sq.simd_lt(1.0).select(weight, zero);
+        let mut weight = weights(simd, (dx * dx + dy * dy + dz * dz) * inverse_sq);
         if check {
             let [mx, my, mz] = record.normal;
             let opposed = (nx * mx + ny * my + nz * mz).simd_lt(0.0);

@@ -4,7 +4,7 @@
 //! million sites.
 
 use crate::cells::Cells;
-use dapple_mesh::{Hierarchy, Sites};
+use crate::{Hierarchy, Sites};
 use fearless_simd::{Level, dispatch, f32x8, prelude::*};
 use glam::{DVec3, Vec3};
 
@@ -49,7 +49,7 @@ pub(crate) struct Around<'a> {
     records: &'a [Record],
     /// Which of `records` they are.
     numbers: &'a [u32],
-    /// What positions are relative to.
+    /// The position that others are relative to.
     center: [f32; 3],
 }
 

@@ -2,9 +2,9 @@
 
 use super::{MeshGround, MeshMemory, interpolate};
 use crate::ground::{Ground, Plain, Rows, Samples, Square};
-use crate::{Axes, Synthesizer};
+use crate::{Axes, HierarchyOptions, INTERPOLATION_RADIUS, Synthesizer};
 use dapple_hash::Seed;
-use dapple_mesh::{HierarchyOptions, INTERPOLATION_RADIUS, Mesh, Surface};
+use dapple_mesh::{Mesh, Surface};
 use dapple_raster::simd::{self, for_every_level};
 use glam::{DVec2, DVec3};
 

@@ -5,7 +5,7 @@
 //! where they should bend. All later passes keep that error. So directions turn on the way as the field does, to first
 //! order: by one rate along P and one along O, which fit the field at the neighbors of the site best.
 
-use dapple_mesh::{Hierarchy, SiteIdx};
+use crate::{Hierarchy, SiteIdx};
 use glam::{DVec2, DVec3};
 
 /// The most that directions turn from the middle of a square to its edge, in radians. There is no useful rate close to

@@ -2,8 +2,7 @@
 
 use super::{flat_part, tangent};
 use crate::links::LEAST_LENGTH;
-use crate::{Direction, SynthError, SynthErrorKind, columns};
-use dapple_mesh::{Hierarchy, Level, SiteIdx};
+use crate::{Direction, Hierarchy, Level, SiteIdx, SynthError, SynthErrorKind, columns};
 use glam::DVec3;
 
 /// Low-pass steps before a level is thinned, and their strength t of equation 3: together the spread of the filter
@@ -22,7 +21,7 @@ const LEAST_PART: f64 = 1e-3;
 /// How far the grid is searched for the site nearest to a direction, in spacings.
 const SEARCH_RADIUS: f64 = 4.0;
 
-/// What the directions say about a site.
+/// The mean of the directions at a site, and its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Known {
     pub(super) site: usize,
@@ -61,7 +60,7 @@ pub(super) fn known(
     Ok(given.chunk_by(|a, b| a.0 == b.0).filter_map(mean).collect())
 }
 
-/// What is known on every level, the finest first.
+/// The known vectors of every level, the finest first.
 pub(super) fn pull(hierarchy: &Hierarchy, finest: Vec<Known>) -> Vec<Vec<Known>> {
     let mut levels = vec![finest];
     for pair in hierarchy.levels().windows(2) {

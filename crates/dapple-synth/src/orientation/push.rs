@@ -2,16 +2,15 @@
 
 use super::pull::Known;
 use super::{axis_tangent, flat_part};
-use crate::columns;
 use crate::links::Links;
 use crate::parents::Parents;
 use crate::solve::{System, conjugate_gradients};
-use dapple_mesh::{Hierarchy, SiteIdx};
+use crate::{Hierarchy, SiteIdx, columns};
 use glam::DVec3;
 
 /// The diffusion ends where averaging once more would turn no vector by more than this, in radians, ...
 const TOLERANCE: f64 = 1e-5;
-/// ... or after so many steps, which bounds the time that a large coarsest level takes.
+/// The most steps, which bounds the time that a large coarsest level takes.
 const STEPS_MAX: usize = 500;
 /// Sweeps of equation 4 on every finer level, and the part of the average in each.
 const SWEEPS: usize = 4;

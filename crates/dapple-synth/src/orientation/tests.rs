@@ -3,8 +3,8 @@
 use super::*;
 use crate::links::{Links, components};
 use crate::shapes::{moved, sites_on, sphere, square, tube, two_squares};
-use dapple_mesh::solid::rotation;
-use dapple_mesh::{Hierarchy, SiteIdx};
+use crate::{Hierarchy, SiteIdx};
+use dapple_mesh::rotation;
 use proptest::prelude::*;
 
 /// Rounding of some hundred sums of unit vectors.

@@ -1,16 +1,15 @@
 //! The sweep distances of one level.
 
 use super::Distances;
-use crate::columns;
 use crate::links::Links;
 use crate::parents::Parents;
 use crate::solve::{System, conjugate_gradients};
-use dapple_mesh::{Hierarchy, SiteIdx};
+use crate::{Hierarchy, SiteIdx, columns};
 use glam::DVec3;
 
 /// The coarsest level is solved until equation 5 would change no distance by more than this part of the spacing, ...
 const TOLERANCE: f64 = 1e-6;
-/// ... or after so many steps, which bounds the time that a large coarsest level takes.
+/// The most steps, which bounds the time that a large coarsest level takes.
 const STEPS_MAX: usize = 500;
 /// Sweeps of equation 5 on every finer level, and the sum of the β in it.
 const SWEEPS: usize = 20;

@@ -2,11 +2,10 @@
 
 use super::level::step;
 use super::*;
-use crate::Direction;
 use crate::shapes::{cap, moved, sites_on, sphere, square, tube, two_squares};
+use crate::{Direction, HierarchyOptions};
 use dapple_hash::Seed;
-use dapple_mesh::solid::rotation;
-use dapple_mesh::{HierarchyOptions, Mesh, Surface};
+use dapple_mesh::{Mesh, Surface, rotation};
 use glam::DVec3;
 use proptest::prelude::*;
 

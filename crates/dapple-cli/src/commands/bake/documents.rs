@@ -5,8 +5,8 @@
 
 use crate::layers::Layers;
 use anyhow::{Result, anyhow};
-use dapple::mesh::io::gltf;
 use dapple::mesh::{EncodedImage, Material, Mesh, Model};
+use dapple::mesh_io::gltf;
 use dapple::points::glam::{DVec2, DVec3};
 use dapple::recipe::{MapKind, Recipe};
 

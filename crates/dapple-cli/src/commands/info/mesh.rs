@@ -8,15 +8,6 @@ use dapple::points::glam::DVec3;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// The endings of the names of meshes.
-const ENDINGS: [&str; 5] = ["obj", "ply", "glb", "gltf", "off"];
-
-/// Whether a path has the name of a mesh.
-pub(super) fn is_mesh(path: &Path) -> bool {
-    let ending = path.extension().unwrap_or_default().to_string_lossy();
-    ENDINGS.contains(&ending.to_ascii_lowercase().as_str())
-}
-
 /// What is in the mesh.
 ///
 /// # Errors

@@ -1,10 +1,10 @@
 //! The options of `dapple synth`.
 
 use crate::args::{Axes, Size, seed};
+use crate::input::mesh_endings;
 use clap::ValueEnum;
 use dapple::hash::Seed;
-use dapple::mesh::HierarchyOptions;
-use dapple::synth::{Axes as FieldAxes, Coherence, Edges, Options};
+use dapple::synth::{Axes as FieldAxes, Coherence, Edges, HierarchyOptions, Options};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -57,8 +57,10 @@ pub(super) struct PlaneArgs {
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "On a mesh")]
 pub(super) struct SurfaceArgs {
-    /// The mesh to cover: .obj, .ply, .glb, .gltf or .off. What is wrong with it is repaired.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help = format!(
+        "The mesh to cover ({}). What is wrong with it is repaired",
+        mesh_endings()
+    ))]
     pub(super) mesh: Option<PathBuf>,
 
     /// Which way the texture runs: a file of directions, .csv or .json. By default the down of the example points down.

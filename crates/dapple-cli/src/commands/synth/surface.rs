@@ -11,8 +11,8 @@ use crate::output::{OutputIdx, Target};
 use crate::progress::Progress;
 use anyhow::{Context as _, Result, bail};
 use dapple::color::{LinearRgba, NormalY};
-use dapple::mesh::io::{gltf, obj, ply};
 use dapple::mesh::{EncodedImage, Mesh, Model, Repair, Surface};
+use dapple::mesh_io::{FORMATS, MaterialPlace, MeshFormat, writable_endings};
 use dapple::points::glam::DVec3;
 use dapple::synth::{
     Atlas, Direction, SurfaceTexture, Synthesizer, bake_colors, bake_normals, bake_values,
@@ -23,13 +23,23 @@ use serde_json::json;
 use std::path::Path;
 
 /// What is written of a textured mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 enum Product {
-    Glb,
-    Obj,
-    Ply,
+    /// The mesh with its texture.
+    Model(&'static MeshFormat),
+    /// The sites as a mesh, in a format without textures.
+    Sites(&'static MeshFormat),
+    /// The texture alone.
     Texture,
 }
+
+/// The first bytes of a PNG file.
+const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+/// The endings of the names of images.
+const IMAGES: [&str; 4] = ["png", "exr", "npy", "r16"];
+
+/// The format of what has no name, in a stream or a folder.
+const DEFAULT_ENDING: &str = "glb";
 
 /// The outputs that were claimed.
 struct Claimed {
@@ -37,7 +47,7 @@ struct Claimed {
     /// The name of the output without its ending.
     stem: String,
     main: OutputIdx,
-    /// The other files of an OBJ: material and textures, with their names.
+    /// The files beside that of the mesh, such as material and textures, with their names.
     beside: Vec<(String, OutputIdx)>,
     maps: Vec<OutputIdx>,
     /// The format of textures that are files of their own.
@@ -56,7 +66,7 @@ pub(super) fn run(args: &Args, mesh: &Path, context: &Context) -> Result<Exit> {
     }
     let surface = Surface::new(repaired).with_context(|| mesh.display().to_string())?;
     let atlas = match claimed.product {
-        Product::Ply => None,
+        Product::Sites(_) => None,
         _ => Some(atlas(args, &surface, &model, &repair)?),
     };
     let shading = shading(args.surface.crease(), &surface, &model, &repair);
@@ -105,6 +115,47 @@ struct Covered {
     input: Input,
 }
 
+impl Product {
+    /// What the ending of an output asks for.
+    fn of(target: &Target) -> Result<Self> {
+        let ending = match target {
+            Target::Stdout if target.ending().is_empty() => DEFAULT_ENDING.to_owned(),
+            _ => target.ending(),
+        };
+        if IMAGES.contains(&ending.as_str()) {
+            return Ok(Self::Texture);
+        }
+        let mut formats = FORMATS.iter();
+        match formats.find(|format| format.written_ending() == Some(&ending)) {
+            Some(format) if format.material_place() == MaterialPlace::Nowhere => {
+                Ok(Self::Sites(format))
+            }
+            Some(format) => Ok(Self::Model(format)),
+            None => {
+                let error = usage(format!("{target}: nothing is written as {ending:?}"));
+                let endings: Vec<_> = writable_endings().chain(IMAGES).collect();
+                Err(error.hint(format!("let the name end in .{}", endings.join(", ."))))
+            }
+        }
+    }
+}
+
+/// The part of the help that says what the ending of the output gives.
+pub(super) fn endings() -> String {
+    let mut text = "What the ending of the output gives for a mesh:".to_owned();
+    for format in FORMATS {
+        let what = match format.material_place() {
+            MaterialPlace::Inside => "the mesh with its texture in one file",
+            MaterialPlace::Beside => "the mesh, with its material and texture in files beside it",
+            MaterialPlace::Nowhere => "the sites as a mesh, with a color for each and no texture",
+        };
+        if let Some(ending) = format.written_ending() {
+            text += &format!("\n  .{ending:<11} {what}");
+        }
+    }
+    text + "\n  .png, .exr   the texture alone"
+}
+
 impl Covered {
     /// A map of the example, as a texture of the mesh.
     fn bake(&self, map: &Map) -> Result<Map> {
@@ -151,36 +202,29 @@ impl Covered {
 
 /// Claims the output, what belongs to it, and the maps.
 fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
-    let target = args.target(mesh, args.image.format.map_or("glb", Format::ending))?;
-    let product = match target.ending().as_str() {
-        "glb" => Product::Glb,
-        "obj" => Product::Obj,
-        "ply" => Product::Ply,
-        "png" | "exr" | "npy" | "r16" => Product::Texture,
-        "" if target == Target::Stdout => Product::Glb,
-        ending => {
-            let error = usage(format!("{target}: nothing is written as {ending:?}"));
-            return Err(error.hint("let the name end in .glb, .obj, .ply, .png, .exr or .npy"));
-        }
-    };
+    let target = args.target(
+        mesh,
+        args.image.format.map_or(DEFAULT_ENDING, Format::ending),
+    )?;
+    let product = Product::of(&target)?;
     let format = match product {
         Product::Texture => Format::choose(args.image.format, &target, Format::Png16)?,
         _ => args.image.format.unwrap_or(Format::Png8),
     };
     let is_png = matches!(format, Format::Png8 | Format::Png16);
-    if !is_png && product != Product::Texture {
+    if !is_png && !matches!(product, Product::Texture) {
         return Err(usage("textures of models are PNG").hint("add --format png8 or png16"));
     }
-    if product == Product::Ply && !args.map.is_empty() {
+    if matches!(product, Product::Sites(_)) && !args.map.is_empty() {
         return Err(
             usage("a mesh of sites has colors and no further maps").hint("write .glb or .obj")
         );
     }
     let main = job.claim(&target)?;
     let mut beside = Vec::new();
-    if let (Product::Obj, Some(path)) = (product, target.path()) {
+    if let (Product::Model(format), Some(path)) = (product, target.path()) {
         // What the writer will name is known before: its files have the stem of the model.
-        for name in obj_files(path, args)? {
+        for name in names_beside(format, path, args)? {
             let output = job.claim(&Target::Path(path.with_file_name(&name)))?;
             beside.push((name, output));
         }
@@ -198,40 +242,31 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
     })
 }
 
-/// The names of the files beside an OBJ file.
-fn obj_files(path: &Path, args: &Args) -> Result<Vec<String>> {
+/// The names of the files beside that of a mesh: those of an empty mesh with as many textures.
+fn names_beside(format: &MeshFormat, path: &Path, args: &Args) -> Result<Vec<String>> {
     let mut model = Model::from(Mesh::default());
-    let pixel = encode(
-        &Map::Value(dapple::raster::Raster::filled([1, 1], 0.0)?),
-        Format::Png8,
-    )?;
-    let image = EncodedImage::new(pixel)?;
+    let image = EncodedImage::new(PNG.to_vec())?;
     model.material.base_color = Some(image.clone());
     if args.map.iter().any(|map| map.name == "normal") {
         model.material.normal = Some(image);
     }
-    let stem = stem(path);
-    let files = obj::write_files(&model, &stem)?;
-    let names = files.into_iter().map(|file| file.name);
-    Ok(names
-        .filter(|name| *name != format!("{stem}.obj"))
-        .collect())
+    let mut files = format.write(&model, &stem(path))?;
+    files.pop();
+    Ok(files.into_iter().map(|file| file.name).collect())
 }
 
 /// Bakes and writes everything.
 fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -> Result<()> {
-    if claimed.product == Product::Ply {
+    if let Product::Sites(format) = claimed.product {
         let model = site_model(&covered.synthesizer, covered.site_colors(args)?)?;
-        return job.write(claimed.main, &ply::write(&model)?);
+        return write_model(format, claimed, &model, job);
     }
     let is_deep = covered.input.base.is_deep;
     let base = ramped(
         covered.bake(&covered.input.base.map)?,
         args.image.ramp.as_ref(),
     );
-    if claimed.product == Product::Texture {
-        job.write_image(claimed.main, base, is_deep, &args.image)?;
-    } else {
+    if let Product::Model(format) = claimed.product {
         let mut model = model(args, covered, &base)?;
         for (name, loaded) in &covered.input.maps {
             if name == "normal" {
@@ -239,7 +274,9 @@ fn write(args: &Args, claimed: &Claimed, covered: &Covered, job: &mut Job<'_>) -
                 model.material.normal = Some(EncodedImage::new(encode(&normals, claimed.format)?)?);
             }
         }
-        write_model(claimed, &model, job)?;
+        write_model(format, claimed, &model, job)?;
+    } else {
+        job.write_image(claimed.main, base, is_deep, &args.image)?;
     }
     for (output, (_, loaded)) in claimed.maps.iter().zip(&covered.input.maps) {
         job.write_image(
@@ -273,11 +310,8 @@ fn model(args: &Args, covered: &Covered, base: &Map) -> Result<Model> {
     Ok(model)
 }
 
-fn write_model(claimed: &Claimed, model: &Model, job: &Job<'_>) -> Result<()> {
-    if claimed.product == Product::Glb {
-        return job.write(claimed.main, &gltf::write(model)?);
-    }
-    for file in obj::write_files(model, &claimed.stem)? {
+fn write_model(format: &MeshFormat, claimed: &Claimed, model: &Model, job: &Job<'_>) -> Result<()> {
+    for file in format.write(model, &claimed.stem)? {
         let beside = claimed.beside.iter().find(|(name, _)| *name == file.name);
         let output = beside.map_or(claimed.main, |(_, output)| *output);
         job.write(output, &file.bytes)?;

@@ -6,16 +6,15 @@ use anyhow::{Context, Result};
 use clap::Args;
 use dapple_gallery::{Own, Picture};
 use dapple_image::{Depth, Limits, read_image, write_color_png};
-use dapple_synth::mesh::HierarchyOptions;
-use dapple_synth::mesh::io::{read_model, write_model};
-use dapple_synth::{Coherence, Direction, Edges};
+use dapple_mesh_io::{read_model, write_model};
+use dapple_synth::{Coherence, Direction, Edges, HierarchyOptions};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What is put on what.
 #[derive(Debug, Args)]
 pub(crate) struct OwnArguments {
-    /// Renders a mesh of your own (OBJ, PLY, GLB, OFF) with the texture of `--exemplar`.
+    /// Renders a mesh of your own, of any format that is read, with the texture of `--exemplar`.
     #[arg(long, value_name = "FILE", requires = "exemplar")]
     pub(crate) mesh: Option<PathBuf>,
 

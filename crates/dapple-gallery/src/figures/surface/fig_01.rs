@@ -7,9 +7,11 @@ use super::textured::srgb;
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_color::LinearRgb;
+use dapple_models::{polygonize_n, solid};
 use dapple_preview::Surface;
-use dapple_synth::mesh::{Hierarchy, HierarchyOptions, polygonize_n, solid};
-use dapple_synth::{Exemplar, Options, Orientation, SurfaceTexture, Synthesizer};
+use dapple_synth::{
+    Exemplar, Hierarchy, HierarchyOptions, Options, Orientation, SurfaceTexture, Synthesizer,
+};
 use glam::DVec3;
 
 pub(super) const FIGURE: Figure = Figure {

@@ -7,8 +7,8 @@ use anyhow::{Result, ensure};
 use dapple_color::LinearRgb;
 use dapple_image::{Transfer, encode_png};
 use dapple_raster::Raster;
-use dapple_synth::mesh::{CREASE, EncodedImage, HierarchyOptions, Mesh, Model};
-use dapple_synth::{Coherence, Direction, Edges, textured_model};
+use dapple_synth::mesh::{CREASE, EncodedImage, Mesh, Model};
+use dapple_synth::{Coherence, Direction, Edges, HierarchyOptions, textured_model};
 use glam::DVec3;
 
 /// What is to be put on what, and how.

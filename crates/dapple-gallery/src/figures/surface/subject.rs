@@ -5,9 +5,10 @@ use super::stage::View;
 use super::textured::{Job, Textured};
 use anyhow::{Context, Result};
 use dapple_color::LinearRgb;
+use dapple_models::{self as models, ModelError};
 use dapple_raster::Raster;
-use dapple_synth::mesh::{HierarchyOptions, Mesh, MeshError, models};
-use dapple_synth::{Coherence, Direction};
+use dapple_synth::mesh::Mesh;
+use dapple_synth::{Coherence, Direction, HierarchyOptions};
 use glam::DVec3;
 
 /// The size of a figure from which on a subject has as many sites as the paper's: that of the page.
@@ -23,7 +24,7 @@ const TEXELS: u32 = 4;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Subject {
     pub(crate) name: &'static str,
-    pub(crate) model: fn(n_triangles: usize) -> Result<Mesh, MeshError>,
+    pub(crate) model: fn(n_triangles: usize) -> Result<Mesh, ModelError>,
     /// The name of the exemplar.
     exemplar: &'static str,
     /// Sites of the finest level at full size, and levels: those of table 1.

@@ -4,8 +4,10 @@ use anyhow::Result;
 use dapple_color::LinearRgb;
 use dapple_preview::Surface;
 use dapple_raster::{Raster, Wrap};
-use dapple_synth::mesh::{self, HierarchyOptions, Mesh};
-use dapple_synth::{Atlas, Coherence, Direction, Edges, Exemplar, Options, Synthesizer, bake};
+use dapple_synth::mesh::{self, Mesh};
+use dapple_synth::{
+    Atlas, Coherence, Direction, Edges, Exemplar, HierarchyOptions, Options, Synthesizer, bake,
+};
 use glam::DVec2;
 
 /// What is to be made.

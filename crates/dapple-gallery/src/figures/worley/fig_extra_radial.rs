@@ -9,7 +9,7 @@ use super::photo;
 use crate::figure::source;
 use crate::{Figure, Panel};
 use dapple_color::LinearRgb;
-use dapple_mesh::solid::rotation;
+use dapple_mesh::rotation;
 use dapple_preview::{Camera, Light, Material, Object, Scene, Shape, Surface, Transform};
 use dapple_worley::{Combination, Metric, Profile, Radial, RadialCells, Worley3, hash::Seed};
 use glam::DVec3;

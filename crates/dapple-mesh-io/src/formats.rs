@@ -1,0 +1,186 @@
+//! The table of formats: one line for each, from which reading and writing by path, errors and help texts are made.
+//!
+//! A format is a file of this folder with a [`MeshFormat`]; adding one takes that file and two lines here.
+
+#[cfg(feature = "gltf")]
+pub mod gltf;
+pub mod obj;
+pub mod off;
+pub mod ply;
+
+use crate::MeshIoError;
+use dapple_mesh::Model;
+use std::path::Path;
+
+/// All formats, in the order in which texts list them.
+pub const FORMATS: &[MeshFormat] = &[
+    obj::OBJ,
+    ply::PLY,
+    #[cfg(feature = "gltf")]
+    gltf::GLTF,
+    off::OFF,
+];
+
+/// A format of mesh files.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshFormat {
+    name: &'static str,
+    /// Without the dot, in lower case.
+    endings: &'static [&'static str],
+    read: fn(&[u8], &mut Beside<'_>) -> Result<Model, MeshIoError>,
+    writer: Option<Writer>,
+}
+
+/// How a format is written.
+#[derive(Clone, Copy, Debug)]
+struct Writer {
+    /// One of the endings of the format.
+    ending: &'static str,
+    material: MaterialPlace,
+    /// Makes the files, the main one last.
+    files: fn(&Model, &str) -> Result<Vec<NamedFile>, MeshIoError>,
+}
+
+/// Where a writer puts the material of a model, with its textures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MaterialPlace {
+    /// It is left out; colors of vertices are written.
+    Nowhere,
+    /// In the file of the mesh.
+    Inside,
+    /// In files of their own beside the mesh.
+    Beside,
+}
+
+/// A lookup of the content of another file by the name that a file has for it; `None` if there is no such file.
+///
+/// Readers of formats that are spread over several files take one. A name is as in the file, with slashes and without
+/// percent codes; it may try to lead anywhere, so a caller that opens files has to check it first.
+pub type Beside<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
+
+/// The name and the content of a file that is not written yet.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedFile {
+    /// The name, without a folder.
+    pub name: String,
+    /// The content.
+    pub bytes: Vec<u8>,
+}
+
+impl MeshFormat {
+    /// The format that has the ending of a path, in lower or upper case.
+    #[must_use]
+    pub fn of_path(path: impl AsRef<Path>) -> Option<&'static Self> {
+        let ending = ending(path.as_ref());
+        let mut formats = FORMATS.iter();
+        formats.find(|format| format.endings.contains(&ending.as_str()))
+    }
+
+    /// The name of the format, such as `glTF`.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// The endings of the names of files that are read, without the dot and in lower case.
+    #[must_use]
+    pub fn endings(&self) -> &'static [&'static str] {
+        self.endings
+    }
+
+    /// The ending of the names of files that are written; `None` if the format is only read.
+    #[must_use]
+    pub fn written_ending(&self) -> Option<&'static str> {
+        self.writer.map(|writer| writer.ending)
+    }
+
+    /// Where the material goes, with its textures, when a model is written.
+    #[must_use]
+    pub fn material_place(&self) -> MaterialPlace {
+        self.writer
+            .map_or(MaterialPlace::Nowhere, |writer| writer.material)
+    }
+
+    /// Reads a file from its bytes, and files that it names through `beside`.
+    ///
+    /// # Errors
+    ///
+    /// What the function `read` of the module of the format refuses.
+    pub fn read(&self, bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
+        (self.read)(bytes, beside)
+    }
+
+    /// The files of a model, named after `stem`: the one to open is the last, and those that it names come before it.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshIoErrorKind::Format`](crate::MeshIoErrorKind::Format) if the format is only read; and what the function
+    /// `write` of the module of the format refuses.
+    pub fn write(&self, model: &Model, stem: &str) -> Result<Vec<NamedFile>, MeshIoError> {
+        let Some(writer) = self.writer else {
+            return Err(crate::files::unwritable(self.endings[0].to_owned()));
+        };
+        (writer.files)(model, stem)
+    }
+}
+
+/// The endings of all files that can be read, in the order of [`FORMATS`].
+pub fn readable_endings() -> impl Iterator<Item = &'static str> {
+    FORMATS.iter().flat_map(|format| format.endings).copied()
+}
+
+/// The endings of all files that can be written, in the order of [`FORMATS`].
+pub fn writable_endings() -> impl Iterator<Item = &'static str> {
+    FORMATS.iter().filter_map(MeshFormat::written_ending)
+}
+
+/// The ending of a path in lower case, without the dot; empty where there is none.
+pub(crate) fn ending(path: &Path) -> String {
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    ending.to_ascii_lowercase()
+}
+
+/// The only file of a format that needs no other.
+fn alone(stem: &str, ending: &str, bytes: Vec<u8>) -> Vec<NamedFile> {
+    let name = format!("{stem}.{ending}");
+    vec![NamedFile { name, bytes }]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_formats_share_an_ending_and_what_is_written_can_be_read() {
+        let mut endings: Vec<_> = readable_endings().collect();
+        for format in FORMATS {
+            for ending in format.endings() {
+                let path = format!("a.b.{}", ending.to_uppercase());
+                let found = MeshFormat::of_path(path).expect("its own ending");
+                assert_eq!(found.name(), format.name());
+            }
+            let written = format.written_ending();
+            let is_read = written.is_none_or(|ending| format.endings().contains(&ending));
+            assert!(is_read, "{} cannot read what it writes", format.name());
+        }
+        endings.sort_unstable();
+        let n_endings = endings.len();
+        endings.dedup();
+        assert_eq!(endings.len(), n_endings, "an ending has two formats");
+    }
+
+    #[test]
+    fn a_format_without_a_writer_refuses_to_write() {
+        let error = off::OFF
+            .write(&Model::default(), "a")
+            .expect_err("only read");
+        let written: Vec<_> = writable_endings().collect();
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "no mesh format is named `off`; there are {} to write",
+                written.join(", ")
+            )
+        );
+    }
+}

@@ -1,0 +1,201 @@
+//! glTF 2.0: reading glTF and GLB, and writing GLB.
+//!
+//! Reference: The Khronos Group, *glTF 2.0 Specification*, 2021 (ISO/IEC 12113:2022).
+//!
+//! All triangles of the default scene become one mesh, with the transforms of their nodes applied; without a scene all
+//! nodes count, and each of the copies that `EXT_mesh_gpu_instancing` makes of their meshes. Triangle strips and fans
+//! become triangles, point primitives only vertices; lines, skins, morph targets and animations are left out. Primitives
+//! of one node with the same attributes share their vertices. Where only some primitives have colors or texture
+//! coordinates, the others become white and zero; normals are kept only if all have them. The material is the first that
+//! a primitive has. Textures are taken as they are if they are PNG or JPEG and use the same texture coordinates as the
+//! base color; their samplers and transforms are left out, as is everything that [`Material`] does not have.
+//!
+//! At a seam of the texture a glTF file has two vertices at one position; [`Mesh::repair`](dapple_mesh::Mesh::repair)
+//! makes one of them. Texture coordinates belong to corners and do not mind; [`Repair::face_before`](dapple_mesh::Repair)
+//! says whose they are.
+//!
+//! The reader is ours since the crate `gltf` panics at files that pass its validation (a test shows one), does not know
+//! of copies, and reads no data URIs without an image library; tests use it as a second reader of what is written here.
+
+mod accessor;
+mod container;
+mod document;
+mod scene;
+mod transform;
+mod write;
+
+#[cfg(test)]
+mod tests;
+
+pub use write::write;
+
+use super::{Beside, MaterialPlace, MeshFormat, Writer, alone};
+use crate::{MeshIoError, MeshIoErrorKind};
+use container::{Container, percent_decoded};
+use dapple_color::LinearRgba;
+use dapple_mesh::{EncodedImage, Material, Model};
+use document::{Document, Head, TextureInfo};
+use serde::Deserialize;
+use std::borrow::Cow;
+
+const FORMAT: &str = "glTF";
+
+/// The line of the table of formats.
+pub(super) const GLTF: MeshFormat = MeshFormat {
+    name: FORMAT,
+    endings: &["glb", "gltf"],
+    read: read_with,
+    writer: Some(Writer {
+        ending: "glb",
+        material: MaterialPlace::Inside,
+        files: |model, stem| Ok(alone(stem, "glb", write(model)?)),
+    }),
+};
+
+/// Extensions that a file may require: copies of meshes are made, and the others change nothing here, or only the types
+/// of accessors, which are all read.
+const EXTENSIONS: [&str; 5] = [
+    "EXT_mesh_gpu_instancing",
+    "KHR_mesh_quantization",
+    "KHR_materials_unlit",
+    "KHR_materials_emissive_strength",
+    "KHR_lights_punctual",
+];
+
+/// A file with its buffers.
+struct Source<'a> {
+    document: Document,
+    buffers: Vec<Cow<'a, [u8]>>,
+}
+
+/// Reads a GLB file, or a glTF file that needs no other file.
+///
+/// # Errors
+///
+/// [`MeshIoErrorKind::File`] if the bytes are not a glTF file, or it requires another file;
+/// [`MeshIoErrorKind::Unsupported`] if its version is not 2, or it requires an extension; and what
+/// [`Mesh::new`](dapple_mesh::Mesh::new) and [`Model::check`] refuse.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_mesh::{Mesh, Model, glam::DVec3};
+/// use dapple_mesh_io::gltf;
+///
+/// let mesh = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]])?;
+/// let bytes = gltf::write(&Model::from(mesh.clone()))?;
+/// assert_eq!(gltf::read(&bytes)?.mesh, mesh);
+/// # Ok::<(), dapple_mesh_io::MeshIoError>(())
+/// ```
+pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
+    read_with(bytes, &mut |_| None)
+}
+
+/// Reads a glTF or GLB file, and its buffers and textures through `beside`.
+///
+/// # Errors
+///
+/// Those of [`read`]. A missing texture is no error.
+pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
+    let container = Container::read(bytes)?;
+    // Other versions have other types in the same places, so that this has to be asked first.
+    let Head { asset } = parse(container.json)?;
+    if !asset.version.starts_with("2.") {
+        return Err(unsupported(format!("glTF {}", asset.version)));
+    }
+    let document: Document = parse(container.json)?;
+    let unknown = |name: &&String| !EXTENSIONS.contains(&name.as_str());
+    if let Some(name) = document.extensions_required.iter().find(unknown) {
+        return Err(unsupported(format!("the glTF extension {name}")));
+    }
+    let buffers = container.buffers(&document, beside)?;
+    let source = Source { document, buffers };
+    let n_bytes = bytes.len()
+        + source
+            .buffers
+            .iter()
+            .map(|buffer| buffer.len())
+            .sum::<usize>();
+    let (mut model, material) = scene::read(&source, n_bytes)?;
+    if let Some(material) = material {
+        model.material = source.material(material, beside);
+    }
+    model.check()?;
+    Ok(model)
+}
+
+fn parse<'a, T: Deserialize<'a>>(json: &'a [u8]) -> Result<T, MeshIoError> {
+    serde_json::from_slice(json).map_err(|error| wrong(error.to_string()))
+}
+
+fn unsupported(feature: String) -> MeshIoError {
+    MeshIoError::new(MeshIoErrorKind::Unsupported { feature })
+}
+
+fn wrong(why: impl Into<String>) -> MeshIoError {
+    MeshIoError::file(FORMAT, why)
+}
+
+impl Source<'_> {
+    /// The bytes of a buffer view.
+    fn view(&self, index: usize) -> Result<&[u8], MeshIoError> {
+        let view = self.document.buffer_views.get(index);
+        let bytes = view.and_then(|view| {
+            let end = view.byte_offset.checked_add(view.byte_length)?;
+            self.buffers.get(view.buffer)?.get(view.byte_offset..end)
+        });
+        bytes.ok_or_else(|| wrong(format!("there are no bytes for buffer view {index}")))
+    }
+
+    /// The material of a number; the default if there is none.
+    fn material(&self, index: usize, beside: &mut Beside<'_>) -> Material {
+        let Some(material) = self.document.materials.get(index) else {
+            return Material::default();
+        };
+        let pbr = material.pbr_metallic_roughness.as_deref();
+        let factor = pbr.and_then(|pbr| pbr.base_color_factor);
+        let uvs = self.uvs_of_material(index);
+        let mut image = |info: Option<TextureInfo>| {
+            let info = info.filter(|info| info.tex_coord == uvs)?;
+            self.image(info.index, beside)
+        };
+        Material {
+            base_color_factor: factor.map_or(
+                Material::default().base_color_factor,
+                |[r, g, b, alpha]| {
+                    let color = [r, g, b].into();
+                    LinearRgba { color, alpha }
+                },
+            ),
+            base_color: image(pbr.and_then(|pbr| pbr.base_color_texture)),
+            normal: image(material.normal_texture),
+            metallic_roughness: image(pbr.and_then(|pbr| pbr.metallic_roughness_texture)),
+            occlusion: image(material.occlusion_texture),
+            double_sided: material.double_sided,
+            ..Material::default()
+        }
+    }
+
+    /// Which set of texture coordinates the textures of a material use: that of the base color, else of the normals.
+    fn uvs_of_material(&self, index: usize) -> u32 {
+        let material = self.document.materials.get(index);
+        let pbr = material.and_then(|material| material.pbr_metallic_roughness.as_deref());
+        let info = pbr
+            .and_then(|pbr| pbr.base_color_texture)
+            .or(material.and_then(|material| material.normal_texture))
+            .or(pbr.and_then(|pbr| pbr.metallic_roughness_texture));
+        info.map_or(0, |info| info.tex_coord)
+    }
+
+    /// The image of a texture, if there is one that is PNG or JPEG.
+    fn image(&self, texture: usize, beside: &mut Beside<'_>) -> Option<EncodedImage> {
+        let image = self.document.textures.get(texture)?.source?;
+        let image = self.document.images.get(image)?;
+        let bytes = match (&image.uri, image.buffer_view) {
+            (Some(uri), _) if uri.starts_with("data:") => container::data(uri)?,
+            (Some(uri), _) => beside(&percent_decoded(uri))?,
+            (None, view) => self.view(view?).ok()?.to_vec(),
+        };
+        EncodedImage::new(bytes).ok()
+    }
+}

@@ -1,0 +1,125 @@
+//! The containers of glTF: a GLB file with its chunks, buffers, and data URIs.
+
+use super::document::Document;
+use super::{unsupported, wrong};
+use crate::Beside;
+use crate::MeshIoError;
+use std::borrow::Cow;
+
+/// The first bytes of a GLB file.
+pub(super) const MAGIC: &[u8; 4] = b"glTF";
+/// The type of the first chunk.
+pub(super) const JSON: &[u8; 4] = b"JSON";
+/// The type of the second chunk.
+pub(super) const BIN: &[u8; 4] = b"BIN\0";
+
+pub(super) struct Container<'a> {
+    pub(super) json: &'a [u8],
+    bin: Option<&'a [u8]>,
+}
+
+impl<'a> Container<'a> {
+    /// Takes a GLB file apart; anything else is taken for JSON.
+    pub(super) fn read(bytes: &'a [u8]) -> Result<Self, MeshIoError> {
+        if !bytes.starts_with(MAGIC) {
+            let json = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+            return Ok(Self { json, bin: None });
+        }
+        let (version, length) = (word(bytes, 4), word(bytes, 8));
+        if let Some(version) = version.filter(|&version| version != 2) {
+            return Err(unsupported(format!("version {version} of binary glTF")));
+        }
+        let bytes = length.and_then(|length| bytes.get(12..length));
+        let bytes = bytes.ok_or_else(|| wrong("it is shorter than it says"))?;
+        let (kind, json, rest) = chunk(bytes).ok_or_else(|| wrong("its first chunk is cut off"))?;
+        if kind != *JSON {
+            return Err(wrong("its first chunk is not JSON"));
+        }
+        let bin = chunk(rest)
+            .filter(|(kind, ..)| *kind == *BIN)
+            .map(|(_, bin, _)| bin);
+        Ok(Self { json, bin })
+    }
+
+    /// The bytes of all buffers.
+    pub(super) fn buffers(
+        &self,
+        document: &Document,
+        beside: &mut Beside<'_>,
+    ) -> Result<Vec<Cow<'a, [u8]>>, MeshIoError> {
+        let mut buffers = Vec::new();
+        for (i, buffer) in document.buffers.iter().enumerate() {
+            let bytes = match &buffer.uri {
+                None if i == 0 => self.bin.map(Cow::Borrowed),
+                None => None,
+                Some(uri) if uri.starts_with("data:") => data(uri).map(Cow::Owned),
+                Some(uri) => beside(&percent_decoded(uri)).map(Cow::Owned),
+            };
+            let whole = bytes.filter(|bytes| bytes.len() >= buffer.byte_length);
+            buffers
+                .push(whole.ok_or_else(|| wrong(format!("the bytes of buffer {i} are missing")))?);
+        }
+        Ok(buffers)
+    }
+}
+
+/// The type and content of the first chunk, and what follows it.
+fn chunk(bytes: &[u8]) -> Option<([u8; 4], &[u8], &[u8])> {
+    let length = word(bytes, 0)?;
+    let kind = bytes.get(4..8)?.try_into().ok()?;
+    let (content, rest) = bytes.get(8..)?.split_at_checked(length)?;
+    Some((kind, content, rest))
+}
+
+fn word(bytes: &[u8], at: usize) -> Option<usize> {
+    let bytes = bytes.get(at..at + 4)?.try_into().ok()?;
+    usize::try_from(u32::from_le_bytes(bytes)).ok()
+}
+
+/// The bytes in a data URI, if it has them in base64.
+pub(super) fn data(uri: &str) -> Option<Vec<u8>> {
+    let (head, text) = uri.split_once(',')?;
+    head.ends_with(";base64").then_some(())?;
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut bits, mut n_bits) = (0u32, 0);
+    for digit in text.trim_end_matches('=').bytes() {
+        let digit = match digit {
+            b'A'..=b'Z' => digit - b'A',
+            b'a'..=b'z' => digit - b'a' + 26,
+            b'0'..=b'9' => digit - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => return None,
+        };
+        bits = bits << 6 | u32::from(digit);
+        n_bits += 6;
+        if n_bits >= 8 {
+            n_bits -= 8;
+            bytes.push((bits >> n_bits) as u8);
+        }
+    }
+    Some(bytes)
+}
+
+/// The name that a URI has, without its percent codes.
+pub(super) fn percent_decoded(uri: &str) -> String {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let Some((&byte, tail)) = rest.split_first() {
+        let digits = tail
+            .get(..2)
+            .and_then(|digits| core::str::from_utf8(digits).ok());
+        let code = digits.and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        match code {
+            Some(code) if byte == b'%' => {
+                bytes.push(code);
+                rest = &tail[2..];
+            }
+            _ => {
+                bytes.push(byte);
+                rest = tail;
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}

@@ -1,0 +1,309 @@
+//! The scene of a glTF file as one mesh.
+
+use super::accessor::{Budget, Column};
+use super::document::{Instancing, Primitive};
+use super::transform::{cofactors, local, trs};
+use super::{Source, wrong};
+use crate::MeshIoError;
+use crate::polygon::{fan, strip};
+use dapple_color::{LinearRgb, LinearRgba};
+use dapple_mesh::{Mesh, Model};
+use glam::{DMat3, DMat4, DVec2, DVec3};
+use std::collections::BTreeMap;
+
+/// The accessors of positions, normals, colors and texture coordinates.
+type Attributes = [Option<usize>; 4];
+
+struct Draft<'a> {
+    source: &'a Source<'a>,
+    budget: Budget,
+    positions: Vec<DVec3>,
+    /// One for each position, as long as all primitives have them.
+    normals: Vec<DVec3>,
+    /// One for each position up to the last that has one, as of texture coordinates.
+    colors: Vec<LinearRgba>,
+    uvs: Vec<DVec2>,
+    faces: Vec<[u32; 3]>,
+    material: Option<usize>,
+}
+
+/// The model without its material, and the number of that. The file has `n_bytes` bytes, with its buffers.
+pub(super) fn read(
+    source: &Source<'_>,
+    n_bytes: usize,
+) -> Result<(Model, Option<usize>), MeshIoError> {
+    let mut draft = Draft {
+        source,
+        budget: Budget::new(n_bytes),
+        positions: Vec::new(),
+        normals: Vec::new(),
+        colors: Vec::new(),
+        uvs: Vec::new(),
+        faces: Vec::new(),
+        material: None,
+    };
+    let nodes = &source.document.nodes;
+    let mut seen = vec![false; nodes.len()];
+    let mut open: Vec<_> = roots(source)?
+        .into_iter()
+        .rev()
+        .map(|root| (root, DMat4::IDENTITY))
+        .collect();
+    while let Some((index, parent)) = open.pop() {
+        let node = nodes
+            .get(index)
+            .ok_or_else(|| wrong(format!("there is no node {index}")))?;
+        // Nodes are trees, so that none is met twice.
+        if core::mem::replace(&mut seen[index], true) {
+            return Err(wrong(format!("node {index} has two parents")));
+        }
+        let transform = parent * local(node);
+        open.extend(node.children.iter().rev().map(|&child| (child, transform)));
+        let Some(mesh) = node.mesh else {
+            continue;
+        };
+        let extensions = node.extensions.as_deref();
+        match extensions.and_then(|extensions| extensions.instancing.as_ref()) {
+            None => draft.add_mesh(mesh, transform)?,
+            Some(instancing) => {
+                for copy in draft.copies(instancing)? {
+                    draft.add_mesh(mesh, transform * copy)?;
+                }
+            }
+        }
+    }
+    draft.into_model()
+}
+
+/// The roots of the default scene; without scenes, all nodes that are no node's child.
+fn roots(source: &Source<'_>) -> Result<Vec<usize>, MeshIoError> {
+    let document = &source.document;
+    if document.scene.is_none() && document.scenes.is_empty() {
+        let mut root = vec![true; document.nodes.len()];
+        for &child in document.nodes.iter().flat_map(|node| &node.children) {
+            if let Some(root) = root.get_mut(child) {
+                *root = false;
+            }
+        }
+        return Ok((0..root.len()).filter(|&node| root[node]).collect());
+    }
+    let scene = document.scene.unwrap_or(0);
+    let scene = document
+        .scenes
+        .get(scene)
+        .ok_or_else(|| wrong(format!("there is no scene {scene}")))?;
+    Ok(scene.nodes.clone())
+}
+
+impl Draft<'_> {
+    /// The transforms of the copies of a mesh.
+    fn copies(
+        &mut self,
+        instancing: &Instancing,
+    ) -> Result<impl Iterator<Item = DMat4> + use<>, MeshIoError> {
+        let mut column = |name: &str, width: usize| {
+            let accessor = instancing.attributes.get(name).copied();
+            self.column(accessor, width..=width, false)
+        };
+        let translations = column("TRANSLATION", 3)?;
+        let rotations = column("ROTATION", 4)?;
+        let scales = column("SCALE", 3)?;
+        let count = |column: &Column| column.values.len() / column.width;
+        let columns = [&translations, &rotations, &scales];
+        let counts: Vec<_> = columns.into_iter().flatten().map(count).collect();
+        let Some(&n_copies) = counts.first() else {
+            return Err(wrong("instances have no translation, rotation or scale"));
+        };
+        if counts.iter().any(|&count| count != n_copies) {
+            return Err(wrong("attributes of instances have different counts"));
+        }
+        Ok((0..n_copies).map(move |i| {
+            let (translation, scale) = (element(&translations, i), element(&scales, i));
+            trs(translation, element(&rotations, i), scale)
+        }))
+    }
+
+    fn add_mesh(&mut self, index: usize, transform: DMat4) -> Result<(), MeshIoError> {
+        let mesh = self.source.document.meshes.get(index);
+        let mesh = mesh.ok_or_else(|| wrong(format!("there is no mesh {index}")))?;
+        let turned = DMat3::from_mat4(transform).determinant() < 0.0;
+        // Where the vertices of some attributes begin.
+        let mut known = BTreeMap::new();
+        for primitive in &mesh.primitives {
+            self.budget.take(1)?;
+            let mode = primitive.mode.unwrap_or(4);
+            if !matches!(mode, 0 | 4..=6) {
+                continue;
+            }
+            let attributes = self.attributes(primitive);
+            let Some(positions) = attributes[0] else {
+                continue;
+            };
+            let n_vertices = self.source.count(positions)?;
+            let first = match known.get(&attributes) {
+                Some(&first) => first,
+                None => self.add_vertices(attributes, transform)?,
+            };
+            known.insert(attributes, first);
+            self.material = self.material.or(primitive.material);
+            if mode != 0 {
+                self.add_faces(primitive, first, n_vertices, turned)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn attributes(&self, primitive: &Primitive) -> Attributes {
+        let set = primitive
+            .material
+            .map_or(0, |material| self.source.uvs_of_material(material));
+        let attribute = |name: &str| primitive.attributes.get(name).copied();
+        let uvs = attribute(&format!("TEXCOORD_{set}"));
+        [
+            attribute("POSITION"),
+            attribute("NORMAL"),
+            attribute("COLOR_0"),
+            uvs,
+        ]
+    }
+
+    /// Adds the vertices of attributes, and gives the number of the first.
+    fn add_vertices(
+        &mut self,
+        attributes: Attributes,
+        transform: DMat4,
+    ) -> Result<u32, MeshIoError> {
+        let [positions, normals, colors, uvs] = attributes;
+        let first = self.positions.len();
+        let whole = self.normals.len() == first;
+        if let Some(positions) = self.column(positions, 3..=3, false)? {
+            let vectors = positions.values.chunks_exact(3).map(DVec3::from_slice);
+            // Without a transform all bits stay, also the sign of zero.
+            if transform == DMat4::IDENTITY {
+                self.positions.extend(vectors);
+            } else {
+                self.positions
+                    .extend(vectors.map(|position| transform.transform_point3(position)));
+            }
+        }
+        let end = self.positions.len();
+        if let Some(normals) = self.column(normals, 3..=3, true)?.filter(|_| whole) {
+            let vectors = normals.values.chunks_exact(3).map(DVec3::from_slice);
+            if transform == DMat4::IDENTITY {
+                self.normals.extend(vectors);
+            } else {
+                let cofactors = cofactors(transform);
+                self.normals
+                    .extend(vectors.map(|normal| (cofactors * normal).normalize_or_zero()));
+            }
+        }
+        if let Some(colors) = self.column(colors, 3..=4, true)? {
+            self.colors
+                .resize(first, LinearRgba::opaque(LinearRgb::WHITE));
+            self.colors
+                .extend(colors.values.chunks_exact(colors.width).map(color));
+        }
+        if let Some(uvs) = self.column(uvs, 2..=2, true)? {
+            self.uvs.resize(first, DVec2::ZERO);
+            self.uvs
+                .extend(uvs.values.chunks_exact(2).map(DVec2::from_slice));
+        }
+        // A longer column would run into the vertices of the next primitive.
+        if [self.normals.len(), self.colors.len(), self.uvs.len()]
+            .into_iter()
+            .any(|n| n > first && n != end)
+        {
+            return Err(wrong("attributes of a primitive have different counts"));
+        }
+        // All numbers of vertices fit if the last does.
+        let fits = u32::try_from(end).is_ok();
+        let first = u32::try_from(first).ok().filter(|_| fits);
+        first.ok_or_else(|| wrong("there are too many vertices"))
+    }
+
+    /// The numbers of an attribute, if a primitive has it.
+    fn column(
+        &mut self,
+        accessor: Option<usize>,
+        widths: core::ops::RangeInclusive<usize>,
+        fractions: bool,
+    ) -> Result<Option<Column>, MeshIoError> {
+        let Some(accessor) = accessor else {
+            return Ok(None);
+        };
+        let column = self.source.column(accessor, fractions, &mut self.budget)?;
+        if !widths.contains(&column.width) {
+            return Err(wrong(format!(
+                "accessor {accessor} has {} numbers in each element",
+                column.width
+            )));
+        }
+        Ok(Some(column))
+    }
+
+    fn add_faces(
+        &mut self,
+        primitive: &Primitive,
+        first: u32,
+        n_vertices: usize,
+        turned: bool,
+    ) -> Result<(), MeshIoError> {
+        let indices = match primitive.indices {
+            Some(accessor) => self.source.indices(accessor, &mut self.budget)?,
+            None => {
+                self.budget.take(n_vertices)?;
+                (0..n_vertices as u32).collect()
+            }
+        };
+        if let Some(index) = indices.iter().find(|&&index| index as usize >= n_vertices) {
+            return Err(wrong(format!(
+                "an index is {index}, but there are {n_vertices} vertices"
+            )));
+        }
+        // In strips and fans an index is for three corners.
+        self.budget.take(indices.len().saturating_mul(3))?;
+        let mut add = |[a, b, c]: [u32; 3]| {
+            let [b, c] = if turned { [c, b] } else { [b, c] };
+            self.faces.push([a, b, c].map(|index| first + index));
+        };
+        match primitive.mode {
+            Some(5) => strip(&indices).for_each(&mut add),
+            Some(6) => fan(&indices).for_each(&mut add),
+            _ => indices.as_chunks().0.iter().copied().for_each(&mut add),
+        }
+        Ok(())
+    }
+
+    fn into_model(mut self) -> Result<(Model, Option<usize>), MeshIoError> {
+        let count = self.positions.len();
+        let mut model = Model::from(Mesh::new(self.positions, &self.faces)?);
+        if count > 0 && self.normals.len() == count {
+            model.normals = Some(self.normals);
+        }
+        if !self.colors.is_empty() {
+            self.colors
+                .resize(count, LinearRgba::opaque(LinearRgb::WHITE));
+            model.colors = Some(self.colors);
+        }
+        if !self.uvs.is_empty() {
+            self.uvs.resize(count, DVec2::ZERO);
+            let face = |face: &[u32; 3]| face.map(|vertex| self.uvs[vertex as usize]);
+            model.uvs = Some(self.faces.iter().map(face).collect());
+        }
+        Ok((model, self.material))
+    }
+}
+
+/// The numbers of an element, if there is such a column.
+fn element<const N: usize>(column: &Option<Column>, index: usize) -> Option<[f64; N]> {
+    let (elements, _) = column.as_ref()?.values.as_chunks();
+    elements.get(index).copied()
+}
+
+fn color(parts: &[f64]) -> LinearRgba {
+    let part = |i: usize| parts.get(i).map_or(1.0, |&part| part as f32);
+    LinearRgba {
+        color: LinearRgb::new(part(0), part(1), part(2)),
+        alpha: part(3),
+    }
+}

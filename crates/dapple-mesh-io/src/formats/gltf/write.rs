@@ -1,0 +1,322 @@
+//! Writing GLB.
+
+use super::container::{BIN, JSON, MAGIC};
+use crate::split::with_vertex_normals;
+use crate::{MeshIoError, MeshIoErrorKind};
+use dapple_color::LinearRgba;
+use dapple_mesh::{EncodedImage, Mesh, Model};
+use glam::DVec3;
+use serde_json::{Map, Value, json};
+
+const FLOAT: u32 = 5126;
+const UNSIGNED_INT: u32 = 5125;
+/// The target of a buffer view of attributes.
+const ARRAY_BUFFER: u32 = 34962;
+/// The target of a buffer view of indices.
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+/// The filter that blends between texels, for magnification, and for minification without a mipmap.
+const LINEAR: u32 = 9729;
+/// The filter for minification that blends between levels of a mipmap.
+const LINEAR_MIPMAP_LINEAR: u32 = 9987;
+/// The texture goes on past its edges as a tile.
+const REPEAT: u32 = 10497;
+
+/// The largest number that is written, so that rounding leads to none that [`Model::check`] refuses.
+const PART_MAX: f32 = 1e30f32.next_down();
+
+/// The binary chunk with what describes it.
+#[derive(Default)]
+struct Bin {
+    bytes: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    images: Vec<Value>,
+}
+
+/// The vertices of a file: one of the mesh is several where its corners have different texture coordinates.
+struct Split {
+    /// The vertex of the mesh that each is; the first are those of the mesh.
+    vertex: Vec<usize>,
+    uvs: Vec<[f32; 2]>,
+    faces: Vec<[u32; 3]>,
+}
+
+/// The model as a GLB file.
+///
+/// Numbers are rounded to `f32`. Vertices keep their numbers; where corners have different texture coordinates or
+/// normals, further vertices follow. Faces have the normals of the model, of unit length, or else those of
+/// [`Mesh::vertex_normals`](dapple_mesh::Mesh::vertex_normals); +z stands for a zero, which glTF does not have. Colors are
+/// clamped to 0 to 1. Without texture coordinates, textures are left out. The material is rough and not metallic where
+/// no texture says otherwise; it has two sides if it says so or the mesh is open, and blends if its base color factor is
+/// not opaque. Samplers of textures that may not be shown by mipmaps have a minification filter without one: how many
+/// levels there are is up to who shows them, and all are asked for by any other.
+/// A model without faces becomes a cloud of points, and one without vertices an empty scene.
+///
+/// # Errors
+///
+/// What [`Model::check`] refuses; [`MeshIoErrorKind::Size`] if the file would have 2^32 bytes or more.
+pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
+    model.check()?;
+    let mut bin = Bin::default();
+    let mut document = json!({
+        "asset": { "version": "2.0", "generator": "dapple" },
+        "scene": 0,
+        "scenes": [{}],
+    });
+    if !model.mesh.positions().is_empty() {
+        let primitive = primitive(&*with_vertex_normals(model)?, &mut bin);
+        document["scenes"] = json!([{ "nodes": [0] }]);
+        document["nodes"] = json!([{ "mesh": 0 }]);
+        document["meshes"] = json!([{ "primitives": [primitive] }]);
+        document["materials"] = json!([material(model, &mut bin)]);
+        document["accessors"] = bin.accessors.into();
+        document["bufferViews"] = bin.views.into();
+        document["buffers"] = json!([{ "byteLength": bin.bytes.len() }]);
+    }
+    if !bin.images.is_empty() {
+        let min_filter = if model.material.mipmaps {
+            LINEAR_MIPMAP_LINEAR
+        } else {
+            LINEAR
+        };
+        let texture = |source: usize| json!({ "sampler": 0, "source": source });
+        document["textures"] = (0..bin.images.len()).map(texture).collect();
+        document["samplers"] = json!([{ "minFilter": min_filter, "magFilter": LINEAR, "wrapS": REPEAT, "wrapT": REPEAT }]);
+        document["images"] = bin.images.into();
+    }
+    container(document.to_string().into_bytes(), bin.bytes)
+}
+
+/// Adds the columns of a model without normals of corners, and gives the primitive that names them.
+fn primitive(model: &Model, bin: &mut Bin) -> Value {
+    let mesh = &model.mesh;
+    let split = Split::new(model);
+    let spread = |vectors: &[DVec3]| -> Vec<[f32; 3]> {
+        let part = |&vertex: &usize| vectors[vertex].to_array().map(narrow);
+        split.vertex.iter().map(part).collect()
+    };
+    let positions = spread(mesh.positions());
+    let mut attributes = Map::new();
+    attributes.insert("POSITION".into(), bin.floats(&positions).into());
+    let last = bin.accessors.len() - 1;
+    bin.accessors[last]["min"] = json!(bound(&positions, f32::min));
+    bin.accessors[last]["max"] = json!(bound(&positions, f32::max));
+    let computed = || (!mesh.faces().is_empty()).then(|| mesh.vertex_normals());
+    if let Some(mut normals) = model.normals.clone().or_else(computed) {
+        normals
+            .iter_mut()
+            .for_each(|normal| *normal = unit(*normal));
+        attributes.insert("NORMAL".into(), bin.floats(&spread(&normals)).into());
+    }
+    if let Some(colors) = &model.colors {
+        let colors: Vec<_> = split
+            .vertex
+            .iter()
+            .map(|&vertex| clamped(colors[vertex]))
+            .collect();
+        attributes.insert("COLOR_0".into(), bin.floats(&colors).into());
+    }
+    if model.uvs.is_some() {
+        attributes.insert("TEXCOORD_0".into(), bin.floats(&split.uvs).into());
+    }
+    if split.faces.is_empty() {
+        return json!({ "attributes": attributes, "material": 0, "mode": 0 });
+    }
+    let indices = bin.indices(&split.faces);
+    json!({ "attributes": attributes, "indices": indices, "material": 0 })
+}
+
+fn material(model: &Model, bin: &mut Bin) -> Value {
+    let material = &model.material;
+    let mut texture = |image: &Option<EncodedImage>| {
+        let image = image.as_ref().filter(|_| model.uvs.is_some())?;
+        Some(json!({ "index": bin.image(image) }))
+    };
+    let metallic_roughness = texture(&material.metallic_roughness);
+    // Without a texture, the default of glTF would be metal.
+    let metallic = if metallic_roughness.is_some() {
+        1.0
+    } else {
+        0.0
+    };
+    let mut pbr = json!({
+        "baseColorFactor": clamped(material.base_color_factor),
+        "metallicFactor": metallic,
+        "roughnessFactor": 1.0,
+    });
+    // An image that holds all three is written once.
+    let occlusion = match &metallic_roughness {
+        Some(texture) if material.occlusion == material.metallic_roughness => Some(texture.clone()),
+        _ => texture(&material.occlusion),
+    };
+    if let Some(texture) = metallic_roughness {
+        pbr["metallicRoughnessTexture"] = texture;
+    }
+    if let Some(texture) = texture(&material.base_color) {
+        pbr["baseColorTexture"] = texture;
+    }
+    let mut value = json!({ "pbrMetallicRoughness": pbr });
+    if let Some(texture) = texture(&material.normal) {
+        value["normalTexture"] = texture;
+    }
+    if let Some(texture) = occlusion {
+        value["occlusionTexture"] = texture;
+    }
+    if material.double_sided || is_open(&model.mesh) {
+        value["doubleSided"] = true.into();
+    }
+    if material.base_color_factor.alpha < 1.0 {
+        value["alphaMode"] = "BLEND".into();
+    }
+    value
+}
+
+/// Whether an edge has only one face.
+fn is_open(mesh: &Mesh) -> bool {
+    mesh.report().boundary_edges > 0
+}
+
+/// A normal at unit length. One that is, but for the rounding to single precision, stays as it is, so that what was read is
+/// written with the same bits.
+fn unit(normal: DVec3) -> DVec3 {
+    if (normal.length_squared() - 1.0).abs() < 1e-6 {
+        normal
+    } else {
+        normal.normalize_or(DVec3::Z)
+    }
+}
+
+fn narrow(part: f64) -> f32 {
+    (part as f32).clamp(-PART_MAX, PART_MAX)
+}
+
+fn clamped(color: LinearRgba) -> [f32; 4] {
+    let [r, g, b] = color.color.to_array();
+    [r, g, b, color.alpha].map(|part| part.clamp(0.0, 1.0))
+}
+
+fn bound(positions: &[[f32; 3]], choose: fn(f32, f32) -> f32) -> [f32; 3] {
+    let choose =
+        |a: [f32; 3], b: [f32; 3]| [choose(a[0], b[0]), choose(a[1], b[1]), choose(a[2], b[2])];
+    positions.iter().copied().reduce(choose).unwrap_or_default()
+}
+
+/// The file of both chunks, each of which ends at a multiple of four bytes.
+fn container(mut json: Vec<u8>, mut bin: Vec<u8>) -> Result<Vec<u8>, MeshIoError> {
+    json.resize(json.len().next_multiple_of(4), b' ');
+    bin.resize(bin.len().next_multiple_of(4), 0);
+    let header = 12;
+    let bin_chunk = if bin.is_empty() { 0 } else { 8 + bin.len() };
+    let count = header + 8 + json.len() + bin_chunk;
+    let Ok(length) = u32::try_from(count) else {
+        let (format, bytes) = ("GLB", count);
+        return Err(MeshIoError::new(MeshIoErrorKind::Size { format, bytes }));
+    };
+    let mut bytes = Vec::with_capacity(count);
+    bytes.extend(MAGIC);
+    bytes.extend(2u32.to_le_bytes());
+    bytes.extend(length.to_le_bytes());
+    let mut chunk = |kind: &[u8; 4], content: &[u8]| {
+        // It fits, since all together do.
+        bytes.extend((content.len() as u32).to_le_bytes());
+        bytes.extend(kind);
+        bytes.extend(content);
+    };
+    chunk(JSON, &json);
+    if !bin.is_empty() {
+        chunk(BIN, &bin);
+    }
+    Ok(bytes)
+}
+
+impl Bin {
+    /// Adds a column of `f32`, and gives the number of its accessor.
+    fn floats<const N: usize>(&mut self, column: &[[f32; N]]) -> usize {
+        let bytes: Vec<_> = column
+            .iter()
+            .flatten()
+            .flat_map(|part| part.to_le_bytes())
+            .collect();
+        let shape = format!("VEC{N}");
+        let view = self.view(&bytes, Some(ARRAY_BUFFER));
+        self.accessor(json!({ "bufferView": view, "componentType": FLOAT, "count": column.len(), "type": shape }))
+    }
+
+    /// Adds the indices of faces, and gives the number of their accessor.
+    fn indices(&mut self, faces: &[[u32; 3]]) -> usize {
+        let bytes: Vec<_> = faces
+            .iter()
+            .flatten()
+            .flat_map(|index| index.to_le_bytes())
+            .collect();
+        let view = self.view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
+        self.accessor(json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": 3 * faces.len(), "type": "SCALAR" }))
+    }
+
+    /// Adds an image, and gives its number.
+    fn image(&mut self, image: &EncodedImage) -> usize {
+        let view = self.view(image.bytes(), None);
+        self.images
+            .push(json!({ "bufferView": view, "mimeType": image.format().media_type() }));
+        self.images.len() - 1
+    }
+
+    fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        let mut view =
+            json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
+        if let Some(target) = target {
+            view["target"] = target.into();
+        }
+        self.bytes.extend(bytes);
+        self.views.push(view);
+        self.views.len() - 1
+    }
+
+    fn accessor(&mut self, accessor: Value) -> usize {
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+}
+
+impl Split {
+    fn new(model: &Model) -> Self {
+        let count = model.mesh.positions().len();
+        let mut split = Self {
+            vertex: (0..count).collect(),
+            uvs: vec![[0.0; 2]; count],
+            faces: model
+                .mesh
+                .faces()
+                .iter()
+                .map(|face| face.map(|vertex| vertex.0))
+                .collect(),
+        };
+        let Some(uvs) = &model.uvs else {
+            return split;
+        };
+        let mut used = vec![false; count];
+        // The next vertex of the file that is the same one of the mesh.
+        let mut next = vec![None; count];
+        for (face, uvs) in split.faces.iter_mut().zip(uvs) {
+            for (corner, uv) in face.iter_mut().zip(uvs) {
+                let uv = uv.to_array().map(narrow);
+                let mut at = *corner as usize;
+                if !core::mem::replace(&mut used[at], true) {
+                    split.uvs[at] = uv;
+                }
+                while split.uvs[at] != uv {
+                    at = *next[at].get_or_insert(split.vertex.len());
+                    if at == split.vertex.len() {
+                        split.vertex.push(*corner as usize);
+                        split.uvs.push(uv);
+                        next.push(None);
+                    }
+                }
+                // There are at most 3 * 2^31 + 2^31 vertices, and files beyond 2^32 bytes are refused.
+                *corner = at as u32;
+            }
+        }
+        split
+    }
+}

@@ -1,0 +1,357 @@
+//! OBJ, the format of Wavefront, with its materials in MTL.
+//!
+//! Reference: Wavefront, *Advanced Visualizer Manual*, appendix B1 (Object Files) and B2 (MTL). Colors of vertices
+//! follow `v x y z`, as many programs write them. Wavefront's v goes up, so that v becomes 1 - v on the way in and out.
+//!
+//! All faces become one mesh, whatever their objects, groups and materials, since a texture is to run across these; the
+//! material is the first that a face has. Normals, which OBJ gives to corners, become those of vertices if no vertex has
+//! two, and stay with the corners otherwise; where a corner has none, all are left out. Texture coordinates and normals
+//! that corners name and that there are not are left out, too, which [`Model::left_out`] says. Lines, points and
+//! free-form surfaces are left out. Of a material its `Kd` (linear, and only without a texture, since with one it is
+//! seldom meant), `d`, `map_Kd` and `norm` are read and written. A texture that is missing, or neither PNG nor JPEG, is
+//! left out.
+//!
+//! The reader is ours for what is promised of it: all bits of `f64`, errors that name their line, a list of what is left
+//! out, and a limit of memory whatever the file says.
+
+mod mtl;
+mod write;
+
+#[cfg(test)]
+mod tests;
+
+pub use write::{write, write_files};
+
+use super::{Beside, MaterialPlace, MeshFormat, Writer};
+use crate::MeshIoError;
+use crate::colors::{self, Coding};
+use crate::line::{Line, lines};
+use crate::polygon::fan;
+use crate::text::{no_vertex, parse};
+use dapple_color::{LinearRgb, LinearRgba};
+use dapple_mesh::{Mesh, Model};
+use glam::{DVec2, DVec3};
+use std::borrow::Cow;
+
+const FORMAT: &str = "OBJ";
+
+/// The line of the table of formats.
+pub(super) const OBJ: MeshFormat = MeshFormat {
+    name: FORMAT,
+    endings: &["obj"],
+    read: read_with,
+    writer: Some(Writer {
+        ending: "obj",
+        material: MaterialPlace::Beside,
+        files: write_files,
+    }),
+};
+
+/// The number of a texture coordinate or normal where a corner has none.
+const NONE: u32 = u32::MAX;
+/// The number of a texture coordinate or normal that there cannot be, as any number that is too large.
+const MISSING: u32 = u32::MAX - 1;
+
+/// The numbers of the position, texture coordinate and normal of a corner.
+type Corner = [u32; 3];
+
+#[derive(Default)]
+struct Draft {
+    positions: Vec<DVec3>,
+    /// One for each position up to the last that has one; others are white.
+    colors: Vec<LinearRgba>,
+    uvs: Vec<DVec2>,
+    normals: Vec<DVec3>,
+    faces: Vec<[Corner; 3]>,
+    libraries: Vec<String>,
+    /// The name of the material in use, and whether a face has it.
+    material: Option<(String, bool)>,
+}
+
+/// Reads an OBJ file without its material.
+///
+/// # Errors
+///
+/// [`MeshIoErrorKind::File`](crate::MeshIoErrorKind::File) with the line if the bytes are not an OBJ file;
+/// and what [`Mesh::new`] and [`Model::check`] refuse.
+///
+/// # Examples
+///
+/// ```
+/// let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 -1\n";
+/// let model = dapple_mesh_io::obj::read(text)?;
+/// assert_eq!(model.mesh.faces().len(), 2);
+/// # Ok::<(), dapple_mesh_io::MeshIoError>(())
+/// ```
+pub fn read(bytes: &[u8]) -> Result<Model, MeshIoError> {
+    read_with(bytes, &mut |_| None)
+}
+
+/// Reads an OBJ file, and its MTL files and textures through `beside`.
+///
+/// # Errors
+///
+/// Those of [`read`]; of other files, only a `Kd` beyond single precision is an error.
+pub fn read_with(bytes: &[u8], beside: &mut Beside<'_>) -> Result<Model, MeshIoError> {
+    let mut draft = Draft::default();
+    let text = joined(bytes);
+    for line in lines(FORMAT, &text) {
+        draft.add(&line)?;
+    }
+    if draft.positions.is_empty() && draft.faces.is_empty() {
+        return Err(MeshIoError::file(
+            FORMAT,
+            "it has neither a vertex nor a face",
+        ));
+    }
+    draft.check_vertices(&text)?;
+    let libraries = core::mem::take(&mut draft.libraries);
+    let name = draft.material.take().map(|(name, _)| name);
+    let mut model = draft.into_model()?;
+    model.material = mtl::material(&libraries, name.as_deref(), beside)?;
+    Ok(model)
+}
+
+/// The text with lines joined that end with a backslash, but for comments, where that is often the end of a path. Where
+/// a joined line ends there are as many ends of lines as before, so that all others keep their numbers.
+fn joined(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let continued = |pair: &[u8]| pair[0] == b'\\' && matches!(pair[1], b'\n' | b'\r');
+    if !bytes.windows(2).any(continued) {
+        return Cow::Borrowed(bytes);
+    }
+    let mut text = Vec::with_capacity(bytes.len());
+    let mut n_joined = 0;
+    for line in bytes.split_inclusive(|&byte| byte == b'\n') {
+        let content = line.trim_ascii_end();
+        let is_comment = n_joined == 0 && line.starts_with(b"#");
+        match content.strip_suffix(b"\\") {
+            // The backslash is the very last before the end of the line.
+            Some(start)
+                if !is_comment && matches!(line[content.len()..], [b'\n'] | [b'\r', b'\n']) =>
+            {
+                text.extend(start);
+                text.push(b' ');
+                n_joined += 1;
+            }
+            _ => {
+                text.extend(line);
+                text.resize(text.len() + core::mem::take(&mut n_joined), b'\n');
+            }
+        }
+    }
+    Cow::Owned(text)
+}
+
+impl Draft {
+    fn add(&mut self, line: &Line<'_>) -> Result<(), MeshIoError> {
+        match line.words[0] {
+            b"v" => self.add_vertex(line)?,
+            b"vt" => {
+                let v = if line.words.len() > 2 {
+                    line.part(2)?
+                } else {
+                    0.0
+                };
+                self.uvs.push(DVec2::new(line.part(1)?, 1.0 - v));
+            }
+            b"vn" => self.normals.push(line.position(1)?),
+            b"f" => self.add_face(line)?,
+            // Some programs repeat it for each object.
+            b"mtllib" if self.libraries.last() != Some(&name(line)) => {
+                self.libraries.push(name(line));
+            }
+            b"usemtl" if !matches!(self.material, Some((_, true))) => {
+                self.material = Some((name(line), false));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn add_vertex(&mut self, line: &Line<'_>) -> Result<(), MeshIoError> {
+        // `v x y z w` has a weight that only free-form surfaces need.
+        if line.words.len() >= 7 {
+            let color = line.vector(4)?;
+            let parts = [color.x, color.y, color.z, 1.0];
+            self.colors.resize(self.positions.len(), WHITE);
+            self.colors.push(colors::decode(parts, [Coding::Unit; 4]));
+        }
+        self.positions.push(line.position(1)?);
+        Ok(())
+    }
+
+    fn add_face(&mut self, line: &Line<'_>) -> Result<(), MeshIoError> {
+        let corner = |word: &&[u8]| {
+            self.corner(word)
+                .ok_or_else(|| line.error("a corner is not v, v/vt, v//vn or v/vt/vn"))
+        };
+        let corners = line.words[1..]
+            .iter()
+            .map(corner)
+            .collect::<Result<Vec<_>, _>>()?;
+        self.faces.extend(fan(&corners));
+        if let Some((_, used)) = &mut self.material {
+            *used = true;
+        }
+        Ok(())
+    }
+
+    /// The numbers from 0 of a corner, whose own are from 1, or from -1 back from the last there is.
+    fn corner(&self, word: &[u8]) -> Option<Corner> {
+        let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
+        let mut corner = [NONE; 3];
+        let mut parts = word.split(|&byte| byte == b'/');
+        for (i, count) in counts.into_iter().enumerate() {
+            match parts.next() {
+                Some(b"") | None if i > 0 => {}
+                part => {
+                    let index = index(parse(part?)?, count);
+                    corner[i] = if i == 0 {
+                        index?
+                    } else {
+                        index.unwrap_or(MISSING)
+                    };
+                }
+            }
+        }
+        parts.next().is_none().then_some(corner)
+    }
+
+    /// Refuses a face that names a vertex which the file does not have.
+    fn check_vertices(&self, text: &[u8]) -> Result<(), MeshIoError> {
+        let count = self.positions.len();
+        let missing = |corner: &&Corner| corner[0] as usize >= count;
+        let corners = self.faces.iter().enumerate();
+        let mut first =
+            corners.filter_map(|(face, corners)| Some((face, corners.iter().find(missing)?)));
+        let Some((face, corner)) = first.next() else {
+            return Ok(());
+        };
+        // Vertices may come after the faces, so that only now the line is looked for.
+        let mut n_faces = 0;
+        for line in lines(FORMAT, text).filter(|line| line.words[0] == b"f") {
+            n_faces += line.words.len().saturating_sub(3);
+            if n_faces > face {
+                return Err(line.error(no_vertex(u64::from(corner[0]) + 1, count)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes away what corners name and the file does not have, and says so.
+    fn take_away_missing(&mut self) -> Vec<String> {
+        let mut left_out = Vec::new();
+        for (i, count, what) in [
+            (1, self.uvs.len(), "texture coordinates"),
+            (2, self.normals.len(), "normals"),
+        ] {
+            let mut is_missing = false;
+            for corner in self.faces.iter_mut().flatten() {
+                if corner[i] != NONE && corner[i] as usize >= count {
+                    corner[i] = NONE;
+                    is_missing = true;
+                }
+            }
+            if is_missing {
+                left_out.push(format!("{what} that faces name and the file does not have"));
+            }
+        }
+        left_out
+    }
+
+    fn into_model(mut self) -> Result<Model, MeshIoError> {
+        let left_out = self.take_away_missing();
+        let faces: Vec<_> = self
+            .faces
+            .iter()
+            .map(|face| face.map(|corner| corner[0]))
+            .collect();
+        let uvs = self.face_uvs();
+        // The corners name vertices that there are before normals are spread over these.
+        let count = self.positions.len();
+        let mesh = Mesh::new(core::mem::take(&mut self.positions), &faces)?;
+        let corner_normals = self.corner_normals();
+        let normals = self.vertex_normals(count, corner_normals.as_deref());
+        // Only at creases corners have normals of their own.
+        let corner_normals = corner_normals.filter(|_| normals.is_none());
+        if !self.colors.is_empty() {
+            self.colors.resize(count, WHITE);
+        }
+        let colors = (!self.colors.is_empty()).then_some(self.colors);
+        let model = Model {
+            mesh,
+            colors,
+            uvs,
+            normals,
+            left_out,
+            corner_normals,
+            ..Model::default()
+        };
+        model.check()?;
+        Ok(model)
+    }
+
+    /// The texture coordinates of the corners, zero where there are none, or nothing if no corner has one.
+    fn face_uvs(&self) -> Option<Vec<[DVec2; 3]>> {
+        if self.faces.iter().flatten().all(|corner| corner[1] == NONE) {
+            return None;
+        }
+        let uv = |[_, uv, _]: Corner| self.uvs.get(uv as usize).copied().unwrap_or_default();
+        Some(self.faces.iter().map(|face| face.map(uv)).collect())
+    }
+
+    /// The normals of the corners of all faces, if each corner has one.
+    fn corner_normals(&self) -> Option<Vec<[DVec3; 3]>> {
+        if self.faces.is_empty() {
+            return None;
+        }
+        let normal = |&[_, _, number]: &Corner| self.normals.get(number as usize).copied();
+        let of_face = |[a, b, c]: &[Corner; 3]| Some([normal(a)?, normal(b)?, normal(c)?]);
+        self.faces.iter().map(of_face).collect()
+    }
+
+    /// The normals of the vertices, if no vertex has two at its corners; those of a cloud of points in their order.
+    fn vertex_normals(
+        &self,
+        count: usize,
+        corner_normals: Option<&[[DVec3; 3]]>,
+    ) -> Option<Vec<DVec3>> {
+        if self.faces.is_empty() {
+            let whole = count > 0 && self.normals.len() == count;
+            return whole.then(|| self.normals.clone());
+        }
+        let mut normals = vec![None; count];
+        for (face, of_corners) in self.faces.iter().zip(corner_normals?) {
+            for (&[vertex, ..], &normal) in face.iter().zip(of_corners) {
+                if *normals[vertex as usize].get_or_insert(normal) != normal {
+                    return None;
+                }
+            }
+        }
+        Some(normals.into_iter().map(Option::unwrap_or_default).collect())
+    }
+}
+
+/// The color of vertices that have none where others do.
+const WHITE: LinearRgba = LinearRgba::opaque(LinearRgb::WHITE);
+
+/// The rest of a line as a name, which may have spaces.
+fn name(line: &Line<'_>) -> String {
+    joined_words(&line.name_words())
+}
+
+fn joined_words(words: &[&[u8]]) -> String {
+    String::from_utf8_lossy(&words.join(b" ".as_slice())).into_owned()
+}
+
+fn index(number: i64, count: usize) -> Option<u32> {
+    let from_zero = if number > 0 {
+        number - 1
+    } else {
+        i64::try_from(count).ok()? + number
+    };
+    // Zero names nothing, and would be one past the last.
+    u32::try_from(from_zero)
+        .ok()
+        .filter(|&index| number != 0 && index != NONE)
+}

@@ -1,0 +1,172 @@
+//! Writing OBJ, MTL, and textures beside them.
+
+use crate::NamedFile;
+use crate::text::shortest;
+use crate::{MeshIoError, MeshIoErrorKind};
+use dapple_color::{Code, LinearRgb, LinearRgba};
+use dapple_mesh::{EncodedImage, Material, Model};
+use glam::{DVec2, DVec3};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// The model as an OBJ file without its material.
+///
+/// Positions, normals and texture coordinates have the fewest digits that read back as the same `f64`. Colors are
+/// clamped to 0 to 1, have 16 bits per channel, and no alpha.
+///
+/// # Errors
+///
+/// What [`Model::check`] refuses.
+pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
+    Ok(text(model, None)?.into_bytes())
+}
+
+/// The model as an OBJ file `stem.obj` and, if it has a material, its `stem.mtl` and the textures `stem_base_color.png`
+/// and `stem_normal.png`, or `.jpg`. The OBJ file is the last.
+///
+/// The texture of metalness and roughness is left out, since MTL keeps both apart.
+///
+/// # Errors
+///
+/// What [`Model::check`] refuses; [`MeshIoErrorKind::Name`] if the stem is empty, or has white space, a slash,
+/// a backslash or `#`, which a name in an OBJ file cannot have.
+pub fn write_files(model: &Model, stem: &str) -> Result<Vec<NamedFile>, MeshIoError> {
+    let odd = |c: char| c.is_whitespace() || c.is_control() || matches!(c, '/' | '\\' | '#');
+    if stem.is_empty() || stem.contains(odd) {
+        let name = stem.to_owned();
+        return Err(MeshIoError::new(MeshIoErrorKind::Name { name }));
+    }
+    let mut files = Vec::new();
+    let library = (model.material != Material::default()).then(|| format!("{stem}.mtl"));
+    if let Some(name) = &library {
+        let mtl = material(&model.material, stem, &mut files);
+        files.push(file(name.clone(), mtl.as_bytes()));
+    }
+    let obj = text(model, library.as_deref())?;
+    files.push(file(format!("{stem}.obj"), obj.as_bytes()));
+    Ok(files)
+}
+
+fn file(name: String, bytes: &[u8]) -> NamedFile {
+    let bytes = bytes.to_vec();
+    NamedFile { name, bytes }
+}
+
+/// The text of the material, which names the textures that it puts among the files.
+fn material(material: &Material, stem: &str, files: &mut Vec<NamedFile>) -> String {
+    let LinearRgba { color, alpha } = material.base_color_factor;
+    let mut text = format!(
+        "newmtl surface\nKd {} {} {}\nd {alpha}\n",
+        color.r, color.g, color.b
+    );
+    let mut map = |key: &str, part: &str, image: &Option<EncodedImage>| {
+        if let Some(image) = image {
+            let name = format!("{stem}_{part}.{}", image.format().extension());
+            let _ = writeln!(text, "{key} {name}");
+            files.push(file(name, image.bytes()));
+        }
+    };
+    map("map_Kd", "base_color", &material.base_color);
+    map("norm", "normal", &material.normal);
+    text
+}
+
+/// The text of the OBJ file. Writing to a string cannot fail.
+fn text(model: &Model, library: Option<&str>) -> Result<String, MeshIoError> {
+    model.check()?;
+    let mut text = String::new();
+    if let Some(library) = library {
+        let _ = writeln!(text, "mtllib {library}\nusemtl surface");
+    }
+    for (i, &position) in model.mesh.positions().iter().enumerate() {
+        text.push('v');
+        numbers(&mut text, position);
+        if let Some(colors) = &model.colors {
+            numbers(&mut text, coded(colors[i].color));
+        }
+        text.push('\n');
+    }
+    let uv_faces = uvs(model, &mut text);
+    let normal_faces = normals(model, &mut text);
+    for (i, face) in model.mesh.faces().iter().enumerate() {
+        text.push('f');
+        for (corner, vertex) in face.iter().enumerate() {
+            let v = vertex.index() + 1;
+            let _ = match (uv_faces.get(i), normal_faces.get(i)) {
+                (None, None) => write!(text, " {v}"),
+                (None, Some(normals)) => write!(text, " {v}//{}", normals[corner]),
+                (Some(uvs), None) => write!(text, " {v}/{}", uvs[corner]),
+                (Some(uvs), Some(normals)) => {
+                    write!(text, " {v}/{}/{}", uvs[corner], normals[corner])
+                }
+            };
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+fn numbers(text: &mut String, vector: DVec3) {
+    for part in vector.to_array() {
+        text.push(' ');
+        shortest(text, part);
+    }
+}
+
+/// The sRGB code of a color as fractions, whose five digits tell 16 bits apart.
+fn coded(color: LinearRgb) -> DVec3 {
+    let unit = |code: u16| (f64::from(code.to_unit()) * 1e6).round() / 1e6;
+    DVec3::from_array(color.to_srgb::<u16>().map(unit))
+}
+
+/// Writes the normals and gives their numbers, from 1, for each corner: those of vertices in their order, or each of the
+/// corners' once.
+fn normals(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
+    let mut line = |normal: DVec3| {
+        text.push_str("vn");
+        numbers(text, normal);
+        text.push('\n');
+    };
+    if let Some(corners) = &model.corner_normals {
+        let mut known = BTreeMap::new();
+        let mut number = |normal: DVec3| {
+            let next = known.len() + 1;
+            *known
+                .entry(normal.to_array().map(f64::to_bits))
+                .or_insert_with(|| {
+                    line(normal);
+                    next
+                })
+        };
+        return corners.iter().map(|face| face.map(&mut number)).collect();
+    }
+    let Some(normals) = &model.normals else {
+        return Vec::new();
+    };
+    normals.iter().copied().for_each(line);
+    let faces = model.mesh.faces().iter();
+    faces
+        .map(|face| face.map(|vertex| vertex.index() + 1))
+        .collect()
+}
+
+/// Writes each texture coordinate once and gives their numbers, from 1, for each corner.
+fn uvs(model: &Model, text: &mut String) -> Vec<[usize; 3]> {
+    let mut known = BTreeMap::new();
+    let mut number = |uv: DVec2| {
+        let next = known.len() + 1;
+        *known
+            .entry(uv.to_array().map(f64::to_bits))
+            .or_insert_with(|| {
+                text.push_str("vt ");
+                shortest(text, uv.x);
+                text.push(' ');
+                // In OBJ, v goes up.
+                shortest(text, 1.0 - uv.y);
+                text.push('\n');
+                next
+            })
+    };
+    let faces = model.uvs.iter().flatten();
+    faces.map(|face| face.map(&mut number)).collect()
+}

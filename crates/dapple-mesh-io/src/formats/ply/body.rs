@@ -1,0 +1,147 @@
+//! The numbers after the header of a PLY file.
+
+use super::FORMAT;
+use super::header::{Element, Encoding, Kind, Scalar};
+use crate::MeshIoError;
+use crate::text::{in_range, parse};
+use core::fmt::Display;
+
+/// The rest of the file, which is still to be read.
+pub(super) struct Body<'a> {
+    encoding: Encoding,
+    /// All of the file, with its header.
+    bytes: &'a [u8],
+    rest: &'a [u8],
+}
+
+impl<'a> Body<'a> {
+    pub(super) fn new(encoding: Encoding, bytes: &'a [u8], rest: &'a [u8]) -> Self {
+        Self {
+            encoding,
+            bytes,
+            rest,
+        }
+    }
+
+    /// Says what is wrong with what was read last, in text with its line.
+    pub(super) fn error(&self, why: impl Display) -> MeshIoError {
+        if self.encoding != Encoding::Text {
+            return MeshIoError::file(FORMAT, why.to_string());
+        }
+        let read = &self.bytes[..self.bytes.len() - self.rest.len()];
+        let ends = read.trim_ascii_end().iter().filter(|&&byte| byte == b'\n');
+        MeshIoError::file(FORMAT, format!("line {}: {why}", ends.count() + 1))
+    }
+
+    /// Refuses an element of which there are said to be more than the bytes that are left can hold.
+    pub(super) fn check_room(&self, element: &Element) -> Result<(), MeshIoError> {
+        let least = |kind: Kind| match kind {
+            // A digit and a space, of which the last may be missing.
+            _ if self.encoding == Encoding::Text => 2,
+            Kind::Scalar(scalar) | Kind::List(scalar, _) => scalar.size(),
+        };
+        let row: usize = element
+            .properties
+            .iter()
+            .map(|property| least(property.kind))
+            .sum();
+        let needed = u128::from(element.count) * row as u128;
+        if needed <= self.rest.len() as u128 + 1 {
+            return Ok(());
+        }
+        let (name, count, left) = (&element.name, element.count, self.rest.len());
+        let why = format!(
+            "line {}: the header says {count} of the element {name}, but there are only {left} bytes left",
+            element.line
+        );
+        Err(MeshIoError::file(FORMAT, why))
+    }
+
+    /// A part of a position, a normal or a texture coordinate that was read last. Those of binary files are looked at
+    /// when all are there, with the number of the vertex in place of a line.
+    pub(super) fn in_range(&self, part: f64) -> Result<f64, MeshIoError> {
+        if self.encoding == Encoding::Text {
+            return in_range(part).map_err(|why| self.error(why));
+        }
+        Ok(part)
+    }
+
+    /// Reads the numbers of a property, in place of what was in the list.
+    pub(super) fn values(&mut self, kind: Kind, list: &mut Vec<f64>) -> Result<(), MeshIoError> {
+        list.clear();
+        let (count, item) = match kind {
+            Kind::Scalar(item) => (1, item),
+            Kind::List(count, item) => (self.count(count)?, item),
+        };
+        for _ in 0..count {
+            let value = self.scalar(item)?;
+            list.push(value);
+        }
+        Ok(())
+    }
+
+    /// The length of a list.
+    fn count(&mut self, scalar: Scalar) -> Result<usize, MeshIoError> {
+        let count = self.scalar(scalar)?;
+        // Each has at least a byte, so that reading stops soon after a lie; no memory is taken on trust.
+        if count >= 0.0 && count <= self.rest.len() as f64 {
+            return Ok(count as usize);
+        }
+        let left = self.rest.len();
+        let why = format!("a list says it has {count} items, but there are only {left} bytes left");
+        Err(self.error(why))
+    }
+
+    fn scalar(&mut self, scalar: Scalar) -> Result<f64, MeshIoError> {
+        let value = match self.encoding {
+            Encoding::Text => self.word(),
+            Encoding::Little => self
+                .take(scalar.size())
+                .and_then(|bytes| little(scalar, bytes)),
+            Encoding::Big => self
+                .take(scalar.size())
+                .and_then(|bytes| big(scalar, bytes)),
+        };
+        let why = "it ends early, or has something else in place of a number";
+        value.ok_or_else(|| self.error(why))
+    }
+
+    /// The next word as a number.
+    fn word(&mut self) -> Option<f64> {
+        let text = self.rest.trim_ascii_start();
+        let end = text
+            .iter()
+            .position(u8::is_ascii_whitespace)
+            .unwrap_or(text.len());
+        let (word, rest) = text.split_at(end);
+        self.rest = rest;
+        parse(word)
+    }
+
+    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (bytes, rest) = self.rest.split_at_checked(count)?;
+        self.rest = rest;
+        Some(bytes)
+    }
+}
+
+fn little(scalar: Scalar, bytes: &[u8]) -> Option<f64> {
+    Some(match scalar {
+        Scalar::I8 => i8::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::U8 => u8::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::I16 => i16::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::U16 => u16::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::I32 => i32::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::U32 => u32::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::F32 => f32::from_le_bytes(bytes.try_into().ok()?).into(),
+        Scalar::F64 => f64::from_le_bytes(bytes.try_into().ok()?),
+    })
+}
+
+fn big(scalar: Scalar, bytes: &[u8]) -> Option<f64> {
+    let mut reversed = [0; 8];
+    let reversed = reversed.get_mut(..bytes.len())?;
+    reversed.copy_from_slice(bytes);
+    reversed.reverse();
+    little(scalar, reversed)
+}

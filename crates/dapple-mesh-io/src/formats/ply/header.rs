@@ -1,0 +1,167 @@
+//! The header of a PLY file: which elements there are, and what each of them has.
+
+use super::FORMAT;
+use crate::MeshIoError;
+use crate::text::{parse, words};
+
+/// The header of a PLY file, which describes its body.
+pub(super) struct Header {
+    pub(super) encoding: Encoding,
+    pub(super) elements: Vec<Element>,
+}
+
+/// How numbers are written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Text,
+    Little,
+    Big,
+}
+
+/// A kind of thing, of which all follow each other.
+pub(super) struct Element {
+    pub(super) name: String,
+    pub(super) count: u64,
+    /// The number of the line in the file, from 1.
+    pub(super) line: usize,
+    pub(super) properties: Vec<Property>,
+}
+
+/// A property that all things of an element have.
+pub(super) struct Property {
+    pub(super) name: String,
+    pub(super) kind: Kind,
+}
+
+/// One number or several.
+#[derive(Clone, Copy)]
+pub(super) enum Kind {
+    Scalar(Scalar),
+    /// How many there are, and then they.
+    List(Scalar, Scalar),
+}
+
+/// The type of a number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Header {
+    /// The header at the beginning, and what follows it.
+    pub(super) fn read(bytes: &[u8]) -> Result<(Self, &[u8]), MeshIoError> {
+        let mut header = Self {
+            encoding: Encoding::Text,
+            elements: Vec::new(),
+        };
+        let (mut rest, mut number, mut known) = (bytes, 0, false);
+        loop {
+            let end = rest.iter().position(|&byte| byte == b'\n');
+            let end = end.ok_or_else(|| MeshIoError::file(FORMAT, "the header does not end"))?;
+            let line: Vec<_> = words(&rest[..end]).collect();
+            rest = &rest[end + 1..];
+            number += 1;
+            match (number, line.as_slice()) {
+                (1, [b"ply"]) => {}
+                (1, _) => {
+                    return Err(MeshIoError::file(
+                        FORMAT,
+                        "line 1: the first line is not `ply`",
+                    ));
+                }
+                (_, [] | [b"comment" | b"obj_info", ..]) => {}
+                (_, [b"format", encoding, _]) if !known => {
+                    header.encoding = named(encoding).ok_or_else(|| wrong(number))?;
+                    known = true;
+                }
+                (_, [b"end_header"]) if known => return Ok((header, rest)),
+                (_, line) => header.add(number, line).ok_or_else(|| wrong(number))?,
+            }
+        }
+    }
+
+    /// Adds what a line says, if it says anything.
+    fn add(&mut self, number: usize, line: &[&[u8]]) -> Option<()> {
+        let text = |word: &[u8]| String::from_utf8_lossy(word).into_owned();
+        match line {
+            [b"element", name, count] => self.elements.push(Element {
+                name: text(name),
+                count: parse(count)?,
+                line: number,
+                properties: Vec::new(),
+            }),
+            [b"property", b"list", count, item, name] => {
+                let (count, item) = (scalar(count)?, scalar(item)?);
+                let (name, kind) = (text(name), Kind::List(count, item));
+                self.elements
+                    .last_mut()?
+                    .properties
+                    .push(Property { name, kind });
+            }
+            [b"property", kind, name] => {
+                let (name, kind) = (text(name), Kind::Scalar(scalar(kind)?));
+                self.elements
+                    .last_mut()?
+                    .properties
+                    .push(Property { name, kind });
+            }
+            _ => return None,
+        }
+        Some(())
+    }
+}
+
+impl Element {
+    /// Where the first property is that has one of these names.
+    pub(super) fn place(&self, names: &[&str]) -> Option<usize> {
+        let mut properties = self.properties.iter();
+        properties.position(|property| names.contains(&property.name.as_str()))
+    }
+}
+
+impl Scalar {
+    /// How many bytes it has in a binary file.
+    pub(super) fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+}
+
+fn named(encoding: &[u8]) -> Option<Encoding> {
+    Some(match encoding {
+        b"ascii" => Encoding::Text,
+        b"binary_little_endian" => Encoding::Little,
+        b"binary_big_endian" => Encoding::Big,
+        _ => return None,
+    })
+}
+
+fn scalar(name: &[u8]) -> Option<Scalar> {
+    Some(match name {
+        b"char" | b"int8" => Scalar::I8,
+        b"uchar" | b"uint8" => Scalar::U8,
+        b"short" | b"int16" => Scalar::I16,
+        b"ushort" | b"uint16" => Scalar::U16,
+        b"int" | b"int32" => Scalar::I32,
+        b"uint" | b"uint32" => Scalar::U32,
+        b"float" | b"float32" => Scalar::F32,
+        b"double" | b"float64" => Scalar::F64,
+        _ => return None,
+    })
+}
+
+fn wrong(number: usize) -> MeshIoError {
+    let why = format!("line {number}: this is nothing that a header of PLY says");
+    MeshIoError::file(FORMAT, why)
+}

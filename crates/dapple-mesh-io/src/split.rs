@@ -1,0 +1,76 @@
+//! Models for formats that have normals only for vertices.
+
+use dapple_mesh::{Mesh, MeshError, Model, VertexIdx};
+use glam::DVec3;
+use std::borrow::Cow;
+
+/// The model with normals of vertices in place of those of corners.
+///
+/// A vertex becomes several where its corners have different normals. Vertices keep their numbers, and further ones
+/// follow.
+///
+/// # Errors
+///
+/// What [`Mesh::new`] refuses, which is too many vertices.
+pub(crate) fn with_vertex_normals(model: &Model) -> Result<Cow<'_, Model>, MeshError> {
+    let Some(corner_normals) = &model.corner_normals else {
+        return Ok(Cow::Borrowed(model));
+    };
+    let mut split = Split::new(&model.mesh);
+    let mut faces = Vec::with_capacity(corner_normals.len());
+    for (&[a, b, c], &[na, nb, nc]) in model.mesh.faces().iter().zip(corner_normals) {
+        faces.push(
+            [(a, na), (b, nb), (c, nc)].map(|(vertex, normal)| split.vertex_with(vertex, normal).0),
+        );
+    }
+    let spread = |vertex: &usize| model.mesh.positions()[*vertex];
+    let mesh = Mesh::new(split.vertex.iter().map(spread).collect(), &faces)?;
+    let colors = model.colors.as_ref();
+    let colors = colors.map(|colors| split.vertex.iter().map(|&vertex| colors[vertex]).collect());
+    let normals = split.normals.into_iter().map(Option::unwrap_or_default);
+    Ok(Cow::Owned(Model {
+        mesh,
+        colors,
+        uvs: model.uvs.clone(),
+        normals: Some(normals.collect()),
+        corner_normals: None,
+        material: model.material.clone(),
+        left_out: Vec::new(),
+    }))
+}
+
+struct Split {
+    /// The vertex of the mesh that each is; the first are those of the mesh.
+    vertex: Vec<usize>,
+    /// The normal of each that a corner has.
+    normals: Vec<Option<DVec3>>,
+    /// The next vertex that is the same one of the mesh.
+    next: Vec<Option<usize>>,
+}
+
+impl Split {
+    fn new(mesh: &Mesh) -> Self {
+        let count = mesh.positions().len();
+        Self {
+            vertex: (0..count).collect(),
+            normals: vec![None; count],
+            next: vec![None; count],
+        }
+    }
+
+    /// The one of a vertex that has this normal, which is new if there is none.
+    fn vertex_with(&mut self, vertex: VertexIdx, normal: DVec3) -> VertexIdx {
+        let mut at = vertex.index();
+        while *self.normals[at].get_or_insert(normal) != normal {
+            let new = self.vertex.len();
+            at = *self.next[at].get_or_insert(new);
+            if at == new {
+                self.vertex.push(vertex.index());
+                self.normals.push(None);
+                self.next.push(None);
+            }
+        }
+        // It fits for up to 2^30 faces, whose normals alone are 72 GiB.
+        VertexIdx(at as u32)
+    }
+}

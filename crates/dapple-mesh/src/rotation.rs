@@ -1,0 +1,21 @@
+//! Rotations with the same bits on every platform.
+
+use glam::{DQuat, DVec3};
+
+/// The rotation by `angle` radians about a unit `axis`, counterclockwise as seen from the tip of the axis.
+///
+/// Its bits are the same on every platform; those of the constructors of `glam` differ.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_mesh::{glam::DVec3, rotation};
+/// use std::f64::consts::FRAC_PI_2;
+///
+/// let turned = rotation(DVec3::Z, FRAC_PI_2) * DVec3::X;
+/// assert!((turned - DVec3::Y).length() < 1e-15);
+/// ```
+pub fn rotation(axis: DVec3, angle: f64) -> DQuat {
+    let (sin, cos) = libm::sincos(0.5 * angle);
+    DQuat::from_vec4((sin * axis).extend(cos))
+}

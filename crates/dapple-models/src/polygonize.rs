@@ -1,0 +1,146 @@
+//! Meshes of solids: closed, manifold and consistently wound, with triangles that are nearly equilateral.
+//!
+//! References: Akio Doi and Akio Koide, "An Efficient Method of Triangulating Equi-Valued Surfaces by Using Tetrahedral
+//! Cells", IEICE Transactions E74 (1991), for marching tetrahedra; Mario Botsch and Leif Kobbelt, "A Remeshing Approach to
+//! Multiresolution Modeling", SGP 2004, doi 10.1145/1057432.1057457, for evening the triangles out.
+//!
+//! The tetrahedra are those of a body-centered cubic lattice, all alike. Every tetrahedron that the surface passes through
+//! gets one or two triangles with corners on its edges, so two triangles meet at every edge whatever the solid is: marching
+//! cubes and surface nets cannot promise that. Then the shortest edges are collapsed where that keeps the topology, edges
+//! are flipped, and vertices slide along the surface. Every vertex lies on the surface to [`TOLERANCE`] throughout.
+
+mod sheet;
+mod tetrahedra;
+
+use crate::solid::{Solid, box_distance};
+use crate::{ModelError, ModelErrorKind};
+use dapple_mesh::Mesh;
+use glam::DVec3;
+use sheet::Sheet;
+
+/// How far from the surface a vertex may be by the solid's own measure, in sides of the lattice's cells.
+pub const TOLERANCE: f64 = 1e-6;
+
+/// The part of the triangles of the lattice that is kept, so that the short edges are gone.
+const KEPT: f64 = 0.5;
+/// The most cells along an axis.
+const CELLS_MAX: f64 = 4096.0;
+/// The most triangles that can be asked for.
+const TRIANGLES_MAX: usize = 1 << 24;
+
+/// The mesh of a solid on a lattice of cubes with the given side.
+///
+/// Parts thinner than about half a side may be missed. The edges of the mesh are about as long as the side. A solid that
+/// reaches out of its bounds is cut there.
+///
+/// # Errors
+///
+/// [`ModelErrorKind::Range`] if the side is not above 0 or below 1/4096 of the bounds, or the bounds are not finite;
+/// [`ModelErrorKind::NoSurface`] if no surface was found; [`ModelErrorKind::Open`] if the surface has holes since the distance
+/// changes faster than [`Solid::distance`] may.
+pub fn polygonize(solid: &dyn Solid, side: f64) -> Result<Mesh, ModelError> {
+    let cut = Cut::new(solid, side)?;
+    let sheet = cut.sheet()?;
+    let count = KEPT * sheet.n_faces() as f64;
+    evened(&cut, sheet, count as usize)
+}
+
+/// The mesh of a solid with a wanted number of triangles, on a lattice of cubes with the given side or smaller ones.
+///
+/// The side decides which parts and holes are found, and the number how finely they are drawn. It is met exactly (one less
+/// if it is odd) unless it is too small for the shape: a mesh with a few hundred triangles may have some more.
+///
+/// # Errors
+///
+/// Those of [`polygonize`], and [`ModelErrorKind::Range`] unless 16 to 2^24 triangles are wanted.
+pub fn polygonize_n(solid: &dyn Solid, side: f64, n_triangles: usize) -> Result<Mesh, ModelError> {
+    let holds = (16..=TRIANGLES_MAX).contains(&n_triangles);
+    let wanted = n_triangles as f64;
+    ModelError::check(holds, "number of triangles", wanted, "from 16 to 2^24")?;
+    let mut cut = Cut::new(solid, side)?;
+    let mut sheet = cut.sheet()?;
+    // The number grows with the square of the lattice's fineness, and a little more where thin parts are found.
+    while (sheet.n_faces() as f64) * KEPT < 0.9 * wanted {
+        let finer = (sheet.n_faces() as f64 * KEPT / wanted).sqrt().max(0.25);
+        cut = Cut::new(solid, cut.side * finer)?;
+        sheet = cut.sheet()?;
+    }
+    // A closed mesh has an even number.
+    evened(&cut, sheet, n_triangles / 2 * 2)
+}
+
+/// A solid that ends at its bounds, and the lattice.
+struct Cut<'a> {
+    solid: &'a dyn Solid,
+    bounds: [DVec3; 2],
+    side: f64,
+}
+
+impl<'a> Cut<'a> {
+    fn new(solid: &'a dyn Solid, side: f64) -> Result<Self, ModelError> {
+        let bounds = solid.bounds();
+        for corner in bounds {
+            let largest = corner.abs().max_element();
+            let holds = corner.is_finite() && largest <= 1e15;
+            ModelError::check(holds, "bound of the solid", largest, "at most 1e15")?;
+        }
+        let least = (bounds[1] - bounds[0]).max_element() / CELLS_MAX;
+        let holds = side > 0.0 && side >= least && side <= 1e15;
+        let range = "above 0, at least 1/4096 of the bounds, and at most 1e15";
+        ModelError::check(holds, "side of the lattice's cells", side, range)?;
+        Ok(Self {
+            solid,
+            bounds,
+            side,
+        })
+    }
+
+    fn tolerance(&self) -> f64 {
+        TOLERANCE * self.side
+    }
+
+    fn distance(&self, at: DVec3) -> f64 {
+        let distance = self.solid.distance(at);
+        if distance.is_nan() {
+            return f64::MAX;
+        }
+        distance.max(box_distance(self.bounds, at))
+    }
+
+    /// The triangles in the tetrahedra of the lattice.
+    fn sheet(&self) -> Result<Sheet, ModelError> {
+        let (positions, faces) = tetrahedra::march(self);
+        if faces.is_empty() {
+            return Err(ModelError::new(ModelErrorKind::NoSurface));
+        }
+        Sheet::new(positions, faces)
+    }
+}
+
+/// Evens out the triangles of a sheet until about `count` are left.
+fn evened(cut: &Cut, mut sheet: Sheet, count: usize) -> Result<Mesh, ModelError> {
+    /// Enough for the largest numbers: each takes a few percent of the faces at least, until it finds none.
+    const ROUNDS: u32 = 60;
+    /// After that the angles hardly get better.
+    const LAST_ROUNDS: u32 = 3;
+    for _ in 0..ROUNDS {
+        let before = sheet.n_faces();
+        if before <= count {
+            break;
+        }
+        sheet.collapse(cut, count);
+        if sheet.n_faces() == before {
+            break;
+        }
+        sheet.flip();
+        sheet.smooth(cut);
+    }
+    for _ in 0..LAST_ROUNDS {
+        sheet.flip();
+        sheet.smooth(cut);
+    }
+    sheet.into_mesh()
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

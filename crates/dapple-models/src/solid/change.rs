@@ -1,0 +1,145 @@
+//! Solids at other places and in other shapes.
+
+use super::Solid;
+use glam::{DQuat, DVec3};
+
+/// A solid that is turned around the origin and then moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed<S> {
+    /// The solid before.
+    pub solid: S,
+    /// The turn, of length 1.
+    pub rotation: DQuat,
+    /// The move.
+    pub offset: DVec3,
+}
+
+impl<S: Solid> Solid for Placed<S> {
+    fn distance(&self, at: DVec3) -> f64 {
+        self.solid
+            .distance(self.rotation.conjugate() * (at - self.offset))
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        around_corners(self.solid.bounds(), |corner| {
+            self.rotation * corner + self.offset
+        })
+    }
+}
+
+/// A solid with its left and right exchanged: what was at x is at -x.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mirrored<S>(pub S);
+
+impl<S: Solid> Solid for Mirrored<S> {
+    fn distance(&self, at: DVec3) -> f64 {
+        self.0.distance(DVec3::new(-at.x, at.y, at.z))
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        let [low, high] = self.0.bounds();
+        [
+            DVec3::new(-high.x, low.y, low.z),
+            DVec3::new(-low.x, high.y, high.z),
+        ]
+    }
+}
+
+/// A solid that is stretched or squashed along the axes, from the origin.
+///
+/// Its distance is the true one at the most, and less where the scales differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scaled<S> {
+    /// The solid before.
+    pub solid: S,
+    /// The factors along the axes, above 0.
+    pub scale: DVec3,
+}
+
+impl<S: Solid> Solid for Scaled<S> {
+    fn distance(&self, at: DVec3) -> f64 {
+        self.solid.distance(at / self.scale) * self.scale.min_element()
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        self.solid.bounds().map(|corner| corner * self.scale)
+    }
+}
+
+/// A solid with a layer of even thickness around it, which rounds its edges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grown<S> {
+    /// The solid before.
+    pub solid: S,
+    /// The thickness of the layer.
+    pub by: f64,
+}
+
+impl<S: Solid> Solid for Grown<S> {
+    fn distance(&self, at: DVec3) -> f64 {
+        self.solid.distance(at) - self.by
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        let [low, high] = self.solid.bounds();
+        [low - self.by, high + self.by]
+    }
+}
+
+/// A solid whose sides are bent up: what is at x is lifted by `lift` x².
+///
+/// Its distance is the true one at the most, and less where it is bent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bent<S> {
+    solid: S,
+    lift: f64,
+    bounds: [DVec3; 2],
+    /// The least factor of distances under the bend.
+    shrink: f64,
+}
+
+impl<S: Solid> Bent<S> {
+    /// Bends a solid; `lift` is the height at x = 1, and below zero bends down.
+    #[must_use]
+    pub fn new(solid: S, lift: f64) -> Self {
+        let [low, high] = solid.bounds();
+        let widest = low.x.abs().max(high.x.abs());
+        let height = lift * widest * widest;
+        let bounds = [
+            low + DVec3::Y * height.min(0.0),
+            high + DVec3::Y * height.max(0.0),
+        ];
+        // A shear by the slope s stretches by at most 1 + |s|.
+        let shrink = 1.0 / (1.0 + 2.0 * (lift * widest).abs());
+        Self {
+            solid,
+            lift,
+            bounds,
+            shrink,
+        }
+    }
+}
+
+impl<S: Solid> Solid for Bent<S> {
+    fn distance(&self, at: DVec3) -> f64 {
+        // Beyond the solid the bend goes on straight, so that its slope has a limit.
+        let x = at.x.max(self.bounds[0].x).min(self.bounds[1].x);
+        let lift = self.lift * x * (2.0 * at.x - x);
+        self.solid.distance(at - DVec3::Y * lift) * self.shrink
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        self.bounds
+    }
+}
+
+/// The box around the eight corners of a box after they are moved.
+fn around_corners([low, high]: [DVec3; 2], moved: impl Fn(DVec3) -> DVec3) -> [DVec3; 2] {
+    let corners = (0..8).map(|corner| {
+        let part = DVec3::from_array([0, 1, 2].map(|axis| f64::from(corner >> axis & 1)));
+        moved(low + (high - low) * part)
+    });
+    corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], at| {
+        [low.min(at), high.max(at)]
+    })
+}

@@ -1,0 +1,198 @@
+//! The simple shapes.
+
+use super::{Solid, box_distance};
+use glam::DVec3;
+
+/// A ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// The middle.
+    pub center: DVec3,
+    /// From the middle to the surface.
+    pub radius: f64,
+}
+
+impl Solid for Ball {
+    fn distance(&self, at: DVec3) -> f64 {
+        (at - self.center).length() - self.radius
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        [self.center - self.radius, self.center + self.radius]
+    }
+}
+
+/// An ellipsoid with its axes along x, y and z.
+///
+/// The distance is exact outside, and a lower bound of the depth inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipsoid {
+    /// The middle.
+    pub center: DVec3,
+    /// From the middle to the surface along each axis, above 0.
+    pub radii: DVec3,
+}
+
+impl Solid for Ellipsoid {
+    fn distance(&self, at: DVec3) -> f64 {
+        let at = at - self.center;
+        let ratio = (at / self.radii).length();
+        if ratio <= 1.0 {
+            (ratio - 1.0) * self.radii.min_element()
+        } else {
+            outer_distance(self.radii, at)
+        }
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        [self.center - self.radii, self.center + self.radii]
+    }
+}
+
+/// The distance from a point outside to an ellipsoid around the origin.
+///
+/// The nearest point is `r² p / (r² + t)` for the t above 0 at which it lies on the ellipsoid. What is left to zero falls
+/// with t and is convex, so Newton's steps from 0 come closer and never go past.
+fn outer_distance(radii: DVec3, at: DVec3) -> f64 {
+    /// More than ever seen: each step doubles the digits once it is near.
+    const STEPS: u32 = 40;
+    let squares = radii * radii;
+    let mut t = 0.0;
+    for _ in 0..STEPS {
+        let inverse = (squares + t).recip();
+        let terms = radii * at * inverse;
+        let terms = terms * terms;
+        let excess = terms.element_sum() - 1.0;
+        let step = excess / (2.0 * (terms * inverse).element_sum());
+        // The last bits do not matter, and NaN ends the search.
+        if excess.is_nan() || excess <= 1e-13 {
+            break;
+        }
+        t += step;
+    }
+    (at * (squares + t).recip()).length() * t
+}
+
+/// All balls along a line whose radius changes evenly: a capsule if the radii are equal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoundCone {
+    /// The middles of the balls at the ends.
+    pub ends: [DVec3; 2],
+    /// The radii of the balls at the ends.
+    pub radii: [f64; 2],
+}
+
+impl Solid for RoundCone {
+    fn distance(&self, at: DVec3) -> f64 {
+        Spindle::new(self).distance(at)
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        let [[a, b], [first, last]] = [[self.ends[0], self.ends[1]], self.radii.map(DVec3::splat)];
+        [(a - first).min(b - last), (a + first).max(b + last)]
+    }
+}
+
+/// A round cone with what its distance needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spindle {
+    from: DVec3,
+    /// The unit direction to the other end.
+    axis: DVec3,
+    length: f64,
+    radius: f64,
+    /// The decrease of the radius along a unit of the axis.
+    taper: f64,
+    /// How far a normal of the mantle goes along the axis while it goes out by a unit.
+    lean: f64,
+}
+
+impl Spindle {
+    pub(super) fn new(cone: &RoundCone) -> Self {
+        let [from, to] = cone.ends;
+        let [first, last] = cone.radii;
+        let length = (to - from).length();
+        let narrowing = first - last;
+        if narrowing.abs() < length {
+            return Self {
+                from,
+                axis: (to - from) / length,
+                length,
+                radius: first,
+                taper: narrowing / length,
+                lean: narrowing / (length * length - narrowing * narrowing).sqrt(),
+            };
+        }
+        // One of the balls holds the other.
+        let bigger = if narrowing >= 0.0 { from } else { to };
+        Self {
+            from: bigger,
+            axis: DVec3::Y,
+            length: 0.0,
+            radius: first.max(last),
+            taper: 0.0,
+            lean: 0.0,
+        }
+    }
+
+    pub(super) fn distance(&self, at: DVec3) -> f64 {
+        let reach = at - self.from;
+        let height = reach.dot(self.axis);
+        let aside = (reach - self.axis * height).length();
+        // The normal of the mantle through the point meets the axis here.
+        let foot = (height - aside * self.lean).clamp(0.0, self.length);
+        let along = height - foot;
+        (aside * aside + along * along).sqrt() - (self.radius - self.taper * foot)
+    }
+}
+
+/// A torus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Torus {
+    /// The middle of the ring.
+    pub center: DVec3,
+    /// The direction through the hole, of length 1.
+    pub axis: DVec3,
+    /// From the middle of the ring to the middle of its tube.
+    pub ring: f64,
+    /// The radius of the tube.
+    pub tube: f64,
+}
+
+impl Solid for Torus {
+    fn distance(&self, at: DVec3) -> f64 {
+        let at = at - self.center;
+        let height = at.dot(self.axis);
+        let aside = (at - self.axis * height).length() - self.ring;
+        (aside * aside + height * height).sqrt() - self.tube
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        // The ring reaches less far along its axis.
+        let flat = (DVec3::ONE - self.axis * self.axis).max(DVec3::ZERO);
+        let reach = DVec3::new(flat.x.sqrt(), flat.y.sqrt(), flat.z.sqrt()) * self.ring + self.tube;
+        [self.center - reach, self.center + reach]
+    }
+}
+
+/// A box along the axes with rounded edges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoundBox {
+    /// The middle.
+    pub center: DVec3,
+    /// From the middle to the faces.
+    pub half: DVec3,
+    /// The radius of the edges, at most the least of `half`.
+    pub rounding: f64,
+}
+
+impl Solid for RoundBox {
+    fn distance(&self, at: DVec3) -> f64 {
+        let core = self.half - self.rounding;
+        box_distance([self.center - core, self.center + core], at) - self.rounding
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        [self.center - self.half, self.center + self.half]
+    }
+}

@@ -1,0 +1,56 @@
+//! The sites of a surface, which are to its texture what pixels are to an image: even points on several levels, their
+//! neighbors, and the operations on columns of values.
+//!
+//! [`scatter`] throws points with one density everywhere, [`repel`] lets them push each other apart, [`nested_points`] does
+//! both for sets of n, 4n, 16n … points in which the coarse points stay. A [`Hierarchy`] connects the sites of each level with
+//! their neighbors ([`SiteGraph`]) and has the operations on columns: [interpolation](Hierarchy::interpolate), a [`LowPass`]
+//! filter, [down](Hierarchy::downsample)- and [upsampling](Hierarchy::upsample). Level 0 is the finest.
+//!
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.
+
+mod site;
+
+mod scatter;
+
+mod grid;
+mod near;
+
+mod repel;
+
+mod between;
+mod nested;
+mod share;
+mod unstick;
+
+mod cell;
+mod connect;
+mod graph;
+mod star;
+
+mod hierarchy;
+
+mod blend;
+mod interpolation;
+mod low_pass;
+mod operations;
+mod oriented;
+
+mod evenness;
+mod triangles;
+
+pub use blend::Blend;
+pub use connect::Connected;
+pub use evenness::{Evenness, evenness, hexagonal_spacing};
+pub use graph::SiteGraph;
+pub use grid::SiteGrid;
+pub use hierarchy::{Hierarchy, HierarchyOptions, Level};
+pub use interpolation::INTERPOLATION_RADIUS;
+pub(crate) use interpolation::{weight, weights};
+pub use low_pass::LowPass;
+pub use nested::nested_points;
+pub use operations::{DOWNSAMPLE_STEPS, DOWNSAMPLE_T};
+pub use repel::repel;
+pub use scatter::scatter;
+pub use site::{SiteIdx, Sites};
+pub use star::STAR_RADIUS;
+pub use triangles::SiteTriangles;

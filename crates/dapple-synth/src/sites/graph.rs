@@ -1,0 +1,145 @@
+//! Which sites are connected.
+
+use crate::SiteIdx;
+
+/// A symmetric graph of sites in compressed rows; the paper's mesh `M_k`, of which only the edges are used.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SiteGraph {
+    offsets: Vec<u32>,
+    neighbors: Vec<SiteIdx>,
+}
+
+impl SiteGraph {
+    /// The graph with these edges, in any order and either direction, once or more often.
+    ///
+    /// An edge from a site to itself, or with a site that there is not, is left out.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_synth::{SiteGraph, SiteIdx};
+    ///
+    /// let path = SiteGraph::from_edges(3, [[SiteIdx(2), SiteIdx(1)], [SiteIdx(0), SiteIdx(1)]]);
+    /// assert_eq!(path.neighbors(SiteIdx(1)), [SiteIdx(0), SiteIdx(2)]);
+    /// ```
+    #[must_use]
+    pub fn from_edges(n_sites: usize, edges: impl IntoIterator<Item = [SiteIdx; 2]>) -> Self {
+        let is_edge = |&[a, b]: &[SiteIdx; 2]| a != b && a.index().max(b.index()) < n_sites;
+        let edges: Vec<[SiteIdx; 2]> = edges.into_iter().filter(is_edge).collect();
+        // Where the row of each site begins; while they are filled, where its next neighbor goes.
+        let mut next = vec![0_u32; n_sites + 1];
+        for [a, b] in &edges {
+            next[a.index() + 1] += 1;
+            next[b.index() + 1] += 1;
+        }
+        for site in 0..n_sites {
+            next[site + 1] += next[site];
+        }
+        let mut ends = vec![SiteIdx(0); next[n_sites] as usize];
+        for &[a, b] in &edges {
+            for [from, to] in [[a, b], [b, a]] {
+                ends[next[from.index()] as usize] = to;
+                next[from.index()] += 1;
+            }
+        }
+        let mut from = 0;
+        Self::from_rows(n_sites, ends.len(), |site, row| {
+            // Every row now ends where the next one began.
+            let end = next[site.index()] as usize;
+            row.extend(&ends[from..end]);
+            from = end;
+        })
+    }
+
+    /// The graph of the rows that `add` appends to what it is given, one after the other; each is sorted, and a site in
+    /// it is kept once. They must be symmetric, and have about `n_neighbors` sites altogether.
+    pub(crate) fn from_rows(
+        n_sites: usize,
+        n_neighbors: usize,
+        mut add: impl FnMut(SiteIdx, &mut Vec<SiteIdx>),
+    ) -> Self {
+        let mut offsets = Vec::with_capacity(n_sites + 1);
+        offsets.push(0);
+        let mut neighbors = Vec::with_capacity(n_neighbors);
+        let mut row = Vec::new();
+        for site in (0..n_sites as u32).map(SiteIdx) {
+            row.clear();
+            add(site, &mut row);
+            row.sort_unstable();
+            row.dedup();
+            neighbors.extend_from_slice(&row);
+            offsets.push(neighbors.len() as u32);
+        }
+        neighbors.shrink_to_fit();
+        Self { offsets, neighbors }
+    }
+
+    /// The number of sites.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.offsets.len().saturating_sub(1)
+    }
+
+    /// Whether there are no sites.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The sites that a site is connected to, lowest first.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such site.
+    #[inline]
+    #[must_use]
+    pub fn neighbors(&self, site: SiteIdx) -> &[SiteIdx] {
+        &self.neighbors[self.row(site)]
+    }
+
+    /// Where the neighbors of a site are among those of all sites.
+    #[inline]
+    pub(crate) fn row(&self, site: SiteIdx) -> core::ops::Range<usize> {
+        self.offsets[site.index()] as usize..self.offsets[site.index() + 1] as usize
+    }
+
+    /// The number of edges, each counted once.
+    #[must_use]
+    pub fn n_edges(&self) -> usize {
+        self.neighbors.len() / 2
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dapple_hash::{Seed, hash1};
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn graph_has_each_edge_once_in_both_rows() {
+        for n_sites in [0_u32, 1, 2, 7, 50] {
+            // Some are loops, some are repeated, and some name a site that there is not.
+            let end =
+                |edge, counter| SiteIdx(hash1(Seed(9), [edge], counter) as u32 % (n_sites + 2));
+            let edges: Vec<[SiteIdx; 2]> =
+                (0..200).map(|edge| [end(edge, 0), end(edge, 1)]).collect();
+            let mut expected = BTreeSet::new();
+            for &[a, b] in &edges {
+                if a != b && a.0 < n_sites && b.0 < n_sites {
+                    expected.extend([[a, b], [b, a]]);
+                }
+            }
+            let graph = SiteGraph::from_edges(n_sites as usize, edges);
+            assert_eq!(graph.len(), n_sites as usize, "a row for each site");
+            assert_eq!(
+                2 * graph.n_edges(),
+                expected.len(),
+                "edges of {n_sites} sites"
+            );
+            let row = |site| graph.neighbors(site).iter().map(move |&to| [site, to]);
+            let found: Vec<[SiteIdx; 2]> = (0..n_sites).map(SiteIdx).flat_map(row).collect();
+            assert!(found.iter().eq(&expected), "rows are sorted and complete");
+        }
+    }
+}

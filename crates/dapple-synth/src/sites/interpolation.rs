@@ -1,0 +1,130 @@
+//! The value between sites: equation 1.
+//!
+//! Reference: Greg Turk, "Texture Synthesis on Surfaces", SIGGRAPH 2001, doi 10.1145/383259.383297, section 3.2, with
+//! the weights `w(x) = 2x³ - 3x² + 1` of the distances over the radius. The paper states neither the radius nor what
+//! holds where no site is in reach; see [`INTERPOLATION_RADIUS`] and
+//! [`Hierarchy::interpolate`](crate::Hierarchy::interpolate).
+//!
+//! The sum is that of the differences to the first site in reach, so that a constant column gives just that
+//! constant. Sites are taken in the order of [`SiteGrid::visit`](crate::SiteGrid::visit). Units: those of the mesh.
+
+use super::oriented::Oriented;
+use crate::{Blend, SiteIdx};
+use fearless_simd::{f32x8, prelude::*};
+use glam::DVec3;
+
+/// The radius of interpolation in spacings of the level.
+///
+/// The paper does not say. At 1.0 most positions have three or four sites in reach; at 2.0 colors blur away.
+pub const INTERPOLATION_RADIUS: f64 = 1.1;
+
+/// Weights that sum to less than this are those of sites at the very rim, and say nothing.
+const WEIGHTS_LEAST: f64 = 1e-9;
+/// How far to look for the nearest site, in radii of interpolation, if none is in reach.
+const NEAREST_REACHES: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
+
+/// The weight of a site in equation 1, `w(x) = 2x³ - 3x² + 1`, at a distance of `x` radii, which is at most 1.
+#[inline]
+pub(crate) fn weight(x: f64) -> f64 {
+    (2.0 * x - 3.0) * x * x + 1.0
+}
+
+/// The weights of a site in equation 1 for eight positions, from the squares of the distances in radii; 0 from a radius on.
+#[inline(always)]
+pub(crate) fn weights<S: Simd>(simd: S, x_sq: f32x8<S>) -> f32x8<S> {
+    let weights = (x_sq.sqrt() * 2.0 - 3.0) * x_sq + 1.0;
+    x_sq.simd_lt(1.0).select(weights, f32x8::splat(simd, 0.0))
+}
+
+impl Oriented<'_> {
+    /// The value at a position: the weighted mean, or the value of the nearest site up to 8 radii away.
+    ///
+    /// `column` has a value for each site.
+    #[inline]
+    pub(crate) fn interpolate<T: Blend>(
+        &self,
+        column: &[T],
+        position: DVec3,
+        normal: DVec3,
+    ) -> Option<T> {
+        let radius = INTERPOLATION_RADIUS * self.spacing;
+        let (mut base, mut sum, mut weights) = (None, T::ZERO, 0.0);
+        self.grid.visit(position, radius, |site| {
+            let x = self.positions[site.index()].distance(position) / radius;
+            if x < 1.0 && self.is_on_side(site, normal) {
+                let weight = weight(x);
+                let value = column[site.index()];
+                let base = *base.get_or_insert(value);
+                sum = sum.add_scaled(value.add_scaled(base, -1.0), weight);
+                weights += weight;
+            }
+        });
+        match base {
+            Some(base) if weights > WEIGHTS_LEAST => Some(base.add_scaled(sum, 1.0 / weights)),
+            _ => self
+                .nearest(position, normal)
+                .map(|site| column[site.index()]),
+        }
+    }
+
+    /// The nearest site on a side of the surface, the lowest of equally near ones; none if all are more than 8 radii of
+    /// interpolation away.
+    #[cold]
+    fn nearest(&self, position: DVec3, normal: DVec3) -> Option<SiteIdx> {
+        for reach in NEAREST_REACHES {
+            let radius = reach * INTERPOLATION_RADIUS * self.spacing;
+            let mut nearest = Nearest::within(radius);
+            self.grid.visit(position, radius, |site| {
+                if self.is_on_side(site, normal) {
+                    nearest.offer(site, self.positions[site.index()].distance(position));
+                }
+            });
+            if nearest.site.is_some() {
+                return nearest.site;
+            }
+        }
+        None
+    }
+
+    /// The nearest of all sites, on whatever side; none if there are no sites.
+    #[cold]
+    pub(crate) fn nearest_of_all(&self, position: DVec3) -> Option<SiteIdx> {
+        let mut nearest = Nearest::within(f64::INFINITY);
+        for (site, at) in (0..).zip(self.positions) {
+            nearest.offer(SiteIdx(site), at.distance(position));
+        }
+        nearest.site
+    }
+
+    /// Whether the normal of a site is at most a right angle from another one.
+    #[inline]
+    fn is_on_side(&self, site: SiteIdx, normal: DVec3) -> bool {
+        self.normals[site.index()].dot(normal) >= 0.0
+    }
+}
+
+/// The nearest of the sites offered.
+struct Nearest {
+    site: Option<SiteIdx>,
+    distance: f64,
+}
+
+impl Nearest {
+    fn within(distance: f64) -> Self {
+        Self {
+            site: None,
+            distance,
+        }
+    }
+
+    #[inline]
+    fn offer(&mut self, site: SiteIdx, distance: f64) {
+        let is_first = self.site.is_none_or(|nearest| site < nearest);
+        if distance < self.distance || distance == self.distance && is_first {
+            (self.site, self.distance) = (Some(site), distance);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,75 @@
+//! Random points on a surface, each place as likely as any other.
+//!
+//! A point first falls on a face with a chance in proportion to its area, then anywhere in it: with two uniform numbers
+//! s and t the weights of the corners are `1 - sqrt(s)`, `sqrt(s) (1 - t)` and `sqrt(s) t` (Reference: Greg Turk, "Generating
+//! Random Points in Triangles", in Graphics Gems, 1990).
+
+use dapple_hash::{CellHash, Seed, unit_f64};
+use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
+
+/// Scatters `n` points over a surface, independently of each other and evenly by area.
+///
+/// The point with number `i` depends on the surface, the seed and `i` only: fewer points are the first of more points.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_hash::Seed;
+/// use dapple_mesh::{Mesh, Surface, glam::DVec3};
+/// use dapple_synth::scatter;
+///
+/// let triangle = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]])?;
+/// let points = scatter(&Surface::new(triangle)?, 100, Seed(7));
+/// assert!(points.iter().all(|point| point.flat.x >= 0.0 && point.flat.y >= 0.0));
+/// # Ok::<(), dapple_synth::SynthError>(())
+/// ```
+#[must_use]
+pub fn scatter(surface: &Surface, n: usize, seed: Seed) -> Vec<SurfacePoint> {
+    let faces = (0..surface.mesh().faces().len() as u32).map(FaceIdx);
+    let scatter = Scatter::new(surface, faces.collect());
+    let seed = seed.child("scattered points", 0);
+    (0..n as u64)
+        .filter_map(|number| scatter.point(surface, seed, number))
+        .collect()
+}
+
+/// Some faces of a surface, ready for points to fall on them.
+#[derive(Debug)]
+pub(crate) struct Scatter {
+    faces: Vec<FaceIdx>,
+    /// The area of each face and all before it.
+    ends: Vec<f64>,
+}
+
+impl Scatter {
+    pub(crate) fn new(surface: &Surface, faces: Vec<FaceIdx>) -> Self {
+        let mut end = 0.0;
+        let area_so_far = |&face| {
+            end += surface.face_area(face);
+            end
+        };
+        let ends = faces.iter().map(area_so_far).collect();
+        Self { faces, ends }
+    }
+
+    /// The area of all these faces.
+    pub(crate) fn area(&self) -> f64 {
+        self.ends.last().copied().unwrap_or(0.0)
+    }
+
+    /// A random point on these faces; nothing if there are none.
+    pub(crate) fn point(&self, surface: &Surface, seed: Seed, number: u64) -> Option<SurfacePoint> {
+        let hash = CellHash::new(seed, [number.cast_signed()]);
+        let [place, s, t] = [0, 1, 2].map(|counter| unit_f64(hash.at(counter)));
+        let place = place * self.area();
+        let face = self.ends.partition_point(|&end| end <= place);
+        // Rounding may put the place at the very end.
+        let face = *self.faces.get(face).or(self.faces.last())?;
+        let root = s.sqrt();
+        let weights = [1.0 - root, root * (1.0 - t), root * t];
+        Some(surface.point(face, weights))
+    }
+}
+
+#[cfg(test)]
+mod tests;
