@@ -145,6 +145,25 @@ pub fn consume_with<T: Send, S: Send>(
     }
 }
 
+/// Lets all workers work at the same time, each with its number; there are at most [`n_threads`] of them.
+///
+/// A thread that comes late may find that the others have done all of it.
+pub fn together<W: Send>(workers: &mut [W], work: impl Fn(usize, &mut W) + Sync) {
+    #[cfg(feature = "rayon")]
+    if workers.len() > 1 {
+        let work = &work;
+        rayon::scope(|scope| {
+            for (number, worker) in workers.iter_mut().enumerate() {
+                scope.spawn(move |_| work(number, worker));
+            }
+        });
+        return;
+    }
+    for (number, worker) in workers.iter_mut().enumerate() {
+        work(number, worker);
+    }
+}
+
 /// Sorts numbers, ascending.
 pub fn sort(numbers: &mut [u128]) {
     #[cfg(feature = "rayon")]

@@ -6,9 +6,9 @@
 use crate::atlas::Atlas;
 use crate::ground::{Plain, Samples};
 use crate::mesh_ground::{Interpolation, Lattice, Nearby, interpolate};
-use crate::{Hierarchy, INTERPOLATION_RADIUS, SynthError, SynthErrorKind, columns};
+use crate::{Hierarchy, INTERPOLATION_RADIUS, SynthError, SynthErrorKind};
 use dapple_mesh::{FaceIdx, Surface, SurfacePoint};
-use dapple_raster::{Raster, simd};
+use dapple_raster::{Raster, parallel, simd};
 use glam::DVec3;
 
 /// The sides of a block in texels.
@@ -62,7 +62,7 @@ pub fn bake<const N: usize>(
         let rows = band * BLOCK..((band + 1) * BLOCK).min(size[1]);
         baker.bake_rows::<N>(rows, background)
     };
-    let bands = columns::tasks(n_bands as usize, |number| band(number as u32));
+    let bands = parallel::map(n_bands as usize, |number| band(number as u32));
     Ok(Raster::from_vec(size, bands.concat())?)
 }
 

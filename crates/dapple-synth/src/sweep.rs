@@ -25,7 +25,8 @@ mod level;
 mod tests;
 
 use crate::links::components;
-use crate::{Hierarchy, Orientation, SiteIdx, SynthError, SynthErrorKind, columns};
+use crate::{Hierarchy, Orientation, SiteIdx, SynthError, SynthErrorKind};
+use dapple_raster::parallel;
 use level::LevelSweep;
 
 /// The sweep distance s at every site, for every level.
@@ -115,12 +116,15 @@ impl Sweep {
             distances,
             components,
         } = &self.levels[level];
-        let mut keys: Vec<(u32, u64, u32)> = (0..)
+        let mut keys: Vec<u128> = (0..)
             .zip(components.iter().zip(distances))
-            .map(|(site, (&component, &distance))| (component, rising(distance), site))
+            .map(|(site, (&component, &distance))| {
+                let site: u32 = site;
+                u128::from(component) << 96 | u128::from(rising(distance)) << 32 | u128::from(site)
+            })
             .collect();
-        columns::sort_keys(&mut keys);
-        keys.into_iter().map(|(_, _, site)| SiteIdx(site)).collect()
+        parallel::sort(&mut keys);
+        keys.into_iter().map(|key| SiteIdx(key as u32)).collect()
     }
 
     /// Shifts every component so that its anchor on the finest level is at zero.

@@ -7,8 +7,8 @@
 //! The search does not rely on how good they are: any matrix gives the same nearest row, if its norm is known. It is
 //! measured, for the matrix as it is stored, in [`Basis::norm_sq`].
 
-use crate::columns;
 use dapple_hash::{Seed, hash1, unit_f64};
+use dapple_raster::parallel;
 use dapple_raster::simd;
 use fearless_simd::{dispatch, f32x16, prelude::*};
 
@@ -162,7 +162,7 @@ fn centered(rows: &[&[f32]], mean: &[f32]) -> Vec<f64> {
 /// Sums of products of the values of rows: a symmetric matrix.
 fn covariance(dims: usize, sample: &[f64]) -> Vec<f64> {
     let level = simd::level();
-    let bands = columns::tasks(dims.div_ceil(BAND), |band| {
+    let bands = parallel::map(dims.div_ceil(BAND), |band| {
         let mut sums = vec![0.0; BAND.min(dims - band * BAND) * dims];
         dispatch!(level, _simd => add_products(dims, band * BAND, sample, &mut sums));
         sums
@@ -246,7 +246,7 @@ fn norm_sq(dims: usize, groups: &[[f32; LANES]]) -> f64 {
 /// Each direction times a symmetric matrix.
 fn times(dims: usize, directions: &[f64], matrix: &[f64]) -> Vec<f64> {
     let level = simd::level();
-    let images = columns::tasks(directions.len() / dims, |i| {
+    let images = parallel::map(directions.len() / dims, |i| {
         let mut image = vec![0.0; dims];
         let direction = &directions[i * dims..][..dims];
         dispatch!(level, _simd => add_lines(direction, matrix, &mut image));

@@ -11,7 +11,7 @@
 use super::basis::{Basis, LANES};
 use super::lattice::Lattice;
 use super::margin;
-use crate::columns;
+use dapple_raster::parallel;
 use dapple_raster::simd;
 use fearless_simd::dispatch;
 
@@ -62,7 +62,7 @@ impl Placed {
     pub(crate) fn new(dims: usize, rows: &[f32], basis: &Basis) -> Option<Self> {
         let n_directions = basis.n_directions();
         let chunks: Vec<&[f32]> = rows.chunks(CHUNK * dims).collect();
-        let rotated = columns::tasks(chunks.len(), |chunk| rotate(dims, chunks[chunk], basis));
+        let rotated = parallel::map(chunks.len(), |chunk| rotate(dims, chunks[chunk], basis));
         let longest = rotated.iter().fold(0.0, |max, part| part.longest.max(max));
         // This is false for a length that is not a number, which `f64::max` would not keep.
         let all_short = rotated.iter().all(|part| part.length_sq < f64::INFINITY);
@@ -72,7 +72,7 @@ impl Placed {
         let length_sq: f64 = rotated.iter().map(|part| part.length_sq).sum();
         let spread = (length_sq / (rows.len() / dims) as f64).sqrt();
         let lattice = Lattice::new(longest, spread);
-        let coordinates = columns::tasks(rotated.len(), |part| {
+        let coordinates = parallel::map(rotated.len(), |part| {
             let values = rotated[part].values.as_flattened();
             let mut placed = vec![0; values.len()];
             for (row, placed) in values
@@ -103,7 +103,7 @@ impl Tree {
         sort(&mut order, placed);
         let leaf = |leaf: &[u32]| std::array::from_fn(|lane| leaf[lane.min(leaf.len() - 1)]);
         let rows: Vec<[u32; LANES]> = order.chunks(LANES).map(leaf).collect();
-        let steps = columns::tasks(placed.n_directions / (2 * STEP), |step| {
+        let steps = parallel::map(placed.n_directions / (2 * STEP), |step| {
             let coordinates = |leaf: &[u32; LANES]| {
                 let lanes = leaf.map(|row| &placed.row(row)[2 * STEP * step..][..2 * STEP]);
                 std::array::from_fn(|pair| pairs(&lanes, pair))

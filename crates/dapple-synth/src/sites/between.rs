@@ -8,8 +8,8 @@
 use super::evenness::hexagonal_spacing;
 use super::near::{CHUNK, Near, Places};
 use crate::SiteIdx;
-use crate::columns::tasks;
 use dapple_mesh::{Surface, SurfacePoint};
+use dapple_raster::parallel;
 use glam::DVec2;
 
 /// The largest distance of two points with an edge, in spacings.
@@ -45,7 +45,7 @@ pub(crate) fn edges(surface: &Surface, points: &[SurfacePoint]) -> Vec<Edge> {
     let spacing = hexagonal_spacing(surface.area(), points.len());
     let places = Places::new(surface, points);
     let near = Near::new(&places, 0, REACH * spacing, 0.0);
-    let chunks = tasks(points.len().div_ceil(CHUNK), |chunk| {
+    let chunks = parallel::map(points.len().div_ceil(CHUNK), |chunk| {
         let mut edges = Vec::with_capacity(3 * CHUNK);
         let mut star = Star::default();
         for row in 0..CHUNK.min(points.len() - chunk * CHUNK) {

@@ -5,8 +5,8 @@
 
 use super::oriented::Oriented;
 use super::star::{Spoke, StarFinder};
-use crate::columns::tasks;
 use crate::{SiteGraph, SiteGrid, SiteIdx, SynthError, SynthErrorKind};
+use dapple_raster::parallel;
 use glam::DVec3;
 
 /// The stars that one thread makes at a time.
@@ -107,7 +107,7 @@ impl Stars {
                 &members[index * CHUNK..((index + 1) * CHUNK).min(n_sites)],
             )
         };
-        let parts = tasks(n_sites.div_ceil(CHUNK), part);
+        let parts = parallel::map(n_sites.div_ceil(CHUNK), part);
         for (part, members) in parts.into_iter().zip(members.chunks(CHUNK)) {
             let before = stars.spokes.len() as u32;
             let mut from = before;

@@ -1,8 +1,8 @@
 //! How even points are on a surface: the distances to nearest neighbors.
 
-use crate::columns::tasks;
 use crate::{SiteGrid, SiteIdx, Sites};
 use dapple_mesh::Surface;
+use dapple_raster::parallel;
 
 /// How far from their nearest neighbors points are, in units of the distance that a hexagonal lattice with as many
 /// points on the same area would have.
@@ -57,7 +57,7 @@ pub fn evenness(surface: &Surface, sites: &Sites, n: usize) -> Evenness {
     }
     let spacing = hexagonal_spacing(surface.area(), n);
     let grid = SiteGrid::new(&sites.positions()[..n], 2.0 * spacing);
-    let ratios = tasks(n, |site| {
+    let ratios = parallel::map(n, |site| {
         nearest(sites, &grid, SiteIdx(site as u32), spacing) / spacing
     });
     Evenness {

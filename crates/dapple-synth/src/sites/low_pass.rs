@@ -11,8 +11,8 @@
 //! neighbors, so that a constant column does not change in a single bit. On even sites a step adds `t r² / 2` to the
 //! variance of a spot along each axis, with r the spacing.
 
-use crate::columns::{chunks, tasks};
 use crate::{Blend, SiteGraph, SiteIdx, SynthError, SynthErrorKind};
+use dapple_raster::parallel;
 use glam::DVec3;
 
 /// The sites that one thread works on at a time.
@@ -61,7 +61,7 @@ impl<'a> LowPass<'a> {
             }
             weights
         };
-        let weights = tasks(graph.len().div_ceil(CHUNK), chunk).concat();
+        let weights = parallel::map(graph.len().div_ceil(CHUNK), chunk).concat();
         Ok(Self { graph, weights })
     }
 
@@ -122,7 +122,7 @@ impl<'a> LowPass<'a> {
             t,
             "from 0 to 1",
         )?;
-        chunks(to, CHUNK, |chunk, to| {
+        parallel::for_each_chunk(to, CHUNK, |chunk, to| {
             for (site, new) in (chunk * CHUNK..).zip(to) {
                 let site = SiteIdx(site as u32);
                 let row = self.graph.row(site);

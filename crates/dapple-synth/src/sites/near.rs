@@ -1,8 +1,8 @@
 //! The neighbors of sites in lists, made once and read often.
 
-use crate::columns::tasks;
 use crate::{SiteGrid, SiteIdx};
 use dapple_mesh::{Surface, SurfacePoint};
+use dapple_raster::parallel;
 use glam::DVec3;
 
 /// Sites whose lists are made and kept together.
@@ -34,8 +34,8 @@ pub(crate) struct Rows {
 impl Places {
     pub(crate) fn new(surface: &Surface, points: &[SurfacePoint]) -> Self {
         Self {
-            positions: tasks(points.len(), |at| surface.position(points[at])),
-            normals: tasks(points.len(), |at| surface.normal(points[at])),
+            positions: parallel::map(points.len(), |at| surface.position(points[at])),
+            normals: parallel::map(points.len(), |at| surface.normal(points[at])),
         }
     }
 }
@@ -49,7 +49,7 @@ impl Near {
     pub(crate) fn new(places: &Places, first: usize, reach: f64, facing: f64) -> Self {
         let grid = SiteGrid::new(&places.positions, reach);
         let n_sites = places.positions.len();
-        let chunks = tasks(n_sites.saturating_sub(first).div_ceil(CHUNK), |chunk| {
+        let chunks = parallel::map(n_sites.saturating_sub(first).div_ceil(CHUNK), |chunk| {
             let first = first + chunk * CHUNK;
             let mut rows = Rows {
                 starts: vec![0],

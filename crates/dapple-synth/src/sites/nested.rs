@@ -15,9 +15,9 @@ use super::repel::repel;
 use super::scatter::Scatter;
 use super::share::Pieces;
 use super::unstick::unstick;
-use crate::columns::sort_keys;
 use dapple_hash::Seed;
 use dapple_mesh::{Surface, SurfacePoint};
+use dapple_raster::parallel;
 use glam::DVec3;
 
 /// The most points that begin at random.
@@ -159,12 +159,7 @@ impl Nest<'_> {
 /// The numbers of edges, sorted by length, for long ones have the most room in their middle.
 fn longest_first(edges: &[Edge]) -> Vec<u32> {
     // The bits of positive numbers are in the order of the numbers.
-    let mut keyed: Vec<(u64, u32)> = (0..)
-        .zip(edges)
-        .map(|(number, edge)| (!edge.length.to_bits(), number))
-        .collect();
-    sort_keys(&mut keyed);
-    keyed.into_iter().map(|(_, number)| number).collect()
+    sorted(edges.iter().map(|edge| !edge.length.to_bits()))
 }
 
 /// Adds `missing` points on edges, the longest of which come first: one in the middle, or two on the first edges if
@@ -193,17 +188,22 @@ fn sort(surface: &Surface, points: &mut [SurfacePoint]) {
         .fold(DVec3::NEG_INFINITY, DVec3::max);
     let widest = (high - low).max_element().max(f64::MIN_POSITIVE);
     let scale = f64::from((1_u32 << MORTON_BITS) - 1) / widest;
-    let mut keyed: Vec<(u64, u32)> = (0..)
-        .zip(&positions)
-        .map(|(number, &position)| (morton((position - low) * scale), number))
-        .collect();
-    // Equal keys have different numbers, so there is one order only.
-    sort_keys(&mut keyed);
-    let sorted: Vec<SurfacePoint> = keyed
+    let keys = positions
         .iter()
-        .map(|&(_, number)| points[number as usize])
-        .collect();
+        .map(|&position| morton((position - low) * scale));
+    let sorted = sorted(keys).into_iter();
+    let sorted: Vec<_> = sorted.map(|number| points[number as usize]).collect();
     points.copy_from_slice(&sorted);
+}
+
+/// The numbers of keys in the order of the keys, and those of equal keys in the order of the numbers.
+fn sorted(keys: impl Iterator<Item = u64>) -> Vec<u32> {
+    let mut numbered: Vec<u128> = (0..)
+        .zip(keys)
+        .map(|(number, key)| u128::from(key) << 32 | number)
+        .collect();
+    parallel::sort(&mut numbered);
+    numbered.into_iter().map(|key| key as u32).collect()
 }
 
 /// The bits of the three coordinates in turn.

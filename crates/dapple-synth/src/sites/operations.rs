@@ -6,8 +6,8 @@
 
 use super::low_pass::check_length;
 use super::oriented::Oriented;
-use crate::columns::chunks;
 use crate::{Blend, Hierarchy, LowPass, SiteTriangles, SynthError};
+use dapple_raster::parallel;
 use glam::DVec3;
 
 /// The part t of the steps of [`Hierarchy::downsample`], which is the paper's example.
@@ -99,7 +99,7 @@ impl Hierarchy {
         let (sites, to) = (self.oriented(level)?, self.finer(level)?);
         check_length("values", column.len(), sites.positions.len())?;
         check_length("values of the finer level", finer.len(), to.positions.len())?;
-        chunks(finer, CHUNK, |chunk, values| {
+        parallel::for_each_chunk(finer, CHUNK, |chunk, values| {
             for (site, value) in (chunk * CHUNK..).zip(values) {
                 let (position, normal) = (to.positions[site], to.normals[site]);
                 let nearest = || {

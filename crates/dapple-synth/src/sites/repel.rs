@@ -18,9 +18,9 @@
 
 use super::near::{CHUNK, Near, Places};
 use crate::SiteIdx;
-use crate::columns::chunks;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use dapple_mesh::{FaceEdge, FaceIdx, Surface, SurfacePoint};
+use dapple_raster::parallel;
 use glam::{DVec2, DVec3};
 
 /// A point moves by this part of the push at first; with a quarter an even lattice was seen to swing.
@@ -107,11 +107,11 @@ impl<'a> Crowd<'a> {
     fn step(&mut self, points: &mut [SurfacePoint], gain: f64) -> usize {
         let n_limited = AtomicUsize::new(0);
         let crowd = &*self;
-        chunks(&mut points[self.n_fixed..], CHUNK, |chunk, points| {
+        parallel::for_each_chunk(&mut points[self.n_fixed..], CHUNK, |chunk, points| {
             n_limited.fetch_add(crowd.step_chunk(chunk, points, gain), Ordering::Relaxed);
         });
         let (surface, points) = (self.surface, &points[self.n_fixed..]);
-        chunks(
+        parallel::for_each_chunk(
             &mut self.positions[self.n_fixed..],
             CHUNK,
             |chunk, positions| {

@@ -10,9 +10,9 @@ use super::near::{CHUNK, Places};
 use super::scatter::Scatter;
 use super::share::Pieces;
 use crate::SiteGrid;
-use crate::columns::tasks;
 use dapple_hash::Seed;
 use dapple_mesh::{Surface, SurfacePoint};
+use dapple_raster::parallel;
 use glam::DVec3;
 
 /// The distance to the nearest neighbor, in spacings, below which a point is stuck.
@@ -70,7 +70,7 @@ impl Crowd {
     /// The points from `first` on that are stuck; of two free ones, the later.
     fn stuck_from(&self, first: usize) -> Vec<usize> {
         let n_sites = self.places.positions.len();
-        let chunks = tasks(n_sites.saturating_sub(first).div_ceil(CHUNK), |chunk| {
+        let chunks = parallel::map(n_sites.saturating_sub(first).div_ceil(CHUNK), |chunk| {
             let from = first + chunk * CHUNK;
             (from..n_sites.min(from + CHUNK))
                 .filter(|&site| {

@@ -1,13 +1,14 @@
 //! In which order the sites of a pass are visited: by turns, freely, or one after the other.
 
 use super::{State, Visit, Worker};
+use crate::SynthError;
 use crate::ground::{Ground, Painted};
 use crate::kept::Kept;
 use crate::turns::{Board, Turns};
 use crate::usage::Usage;
-use crate::{SynthError, columns};
 use core::iter::repeat_with;
 use core::sync::atomic::AtomicU32;
+use dapple_raster::parallel;
 use std::sync::{Mutex, PoisonError};
 
 /// The most sites between two calls of the callback.
@@ -36,7 +37,7 @@ impl<G: Ground> Visit<'_, G> {
             factors: None,
         };
         let mut workers = Vec::new();
-        workers.resize_with(columns::n_threads(), Worker::default);
+        workers.resize_with(parallel::n_threads(), Worker::default);
         if self.same.is_none() {
             return self.visit_freely(&state, &mut workers, keep as usize, tell);
         }
@@ -85,7 +86,7 @@ impl<G: Ground> Visit<'_, G> {
         for first in (0..turns.len()).step_by(STRETCH) {
             let end = turns.len().min(first + STRETCH);
             let board = Board::new(first..end, workers.len());
-            columns::together(workers, |thread, worker| {
+            parallel::together(workers, |thread, worker| {
                 while let Some(turn) = board.take(thread) {
                     let (site, wait) = turns.turn(turn);
                     board.wait(wait);
@@ -113,7 +114,7 @@ impl<G: Ground> Visit<'_, G> {
         for first in (0..n_sites).step_by(STRETCH) {
             let end = n_sites.min(first + STRETCH);
             let left = Mutex::new(sites.by_ref().take(end - first));
-            columns::together(workers, |_, worker| {
+            parallel::together(workers, |_, worker| {
                 loop {
                     let mut left = left.lock().unwrap_or_else(PoisonError::into_inner);
                     let piece: Vec<_> = left.by_ref().take(PIECE).collect();
