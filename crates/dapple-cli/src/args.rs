@@ -16,9 +16,9 @@ use crate::encode::Format;
 use crate::error::{Hint, usage};
 use crate::output::Target;
 use crate::progress::Style;
+use crate::words::Word;
 use anyhow::Result;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::{Path, PathBuf};
 
 /// What every subcommand takes.
@@ -31,7 +31,7 @@ pub(crate) struct Common {
 
     /// How progress is shown on standard error: as a bar on a terminal and as lines elsewhere, or always as lines, or as lines
     /// of JSON.
-    #[arg(long, global = true, value_enum, value_name = "STYLE", default_value_t = Style::Auto)]
+    #[arg(long, global = true, value_name = "STYLE", value_parser = Word::<Style>::all(), default_value_t = Style::Auto)]
     pub(crate) progress: Style,
 
     /// Print nothing but errors and what was asked for.
@@ -81,7 +81,7 @@ pub(crate) struct ImageArgs {
     /// The format. By default by the ending of the output: EXR for `.exr`, a NumPy array for `.npy`, raw heights for `.r16`; for
     /// `.png` 8 bits for color and 16 bits for data (gray images and normals), and 16 bits for color, too, if the input is
     /// deeper than 8.
-    #[arg(long, value_enum, value_name = "FORMAT")]
+    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all())]
     pub(crate) format: Option<Format>,
 
     /// Color gray results: a palette (gray, lagoon, ember, terrain, cow, giraffe, labels) or colors from low to high,
@@ -90,25 +90,25 @@ pub(crate) struct ImageArgs {
     pub(crate) ramp: Option<RampArg>,
 }
 
-/// Along which axes something repeats.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Axes {
-    /// Left and right fit together.
-    X,
-    /// Top and bottom fit together.
-    Y,
-    /// All sides fit together.
-    Both,
-    /// Nothing repeats.
-    None,
+dapple::raster::named! {
+    /// Along which axes something repeats.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(crate) enum Axes {
+        /// Left and right fit together.
+        X = "x",
+        /// Top and bottom fit together.
+        Y = "y",
+        /// All sides fit together.
+        Both = "both",
+        /// The picture does not repeat.
+        None = "none",
+    }
 }
 
 impl Axes {
-    /// Reads the axes of what does nothing along none.
-    pub(crate) fn some() -> impl TypedValueParser<Value = Self> {
-        let names = PossibleValuesParser::new(["x", "y", "both"]);
-        names.try_map(|name| Self::from_str(&name, true))
+    /// Reads one or both axes, where `none` has no meaning.
+    pub(crate) fn some() -> Word<Self> {
+        Word::some(&[Self::X, Self::Y, Self::Both])
     }
 
     /// Whether x and y repeat.

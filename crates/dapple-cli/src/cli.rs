@@ -88,4 +88,23 @@ mod tests {
         }
         assert!(n_values > 50, "they were seen: {n_values}");
     }
+    #[test]
+    fn the_help_of_values_is_a_plain_sentence() {
+        let mut n_sentences = 0;
+        for subcommand in command().get_subcommands() {
+            for arg in subcommand.get_arguments() {
+                for value in arg.get_possible_values() {
+                    let Some(help) = value.get_help().map(ToString::to_string) else {
+                        continue;
+                    };
+                    assert!(!help.contains("](") && !help.ends_with('.'), "{help}");
+                    n_sentences += 1;
+                }
+            }
+        }
+        assert!(
+            n_sentences > 60,
+            "values of libraries have help, too: {n_sentences}"
+        );
+    }
 }

@@ -4,30 +4,28 @@ use crate::args::RampArg;
 use crate::error::{Hint, usage};
 use crate::output::Target;
 use anyhow::Result;
-use clap::ValueEnum;
 use dapple::color::{Interpolation, LinearRgb, LinearRgba, Outside, RampSpace};
 use dapple::image::{Content, Depth, Encoding, RowWriter};
 use dapple::raster::Raster;
 use dapple::recipe::{Input, Node, Ramped};
 use dapple::tile::Map;
-use serde::Serialize;
 use std::io::Cursor;
 
-/// The formats of images.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Format {
-    /// PNG with 8 bits per channel.
-    Png8,
-    /// PNG with 16 bits per channel; also png.
-    #[value(alias = "png")]
-    Png16,
-    /// OpenEXR with 32-bit floating point.
-    Exr,
-    /// A NumPy array of 32-bit floating point.
-    Npy,
-    /// Raw heights of 16 bits, as terrain importers take them, with a JSON file that says their size.
-    R16,
+dapple::raster::named! {
+    /// The formats of images.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(crate) enum Format {
+        /// PNG with 8 bits per channel.
+        Png8 = "png8",
+        /// PNG with 16 bits per channel; also png.
+        Png16 = "png16" | "png",
+        /// OpenEXR with 32-bit floating point.
+        Exr = "exr",
+        /// A NumPy array of 32-bit floating point.
+        Npy = "npy",
+        /// Raw heights of 16 bits, as terrain importers take them, with a JSON file that says their size.
+        R16 = "r16",
+    }
 }
 
 impl Format {

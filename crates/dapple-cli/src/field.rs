@@ -9,6 +9,7 @@ use crate::job::{Context, Job, put_text};
 use crate::layers::{Image, Layers};
 use crate::output::Target;
 use crate::progress::Progress;
+use crate::words::Word;
 use anyhow::{Error, Result};
 use dapple::hash::Seed;
 use dapple::recipe::{
@@ -29,7 +30,7 @@ pub(crate) struct FieldArgs {
     pub(crate) size: Size,
 
     /// Along which axes the picture repeats.
-    #[arg(long, value_enum, default_value_t = Axes::Both)]
+    #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
     pub(crate) wrap: Axes,
 
     /// Make only this part of the picture, in pixels: bit for bit the crop of the whole.

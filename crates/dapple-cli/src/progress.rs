@@ -6,7 +6,6 @@
 )]
 
 use crate::job::{Context, eprintln_if_possible};
-use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
 use std::sync::{Mutex, PoisonError};
@@ -21,16 +20,18 @@ const PERIOD: Duration = Duration::from_secs(5);
 /// The time between lines for programs.
 const PERIOD_JSON: Duration = Duration::from_millis(100);
 
-/// How progress is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Style {
-    /// A bar on a terminal, and lines elsewhere.
-    #[default]
-    Auto,
-    /// A line every few seconds.
-    Lines,
-    /// Lines of JSON, also for the files that were written.
-    Json,
+dapple::raster::named! {
+    /// How progress is shown.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub(crate) enum Style {
+        /// A bar on a terminal, and lines elsewhere.
+        #[default]
+        Auto = "auto",
+        /// A line every few seconds.
+        Lines = "lines",
+        /// Lines of JSON, also for the files that were written.
+        Json = "json",
+    }
 }
 
 /// A bar, or a spinner where nobody knows how long it takes. It goes away when this does.

@@ -25,19 +25,16 @@ pub struct Normal {
     pub z: f32,
 }
 
-/// Where the second part of a normal, the green one of its color, points.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "lowercase")
-)]
-pub enum NormalY {
-    /// Up, as in OpenGL, glTF, Blender, Unity and Godot.
-    #[default]
-    OpenGl,
-    /// Down, as in DirectX and Unreal.
-    DirectX,
+dapple_raster::named! {
+    /// Where the second part of a normal, the green one of its color, points.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum NormalY {
+        /// Up, as in OpenGL, glTF, Blender, Unity and Godot.
+        #[default]
+        OpenGl = "opengl",
+        /// Down, as in DirectX and Unreal.
+        DirectX = "directx",
+    }
 }
 
 /// How a height becomes a normal.
@@ -59,14 +56,11 @@ pub struct NormalOptions {
     pub y: NormalY,
 }
 
-impl Default for NormalOptions {
-    fn default() -> Self {
-        Self {
-            strength: 1.0,
-            extent: DVec2::ONE,
-            wrap: [Wrap::Repeat; 2],
-            y: NormalY::OpenGl,
-        }
+impl From<HeightPlane> for NormalOptions {
+    /// Green points up.
+    fn from(plane: HeightPlane) -> Self {
+        let y = NormalY::default();
+        Self { plane, y }
     }
 }
 

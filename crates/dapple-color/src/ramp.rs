@@ -21,59 +21,50 @@ pub struct ColorStop {
     pub color: LinearRgb,
 }
 
-/// What lies between two stops of a color ramp.
-///
-#[cfg_attr(doc, doc = include_str!("../docs/interpolation.md"))]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Interpolation {
-    /// A straight line from color to color.
-    #[default]
-    Linear,
-    /// The color of the stop before; see [`ColorRamp::bands`] for bands of equal width.
-    Stepped,
-    /// From color to color by `3t² - 2t³`, which has no kink at a stop.
-    Smooth,
+dapple_raster::named! {
+    /// What lies between two stops of a color ramp.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/interpolation.md"))]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Interpolation {
+        /// A straight line from color to color.
+        #[default]
+        Linear = "linear",
+        /// The color of the stop before; see [`ColorRamp::bands`] for bands of equal width.
+        Stepped = "stepped",
+        /// From color to color by `3t² - 2t³`, which has no kink at a stop.
+        Smooth = "smooth",
+    }
 }
 
-/// The space in which a color ramp mixes the colors of two stops.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum RampSpace {
-    /// Oklab (Ottosson 2020): equal steps look about equal, and the middle of two colors is halfway in lightness and hue.
-    /// Between two strong colors a part may be a little below 0 or above 1, which files cut off.
-    #[default]
-    Oklab,
-    /// The codes of sRGB, as most drawing programs mix. Parts below 0 are mixed as those above, with their sign.
-    Srgb,
-    /// Linear light, as lamps mix; for numbers that are no colors, and where black to white has to be a straight line.
-    Linear,
+dapple_raster::named! {
+    /// The space in which a color ramp mixes the colors of two stops.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum RampSpace {
+        /// Oklab (Ottosson 2020): equal steps look about equal, and the middle of two colors is halfway in lightness and hue.
+        /// Between two strong colors a part may be a little below 0 or above 1, which files cut off.
+        #[default]
+        Oklab = "oklab",
+        /// The codes of sRGB, as most drawing programs mix. Parts below 0 are mixed as those above, with their sign.
+        Srgb = "srgb",
+        /// Linear light, as lamps mix; for numbers that are no colors, and where black to white has to be a straight line.
+        Linear = "linear",
+    }
 }
 
-/// What lies before the first stop and after the last.
-///
-#[cfg_attr(doc, doc = include_str!("../docs/outside.md"))]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-#[non_exhaustive]
-pub enum Outside {
-    /// The color of the nearest stop.
-    #[default]
-    Clamp,
-    /// The ramp again and again; the first color holds where one ends and the next begins.
-    Repeat,
+dapple_raster::named! {
+    /// What lies before the first stop and after the last.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/outside.md"))]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
+    pub enum Outside {
+        /// The color of the nearest stop.
+        #[default]
+        Clamp = "clamp",
+        /// The ramp again and again; the first color holds where one ends and the next begins.
+        Repeat = "repeat",
+    }
 }
 
 /// Turns numbers into colors.

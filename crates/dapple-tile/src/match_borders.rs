@@ -25,20 +25,17 @@ use crate::{Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
-/// Which part of the first tile becomes the border of all.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum BorderSource {
-    /// Its border. The first tile has to repeat by itself, and stays as it is.
-    #[default]
-    Border,
-    /// The row and the column through its middle, whether it repeats or not. The first tile changes as all others do. The
-    /// width is less than half of a side, so that nothing is seen of where the borders of the first tile meet.
-    Middle,
+dapple_raster::named! {
+    /// Which part of the first tile becomes the border of all.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum BorderSource {
+        /// Its border. The first tile has to repeat by itself, and stays as it is.
+        #[default]
+        Border = "border",
+        /// The row and the column through its middle, whether it repeats or not. The first tile changes as all others do. The
+        /// width is less than half of a side, so that nothing is seen of where the borders of the first tile meet.
+        Middle = "middle",
+    }
 }
 
 /// Gives unlike tiles the same borders.

@@ -33,19 +33,16 @@ pub enum Basis {
     Sines,
 }
 
-/// What the pixels of the image are to the spline.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Pixels {
-    /// Its coefficients, as in the paper.
-    #[default]
-    Coefficients,
-    /// Its values at the pixel centers; coefficients come from a prefilter. To sines, pixels are always this.
-    Samples,
+dapple_raster::named! {
+    /// What the pixels of the image are to the spline.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum Pixels {
+        /// Its coefficients, as in the paper.
+        #[default]
+        Coefficients = "coefficients",
+        /// Its values at the pixel centers; coefficients come from a prefilter. To sines, pixels are always this.
+        Samples = "samples",
+    }
 }
 
 /// The blend tile of Du, Wang and Meng.

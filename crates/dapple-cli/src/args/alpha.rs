@@ -43,7 +43,9 @@ impl FromStr for Alpha {
                     "{background:?} is no color; one is such as #ff8000, black or white"
                 )),
             },
-            _ => Err(format!("{text:?} is none of keep, drop and over:COLOR")),
+            _ => Err(format!(
+                "{text:?} is unknown: give keep, drop or over:COLOR"
+            )),
         }
     }
 }

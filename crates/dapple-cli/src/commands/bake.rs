@@ -82,9 +82,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
 
-    /// Where green points in normal maps: up (opengl: Blender, Unity, Godot, glTF) or down (directx: Unreal). By default as
-    /// the preset or the recipe has it, which is up unless it says otherwise.
-    #[arg(long, value_name = "WAY", value_parser = Word::<NormalY>::of(&["opengl", "directx"]))]
+    /// Where green points in normal maps. By default as the preset or the recipe says, or else up (opengl).
+    #[arg(long, value_name = "WAY", value_parser = Word::<NormalY>::all())]
     normal_y: Option<NormalY>,
 
     /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6, instead of what the recipe says.
@@ -104,12 +103,12 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Output")]
     sheet: bool,
 
-    /// Write a picture of the material in light, too, as `NAME_preview.png`: on a plane of 2 x 2 tiles or on a sphere.
-    #[arg(long, value_enum, value_name = "THING", num_args = 0..=1, require_equals = true, default_missing_value = "plane", help_heading = "Output")]
+    /// Write a lit preview of the material, too, as `NAME_preview.png`: on a plane of 2 x 2 tiles or on a sphere.
+    #[arg(long, value_name = "THING", value_parser = Word::<Thing>::all(), num_args = 0..=1, require_equals = true, default_missing_value = "plane", help_heading = "Output")]
     preview: Option<Thing>,
 
     /// The format; by default PNG with 16 bits, or by the ending of the output: EXR, a NumPy array, or raw heights.
-    #[arg(long, value_enum, value_name = "FORMAT", help_heading = "Output")]
+    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 
     #[command(flatten)]

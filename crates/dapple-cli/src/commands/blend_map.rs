@@ -5,6 +5,7 @@ use crate::encode::Format;
 use crate::error::{Exit, Hint};
 use crate::input::{self, ALPHA_HINT, Kind};
 use crate::job::{Context, Job};
+use crate::words::Word;
 use crate::progress::Progress;
 use anyhow::{Result, anyhow};
 use dapple::raster::Wrap;
@@ -50,7 +51,7 @@ pub(crate) struct Args {
     contrast: f64,
 
     /// Along which axes the texture repeats, and its map with it. Along others it is mirrored at its edges.
-    #[arg(long, value_enum, default_value_t = Axes::Both)]
+    #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
     wrap: Axes,
 
     /// Leave the values as they are; else each becomes its rank, from 0 to 1.

@@ -8,9 +8,9 @@ use crate::error::{Exit, Hint};
 use crate::input;
 use crate::job::{Context, Job};
 use crate::output::Target;
+use crate::words::Word;
 use anyhow::{Context as _, Result};
 use channels::{Channel, channels, format};
-use clap::ValueEnum;
 use dapple::tile::{ChannelReport, SeamOptions, SeamReports};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -41,7 +41,7 @@ pub(crate) struct Args {
     region: Option<Region>,
 
     /// Along which axes images are to repeat; `none` leaves out the seam report.
-    #[arg(long, value_enum, value_name = "AXES", default_value_t = Axes::Both)]
+    #[arg(long, value_name = "AXES", value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
     wrap: Axes,
 
     /// Compare the seam only with every n-th boundary of pixels.
@@ -53,7 +53,7 @@ pub(crate) struct Args {
     check: bool,
 
     /// The format of the findings: text for people, or JSON for programs; by default by the ending of the output.
-    #[arg(long, value_enum, value_name = "FORMAT", help_heading = "Output")]
+    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 
     #[command(flatten)]
@@ -61,14 +61,15 @@ pub(crate) struct Args {
     output: OutputArgs,
 }
 
-/// How findings are told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum Format {
-    /// For people.
-    Text,
-    /// For programs.
-    Json,
+dapple::raster::named! {
+    /// The format of findings.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum Format {
+        /// For people.
+        Text = "text",
+        /// For programs.
+        Json = "json",
+    }
 }
 
 /// What is found in a file.

@@ -9,9 +9,10 @@ use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job};
 use crate::output::Target;
 use crate::progress::Progress;
+use crate::words::Word;
 use anyhow::Result;
-use clap::ValueEnum;
 use dapple::points::PointSet;
+use dapple::raster::Named;
 use scatter::{ScatterArgs, Scattered};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -50,7 +51,7 @@ pub(crate) struct Args {
     report: bool,
 
     /// csv, json or png (a picture); by default by the ending of the output, and csv on standard output.
-    #[arg(long, value_enum, value_name = "FORMAT", help_heading = "Output")]
+    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 
     /// How large the picture is, in pixels: one number is its longer side.
@@ -76,23 +77,13 @@ pub(crate) struct Args {
     output: OutputArgs,
 }
 
-/// What is written of points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum Format {
-    Csv,
-    Json,
-    Png,
-}
-
-impl Format {
-    /// The ending of such files.
-    fn ending(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Json => "json",
-            Self::Png => "png",
-        }
+dapple::raster::named! {
+    /// The format of the points.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum Format {
+        Csv = "csv",
+        Json = "json",
+        Png = "png",
     }
 }
 
@@ -103,7 +94,7 @@ impl Format {
 /// Whatever went wrong.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let target = match &args.output.output {
-        Some(_) => (args.output).target("points", args.format.map_or("csv", Format::ending))?,
+        Some(_) => (args.output).target("points", args.format.map_or("csv", Format::name))?,
         None => Target::Stdout,
     };
     let format = format(args, &target)?;

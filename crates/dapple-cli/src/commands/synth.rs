@@ -100,7 +100,9 @@ impl FromStr for MapArg {
                 name: name.to_owned(),
                 path: PathBuf::from(path),
             }),
-            _ => Err(format!("{text:?} is no map; one is such as normal=FILE")),
+            _ => Err(format!(
+                "{text:?} is not a map: give NAME=FILE, such as normal=FILE"
+            )),
         }
     }
 }

@@ -3,7 +3,6 @@
 use crate::error::{Hint, usage};
 use crate::words::Word;
 use anyhow::Result;
-use clap::ValueEnum;
 use dapple::hash::Seed;
 use dapple::tile::{BorderSource, CornerTiles, Disturbance, Map, MatchBorders, TileError};
 use serde::Serialize;
@@ -11,21 +10,22 @@ use serde::Serialize;
 /// The most tiles of corners.
 const CORNERS_MAX: usize = 4;
 
-/// How copies become unlike.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum Name {
-    Disturb,
-    Corners,
-    Borders,
+dapple::raster::named! {
+    /// How copies become unlike.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum Name {
+        Disturb = "disturb",
+        Corners = "corners",
+        Borders = "borders",
+    }
 }
 
 /// The method and its options.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Method")]
 pub(super) struct MethodArgs {
-    /// How; by default after the number of tiles.
-    #[arg(long, value_enum)]
+    /// The method; by default by the number of tiles.
+    #[arg(long, value_parser = Word::<Name>::all())]
     method: Option<Name>,
 
     /// disturb: how many pixels along the borders of a tile stay as they are; by default 4, or an eighth of the shorter side if
@@ -45,7 +45,7 @@ pub(super) struct MethodArgs {
 
     /// borders: what all borders become: the border of the first tile, or its middle, if it does not repeat; by default the
     /// border.
-    #[arg(long, value_name = "WHICH", value_parser = Word::<BorderSource>::of(&["border", "middle"]))]
+    #[arg(long, value_name = "WHICH", value_parser = Word::<BorderSource>::all())]
     source: Option<BorderSource>,
 
     /// corners: the share of the shorter side that cuts may take, above 0 and at most 1; the more, the less the pieces are squares;
@@ -120,10 +120,8 @@ impl MethodArgs {
             ("share", self.share.is_some(), Name::Corners),
         ] {
             if is_given && method != used_by {
-                let name = used_by.to_possible_value();
-                let name = name.map_or_else(String::new, |value| value.get_name().to_owned());
-                let message = format!("--{option} means nothing to this method");
-                return Err(usage(message).hint(format!("add --method {name}")));
+                let message = format!("--{option} has no effect on this method");
+                return Err(usage(message).hint(format!("add --method {used_by}")));
             }
         }
         Ok(())

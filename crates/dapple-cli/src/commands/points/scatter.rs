@@ -5,7 +5,6 @@ use crate::error::{Hint, usage};
 use crate::input::{self, ALPHA_HINT, Kind as ImageKind};
 use crate::words::Word;
 use anyhow::{Context as _, Error, Result};
-use clap::ValueEnum;
 use dapple::hash::Seed;
 use dapple::points::glam::DVec2;
 use dapple::points::raster::{Ramp, Varying, Wrap};
@@ -26,14 +25,15 @@ const COUNT: u32 = 1000;
 /// The most columns and rows at which the density of an image is read.
 const PLACES_MAX: u32 = 2048;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum Kind {
-    Poisson,
-    Variable,
-    Nested,
-    Jittered,
-    White,
+dapple::raster::named! {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum Kind {
+        Poisson = "poisson",
+        Variable = "variable",
+        Nested = "nested",
+        Jittered = "jittered",
+        White = "white",
+    }
 }
 
 /// What points there are to be.
@@ -41,7 +41,7 @@ enum Kind {
 #[command(next_help_heading = "Points")]
 pub(super) struct ScatterArgs {
     /// The kind of points; see below.
-    #[arg(value_enum, default_value_t = Kind::Poisson, hide_possible_values = true, help_heading = None::<&str>)]
+    #[arg(value_parser = Word::<Kind>::all(), default_value_t = Kind::Poisson, hide_possible_values = true, help_heading = None::<&str>)]
     kind: Kind,
 
     /// Where the randomness comes from: any whole number from 0 to 2^64 - 1.
@@ -84,7 +84,7 @@ pub(super) struct ScatterArgs {
     invert: bool,
 
     /// variable: how far apart points of different radius are; by default the mean of their radii.
-    #[arg(long, value_name = "RULE", value_parser = Word::<DiskRule>::of(&["average", "larger", "smaller"]))]
+    #[arg(long, value_name = "RULE", value_parser = Word::<DiskRule>::all())]
     rule: Option<DiskRule>,
 
     /// jittered: columns and rows of the grid; by default square cells for the count.
@@ -110,7 +110,7 @@ pub(super) struct ScatterArgs {
     origin: Position,
 
     /// Along which axes the domain wraps: the points then repeat without a seam.
-    #[arg(long, value_enum, default_value_t = Axes::Both, help_heading = "Domain")]
+    #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both, help_heading = "Domain")]
     wrap: Axes,
 }
 
@@ -254,10 +254,8 @@ impl ScatterArgs {
         ];
         for (option, is_given, kind) in given {
             if is_given && kind != self.kind {
-                let name = kind.to_possible_value();
-                let name = name.map_or(String::new(), |name| name.get_name().to_owned());
-                let message = format!("--{option} means nothing to points of this kind");
-                return Err(usage(message).hint(format!("it is for dapple points {name}")));
+                let message = format!("--{option} has no effect on points of this kind");
+                return Err(usage(message).hint(format!("it is for dapple points {kind}")));
             }
         }
         Ok(())

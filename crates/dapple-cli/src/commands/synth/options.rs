@@ -1,43 +1,24 @@
 //! The options of `dapple synth`.
 
 use crate::args::{Axes, Size, seed};
-use clap::ValueEnum;
+use crate::words::Word;
 use dapple::hash::Seed;
 use dapple::mesh::HierarchyOptions;
 use dapple::synth::{Axes as FieldAxes, Coherence, Edges, Options};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// What lies past the edges of the example.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum EdgesName {
-    /// Nothing.
-    Cut,
-    /// The same again: it is a tile.
-    Wrap,
-}
-
-/// Which way neighborhoods go on away from their site.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum AxesName {
-    /// As the field does.
-    Followed,
-    /// Straight on, as the paper has it.
-    Carried,
-}
-
-/// How a mesh is laid out in a texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum AtlasName {
-    /// Right triangles whose sizes follow the areas of the faces.
-    Area,
-    /// Right triangles of one size, as in the paper.
-    Uniform,
-    /// The mesh's own texture coordinates.
-    Uv,
+dapple::raster::named! {
+    /// How a mesh is laid out in a texture.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(super) enum AtlasName {
+        /// Right triangles whose sizes follow the areas of the faces.
+        Area = "area",
+        /// Right triangles of one size, as in the paper.
+        Uniform = "uniform",
+        /// The mesh's own texture coordinates.
+        Uv = "uv",
+    }
 }
 
 /// Without a mesh.
@@ -49,7 +30,7 @@ pub(super) struct PlaneArgs {
     pub(super) size: Option<Size>,
 
     /// Which sides of the texture fit together: both makes a tile; by default none.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = Word::<Axes>::all())]
     pub(super) wrap: Option<Axes>,
 }
 
@@ -74,7 +55,7 @@ pub(super) struct SurfaceArgs {
     texture_size: Option<u32>,
 
     /// How faces are laid out in the texture; by default by area.
-    #[arg(long, value_enum, value_name = "HOW")]
+    #[arg(long, value_name = "HOW", value_parser = Word::<AtlasName>::all())]
     atlas: Option<AtlasName>,
 
     /// Pixels around each piece of the texture that continue it, 1 to 1024: 2^k for k mipmap levels. By default up to a
@@ -88,8 +69,8 @@ pub(super) struct SurfaceArgs {
     crease: Option<f64>,
 
     /// Which way neighborhoods go on over the surface; by default followed.
-    #[arg(long, value_enum, value_name = "HOW")]
-    axes: Option<AxesName>,
+    #[arg(long, value_name = "HOW", value_parser = Word::<FieldAxes>::all())]
+    axes: Option<FieldAxes>,
 }
 
 /// How pixels of the example are found.
@@ -101,8 +82,8 @@ pub(super) struct MatchArgs {
     seed: u64,
 
     /// What lies past the edges of the example.
-    #[arg(long, value_enum, default_value_t = EdgesName::Cut)]
-    edges: EdgesName,
+    #[arg(long, value_parser = Word::<Edges>::all(), default_value_t = Edges::Cut)]
+    pub(super) edges: Edges,
 
     /// How many levels there are, each with a quarter of the points of the finer one, 1 to 16: more for larger features.
     #[arg(long, value_name = "N", default_value_t = 3)]
@@ -195,14 +176,6 @@ impl SurfaceArgs {
 }
 
 impl MatchArgs {
-    /// What lies past the edges of the example.
-    pub(super) fn edges(&self) -> Edges {
-        match self.edges {
-            EdgesName::Cut => Edges::Cut,
-            EdgesName::Wrap => Edges::Wrap,
-        }
-    }
-
     /// The options of the library.
     pub(super) fn options(&self, surface: &SurfaceArgs) -> Options {
         let default = if self.paper {
@@ -217,11 +190,7 @@ impl MatchArgs {
             schedule: None,
             coherence: self.coherence.unwrap_or(default.coherence),
             evenness: self.evenness.unwrap_or(default.evenness),
-            axes: match surface.axes {
-                Some(AxesName::Followed) => FieldAxes::Followed,
-                Some(AxesName::Carried) => FieldAxes::Carried,
-                None => default.axes,
-            },
+            axes: surface.axes.unwrap_or(default.axes),
             center: default.center,
         }
     }
