@@ -1,6 +1,6 @@
 //! A run of a subcommand: its files, what it says, and the JSON file beside the output.
 
-use crate::args::{ImageArgs, OutputArgs};
+use crate::args::{ImageArgs, OutputArgs, Targets};
 use crate::encode::{Format, content, default_format, encode, encode_with_alpha, ramped, range};
 use crate::error::{Exit, Hint, usage};
 use crate::output::{OutputIdx, Outputs, Target};
@@ -112,6 +112,25 @@ impl<'a> Job<'a> {
             return Err(error.hint("give a file with -o, or lead it on with a pipe"));
         }
         self.claim_text(target)
+    }
+
+    /// Claims a file for each image, and the JSON file. A name or a format that no image has is refused here, before the work.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Format::choose`], [`claim`](Self::claim) and [`claim_sidecar`](Self::claim_sidecar).
+    pub(crate) fn claim_images(
+        &mut self,
+        targets: &Targets,
+        asked: Option<Format>,
+    ) -> Result<Vec<OutputIdx>> {
+        let mut outputs = Vec::new();
+        for target in &targets.files {
+            Format::choose(asked, target, Format::Png16)?;
+            outputs.push(self.claim(target)?);
+        }
+        self.claim_sidecar(&targets.main)?;
+        Ok(outputs)
     }
 
     /// Claims a file of text.

@@ -5,7 +5,6 @@ pub(super) mod layer;
 mod mixing;
 
 use crate::args::{AlphaArgs, ImageArgs, Size};
-use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind};
 use crate::job::{Context, Job};
@@ -158,13 +157,7 @@ fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
         names.push(layer::HEIGHT);
     }
     let targets = files.targets("blend", &names, args.image.ending())?;
-    let mut outputs = Vec::new();
-    for target in &targets.files {
-        Format::choose(args.image.format, target, Format::Png16)?;
-        outputs.push(job.claim(target)?);
-    }
-    job.claim_sidecar(&targets.main)?;
-    Ok(outputs)
+    job.claim_images(&targets, args.image.format)
 }
 
 /// The blend tile, in the size of the blend.

@@ -1,7 +1,6 @@
 //! `dapple blend-map`: a blend tile from the features of a texture.
 
 use crate::args::{Axes, ImageArgs, Region, image_alpha};
-use crate::encode::Format;
 use crate::error::{Exit, Hint};
 use crate::input::{self, ALPHA_HINT, Kind};
 use crate::job::{Context, Job};
@@ -70,13 +69,9 @@ pub(crate) struct Args {
 /// Whatever went wrong.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend-map", &args.output.files);
-    let target = args
-        .output
-        .files
-        .target("blend-map", args.output.ending())?;
-    Format::choose(args.output.format, &target, Format::Png16)?;
-    let output = job.claim(&target)?;
-    job.claim_sidecar(&target)?;
+    let (files, ending) = (&args.output.files, args.output.ending());
+    let targets = files.targets("blend-map", &[""], ending)?;
+    let outputs = job.claim_images(&targets, args.output.format)?;
     let kind = Kind::ByChannels;
     let loaded = input::map(&args.image, kind, args.region, args.alpha, ALPHA_HINT)?;
     let wrap = |repeats| if repeats { Wrap::Repeat } else { Wrap::Mirror };
@@ -97,7 +92,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         rank_equalize(&map)?
     };
     drop(progress);
-    job.write_image(output, Map::Value(map), true, &args.output)?;
+    job.write_image(outputs[0], Map::Value(map), true, &args.output)?;
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)
 }

@@ -5,7 +5,6 @@ mod method;
 use super::blend::alpha;
 use super::blend::layer::{HEIGHT, LayerArg, Material, Reader};
 use crate::args::{AlphaArgs, ImageArgs, Size, seed};
-use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job};
 use crate::output::OutputIdx;
@@ -169,13 +168,7 @@ fn claim(
         .image
         .files
         .targets("copies", &parts, args.image.ending())?;
-    let mut outputs = Vec::new();
-    for target in &targets.files {
-        Format::choose(args.image.format, target, Format::Png16)?;
-        outputs.push(job.claim(target)?);
-    }
-    job.claim_sidecar(&targets.main)?;
-    Ok(outputs)
+    job.claim_images(&targets, args.image.format)
 }
 
 /// The maps of all tiles, the height and then alpha the last of them; whether there is alpha, and whether an image has more than
