@@ -1,4 +1,4 @@
-//! What many subcommands take: how large, where to, in which format.
+//! Options that many subcommands share: size, output, format.
 
 mod alpha;
 mod numbers;
@@ -21,11 +21,11 @@ use anyhow::Result;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// What every subcommand takes.
+/// Options of every subcommand.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Common")]
 pub(crate) struct Common {
-    /// How many threads compute; 0 is one for each core. The result is the same bit for bit.
+    /// The number of threads; 0 is one for each core. The results have the same bits.
     #[arg(long, global = true, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub(crate) threads: u16,
 
@@ -34,25 +34,25 @@ pub(crate) struct Common {
     #[arg(long, global = true, value_name = "STYLE", value_parser = Word::<Style>::all(), default_value_t = Style::Auto)]
     pub(crate) progress: Style,
 
-    /// Print nothing but errors and what was asked for.
+    /// Print only errors and requested reports.
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
 }
 
-/// Where files go, whatever they hold.
+/// The output of every subcommand that writes files.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
-    /// Where to write: a file, a folder, or `-` for standard output. What is there as a folder or ends with a slash is a folder;
-    /// of several files, a name without an ending is one, too. Missing folders are made.
+    /// Where to write: a file, a folder, or `-` for standard output. An existing folder and a path that ends with a slash are
+    /// folders; for several files, so is a path without an ending. Missing folders are created.
     #[arg(short, long, value_name = "FILE|DIR/")]
     pub(crate) output: Option<PathBuf>,
 
-    /// What the files in a folder are called: `NAME.EXT`, or `NAME_MAP.EXT`. By default after what is drawn.
+    /// The name of the files in a folder: `NAME.EXT`, or `NAME_MAP.EXT`. By default that of the recipe, input or subcommand.
     #[arg(long, value_name = "NAME", value_parser = plain_name)]
     pub(crate) name: Option<String>,
 
-    /// Replace files that are there. Without it nothing is overwritten.
+    /// Replace existing files. Without it no file is overwritten.
     #[arg(long)]
     pub(crate) force: bool,
 
@@ -132,7 +132,7 @@ impl OutputArgs {
     ///
     /// # Errors
     ///
-    /// As [`targets`](Self::targets).
+    /// Those of [`targets`](Self::targets).
     pub(crate) fn target(&self, name: &str, ending: &str) -> Result<Target> {
         Ok(self.targets(name, &[""], ending)?.main)
     }
@@ -179,7 +179,7 @@ impl OutputArgs {
         Ok(Targets { main, files })
     }
 
-    /// The folder, if the output is one for so many files.
+    /// The folder, if the output is one for this number of files.
     pub(crate) fn folder(&self, n_files: usize) -> Option<&Path> {
         let output = self.output.as_deref()?;
         let ends_with_slash = output

@@ -5,15 +5,15 @@ use crate::commands::Command;
 use crate::error::EXIT_CODES;
 use clap::{Arg, Command as ClapCommand, CommandFactory, Parser};
 
-/// What `dapple --help` says before the subcommands.
+/// The text of `dapple --help` before the subcommands.
 const ABOUT: &str = "\
 Makes textures: bakes the maps of materials from recipes, draws cells and noise, makes
 images repeat, blends them, and synthesizes more from an example, on the plane and on models.
 
 The same options and the same seed give the same bits on every machine, with any number of threads.
-Nothing is overwritten without --force, and what is not done whole leaves nothing behind.";
+No file is overwritten without --force, and a failed or interrupted command leaves no files.";
 
-/// What it says at the end.
+/// The text at the end.
 const EXAMPLES: &str = "\
 Examples:
   dapple bake flagstone -o out/ --size 2048
@@ -23,7 +23,7 @@ Examples:
   dapple points poisson --count 500 -o points.csv
   dapple info photo.png
 
-`dapple help SUBCOMMAND` says more of one, with examples.";
+`dapple help SUBCOMMAND` explains a subcommand, with examples.";
 
 /// The command line.
 #[derive(Debug, Parser)]

@@ -48,7 +48,7 @@ impl Format {
                 return Ok(asked.unwrap_or(default));
             }
             (_, ending) => {
-                let error = usage(format!("{target}: there is no image format {ending:?}"));
+                let error = usage(format!("{target}: unknown image format {ending:?}"));
                 return Err(error.hint("let the name end in .png, .exr, .npy or .r16"));
             }
         };
@@ -88,11 +88,11 @@ impl Format {
         }
     }
 
-    /// Refuses raw heights for what is no single number at each pixel.
+    /// Refuses raw heights for content that is not a single number at each pixel.
     ///
     /// # Errors
     ///
-    /// If they are to hold something else.
+    /// If the content has several channels.
     pub(crate) fn check(self, content: Content, target: &Target) -> Result<()> {
         if self != Self::R16 || content == Content::Gray {
             return Ok(());
@@ -113,7 +113,7 @@ impl Format {
     }
 }
 
-/// The format of a map if nobody says one: PNG with 8 bits for color that is not deeper, with 16 for everything else.
+/// The default format of a map: PNG with 8 bits for color that is not deeper, with 16 for everything else.
 pub(crate) fn default_format(map: &Map, is_deep: bool) -> Format {
     match map {
         Map::Color(_) if !is_deep => Format::Png8,
@@ -184,7 +184,7 @@ pub(crate) fn encode_with_alpha(
     Ok(rows.finish()?.into_inner())
 }
 
-/// What an image of a map holds.
+/// The content of an image of a map.
 pub(crate) fn content(map: &Map) -> Content {
     match map {
         Map::Value(_) => Content::Gray,

@@ -40,7 +40,7 @@ struct Maps {
 ///
 /// # Errors
 ///
-/// What the recipe refuses.
+/// A refusal of the recipe.
 pub(crate) fn picture(recipe: &Recipe, images: &Images, thing: Thing) -> Result<Raster<LinearRgb>> {
     let aspect = recipe.extent[0] / recipe.extent[1];
     let (shape, camera, tiles) = match thing {
@@ -110,7 +110,7 @@ impl Maps {
         })
     }
 
-    /// What a place of a thing looks like.
+    /// The material at a point of the surface.
     fn material(&self, surface: &Surface) -> Material {
         let uv = surface.uv().unwrap_or_default() * self.tiles;
         let wrap = [Wrap::Repeat; 2];

@@ -8,7 +8,6 @@ use dapple::recipe::similar_words;
 use serde::de::value::Error as WordError;
 use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::ffi::OsStr;
-use std::marker::PhantomData;
 
 /// A word as the names of maps and of fields are written: in small letters, with `_`.
 pub(crate) fn with_underscores(word: &str) -> String {
@@ -20,17 +19,17 @@ pub(crate) fn with_dashes(word: &str) -> String {
     word.trim().to_lowercase().replace('_', "-")
 }
 
-/// The error message for a word that is none of a kind, with the one that was perhaps meant, or all of them and `more`.
+/// The error message for an unknown word: the most similar name, or all names and `more`.
 pub(crate) fn unknown(kind: &str, word: &str, names: &[&str], more: &str) -> String {
     slip(kind, word, names.iter().copied()).unwrap_or_else(|| {
         format!(
-            "{word:?} is no {kind}; there are {}{more}",
+            "unknown {kind} {word:?}: there are {}{more}",
             names.join(", ")
         )
     })
 }
 
-/// The error message for a word that is a slip of a name, if it is one.
+/// The error message for a misspelled name, if the word is one.
 pub(crate) fn slip<'a>(
     kind: &str,
     word: &str,
@@ -38,10 +37,10 @@ pub(crate) fn slip<'a>(
 ) -> Option<String> {
     let written = with_underscores(word);
     let near = similar_words(&written, names).into_iter().next()?;
-    (near != written).then(|| format!("{word:?} is no {kind}; did you mean {near}?"))
+    (near != written).then(|| format!("unknown {kind} {word:?}: did you mean {near}?"))
 }
 
-/// Reads a value of a library by the name that it has in recipes.
+/// Reads a value by its name, and lists the names in the help.
 #[derive(Clone, Debug)]
 pub(crate) struct Word<T>(Vec<(PossibleValue, T)>);
 
@@ -110,6 +109,7 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for Word<T> {
         Some(Box::new(self.0.iter().map(|(name, _)| name.clone())))
     }
 }
+
 /// The first sentence of a documentation in Markdown, without its full stop.
 fn first_sentence(documentation: &str) -> String {
     let words: Vec<_> = documentation.split_whitespace().collect();
@@ -119,7 +119,6 @@ fn first_sentence(documentation: &str) -> String {
         .map_or(text.as_str(), |(first, _)| first);
     sentence.trim_end_matches('.').replace('`', "")
 }
-
 
 #[cfg(test)]
 mod tests {
@@ -131,18 +130,18 @@ mod tests {
         let message = |word: &str| unknown("map", word, &names, ", or all");
         assert_eq!(
             message("Hight"),
-            "\"Hight\" is no map; did you mean height?"
+            "unknown map \"Hight\": did you mean height?"
         );
         assert_eq!(
             message("xyz"),
-            "\"xyz\" is no map; there are height, normal, or all"
+            "unknown map \"xyz\": there are height, normal, or all"
         );
+    }
 
     #[test]
     fn the_help_of_a_value_is_one_sentence() {
         let help = first_sentence(" The mean, over\n `n` pixels. It is slow.\n");
         assert_eq!(help, "The mean, over n pixels");
         assert_eq!(first_sentence(" Tents.\n"), "Tents");
-    }
     }
 }

@@ -54,7 +54,7 @@ impl From<HeightPlane> for CurvatureOptions {
 impl CurvatureOptions {
     /// How many columns and rows around a pixel its value depends on, in a raster of `size` pixels.
     ///
-    /// A crop with so many more pixels on each side has the same bits inside: see [`curvature_of_part`]. Options that
+    /// A crop that has these margins on each side has the same bits inside: see [`curvature_of_part`]. Options that
     /// [`curvature`] refuses have a halo of 1 × 1.
     #[must_use]
     pub fn halo(&self, size: [u32; 2]) -> [u32; 2] {
@@ -109,7 +109,7 @@ pub fn curvature(
 ///
 /// # Errors
 ///
-/// As [`curvature`].
+/// Those of [`curvature`].
 pub fn curvature_of_part(
     height: &Raster<f32>,
     whole: [u32; 2],

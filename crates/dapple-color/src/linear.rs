@@ -112,7 +112,7 @@ impl LinearRgba {
         [r, g, b, C::from_unit(self.alpha)]
     }
 
-    /// What is seen with this color in front of an opaque one.
+    /// This color laid over an opaque one.
     #[must_use]
     pub fn over(self, background: LinearRgb) -> LinearRgb {
         background.lerp(self.color, self.alpha)

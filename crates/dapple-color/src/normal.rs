@@ -117,7 +117,7 @@ pub fn normal_map(
 ///
 /// # Errors
 ///
-/// As [`normal_map`].
+/// Those of [`normal_map`].
 pub fn normal_map_of_part(
     height: &Raster<f32>,
     whole: [u32; 2],

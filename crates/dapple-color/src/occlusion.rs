@@ -73,7 +73,7 @@ impl From<HeightPlane> for OcclusionOptions {
 impl OcclusionOptions {
     /// How many columns and rows around a pixel its value depends on, in a raster of `size` pixels.
     ///
-    /// A crop with so many more pixels on each side has the same bits inside: see [`ambient_occlusion_of_part`]. Options
+    /// A crop that has these margins on each side has the same bits inside: see [`ambient_occlusion_of_part`]. Options
     /// that [`ambient_occlusion`] refuses have a halo of 1 × 1.
     #[must_use]
     pub fn halo(&self, size: [u32; 2]) -> [u32; 2] {
@@ -135,7 +135,7 @@ pub fn ambient_occlusion(
 ///
 /// # Errors
 ///
-/// As [`ambient_occlusion`].
+/// Those of [`ambient_occlusion`].
 pub fn ambient_occlusion_of_part(
     height: &Raster<f32>,
     whole: [u32; 2],

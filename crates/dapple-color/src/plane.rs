@@ -1,4 +1,4 @@
-//! The plane in which heights lie: what all maps from heights ask of their options.
+//! The plane in which heights lie, which all maps from heights share.
 //!
 //! Lengths are in units of the plane; a raster covers a stated extent of it.
 

@@ -131,7 +131,7 @@ impl ColorRamp {
         Self::new(even_stops(colors))
     }
 
-    /// As [`even`](Self::even), for colors that are known to be finite and not none.
+    /// A ramp of stops at equal distances from 0 to 1, of at least one color, all of them finite.
     pub(crate) fn even_unchecked(colors: &[LinearRgb]) -> Self {
         Self::unchecked(even_stops(colors))
     }
@@ -175,7 +175,7 @@ impl ColorRamp {
         Ok(Self::new(stops)?.with_interpolation(Interpolation::Stepped))
     }
 
-    /// The same stops, mixed in another space.
+    /// Sets the space in which the colors of two stops are mixed.
     #[must_use]
     pub fn with_space(self, space: RampSpace) -> Self {
         let colors = self.stops.iter().map(|stop| space.of_linear(stop.color));
@@ -186,7 +186,7 @@ impl ColorRamp {
         }
     }
 
-    /// The same stops with another rule between them.
+    /// Sets how colors change between two stops.
     #[must_use]
     pub fn with_interpolation(self, interpolation: Interpolation) -> Self {
         Self {
@@ -195,7 +195,7 @@ impl ColorRamp {
         }
     }
 
-    /// The same stops with another rule outside of them.
+    /// Sets the color before the first stop and after the last.
     #[must_use]
     pub fn with_outside(self, outside: Outside) -> Self {
         Self { outside, ..self }

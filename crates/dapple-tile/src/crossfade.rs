@@ -60,7 +60,7 @@ impl Crossfade {
     }
 }
 
-/// What the two deviations are multiplied with, for the weight of the second and the correlation of the two.
+/// The factors of the two deviations, for the weight of the second and the correlation of the two.
 fn shares(weight: f64, correlation: f64) -> [f64; 2] {
     let [v, w] = [1.0 - weight, weight];
     let length = (v * v + w * w + 2.0 * correlation * v * w).sqrt();

@@ -63,7 +63,7 @@ pub struct MatchBorders {
     /// How far from a border a tile changes, in pixels, from 1 to half of a side, rounded down, and to one pixel less
     /// for [`BorderSource::Middle`]. By default 16.
     pub width: u32,
-    /// What the borders become. By default the border of the first tile.
+    /// The pixels that all borders become. By default the border of the first tile.
     pub source: BorderSource,
 }
 
@@ -93,11 +93,11 @@ impl MatchBorders {
         Ok(matched.into_iter().flatten().collect())
     }
 
-    /// The same for several materials, whose maps are cut alike.
+    /// Gives the tiles of several materials the same borders. All maps of a material are cut along the same line.
     ///
     /// # Errors
     ///
-    /// As [`apply`](Self::apply); [`TileErrorKind::Count`] too for materials without maps, or with more or fewer than the
+    /// Those of [`apply`](Self::apply); [`TileErrorKind::Count`] too for materials without maps, or with more or fewer than the
     /// first, and [`TileErrorKind::KindMismatch`] for maps of other kinds.
     pub fn apply_maps(&self, tiles: &[Vec<Map>]) -> Result<Vec<Vec<Map>>, TileError> {
         let matched = self.matched(Map::planes_of_all(tiles)?)?;
@@ -114,7 +114,7 @@ impl MatchBorders {
     ///
     /// # Errors
     ///
-    /// As [`apply_maps`](Self::apply_maps); [`TileErrorKind::Raster`] too if `size` is empty or too large.
+    /// Those of [`apply_maps`](Self::apply_maps); [`TileErrorKind::Raster`] too if `size` is empty or too large.
     pub fn render(
         &self,
         tiles: &[Vec<Map>],

@@ -124,7 +124,7 @@ impl SplineProject {
     ///
     /// # Errors
     ///
-    /// As [`coarse`](Self::coarse); and if the small tile has not the size that `size` has once halved.
+    /// Those of [`coarse`](Self::coarse); and if the small tile has not the size that `size` has once halved.
     pub fn refine(
         &self,
         coarse: &Raster<f32>,

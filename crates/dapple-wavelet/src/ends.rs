@@ -10,7 +10,7 @@ pub(crate) struct Line {
     ends: Ends,
 }
 
-/// What comes after the last value, and before the first.
+/// The values after the last one, and before the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Ends {
     /// The other end.
@@ -156,7 +156,7 @@ pub(crate) fn shortest(filter: SplineFilter, border: Border) -> usize {
 ///
 /// # Errors
 ///
-/// As [`Halving::new`], `NotDivisible` with the whole length and all levels; `Range` for too many levels.
+/// Those of [`Halving::new`], `NotDivisible` with the whole length and all levels; `Range` for too many levels.
 pub(crate) fn lengths(
     filter: SplineFilter,
     len: usize,

@@ -84,10 +84,9 @@ impl Degree {
 dapple_raster::named! {
     /// Where the coarse coefficients lie over the fine ones.
     ///
-    /// The halved line of a mirrored one is mirrored too, and of what would repeat, one copy is kept. A line of `n` has, once
-    /// halved, a length of
+    /// Coefficient `j` of the coarse line is spread over the fine coefficients `2j + first ..= 2j + last`:
     ///
-    /// | degree | [`Centered`](Phase::Centered) | [`CookDeRose`](Phase::CookDeRose) |
+    /// | degree | [`Centered`](Self::Centered) | [`CookDeRose`](Self::CookDeRose) |
     /// |---|---|---|
     /// | constant | 0 ..= 1 | −1 ..= 0 |
     /// | linear | −1 ..= 1 | −2 ..= 0 |
@@ -160,7 +159,7 @@ pub struct SplineFilter {
     pub degree: Degree,
     /// Where coarse coefficients lie. By default centered.
     pub phase: Phase,
-    /// What is nearest. By default the function.
+    /// The distance that is least. By default that of the functions.
     pub fit: Fit,
 }
 

@@ -13,7 +13,7 @@ pub(crate) struct Region {
 }
 
 impl Region {
-    /// The same for a bake.
+    /// This region as an option of a bake.
     pub(crate) fn of_recipe(self) -> dapple::recipe::Region {
         dapple::recipe::Region {
             first: self.first,
@@ -34,7 +34,7 @@ impl FromStr for Region {
                 size: [w, h],
             }),
             _ => Err(format!(
-                "{text:?} is no region; one is x,y,w,h in whole pixels, such as 0,0,256,128"
+                "{text:?} is not a region: give x,y,w,h in whole pixels, such as 0,0,256,128"
             )),
         }
     }

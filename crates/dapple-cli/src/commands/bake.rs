@@ -74,7 +74,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PROGRAM", value_parser = Preset::parser(), conflicts_with_all = ["maps", "format"])]
     preset: Option<&'static Preset>,
 
-    /// Another seed than that of the recipe.
+    /// The seed, instead of that of the recipe.
     #[arg(long, value_name = "N", value_parser = seed)]
     seed: Option<u64>,
 
@@ -90,12 +90,12 @@ pub(crate) struct Args {
     #[arg(long, value_name = "UNITS")]
     relief: Option<f64>,
 
-    /// Keep only some rows in memory, however large the tile is. Refused where a node sees the whole tile, and needed past
+    /// Keep only a band of rows in memory, for large tiles. Refused where a node sees the whole tile, and needed past
     /// 32768 × 32768 pixels.
     #[arg(long)]
     banded: bool,
 
-    /// Go on with the others if one of several recipes cannot be baked.
+    /// Go on with the other recipes if one cannot be baked.
     #[arg(long)]
     keep_going: bool,
 
@@ -122,11 +122,11 @@ struct Work {
     folder: PathBuf,
 }
 
-/// Runs it.
+/// Bakes the recipes.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, recipes and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.check_document()?;
     let names = recipes::expanded(&args.recipes)?;
@@ -134,7 +134,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut batch = Batch::new(names.len(), args.keep_going, context);
     let mut works = Vec::new();
     for name in &names {
-        // Whatever is in the way of any is said before the work begins.
+        // All recipes are read and all files claimed before the work begins.
         let work = Work::read(name, args).and_then(|work| {
             claim(
                 args,
@@ -247,7 +247,7 @@ impl Args {
         args
     }
 
-    /// The outputs of so many recipes, which need a folder if there are several.
+    /// The outputs of a number of recipes, which need a folder if there are several.
     fn files_for(&self, n_recipes: usize) -> Result<OutputArgs> {
         let mut files = self.files.clone();
         if n_recipes == 1 || files.output.is_none() {
@@ -286,7 +286,7 @@ impl Args {
         }
     }
 
-    /// What a plan refuses, as wrong usage if it is the relief that was typed.
+    /// The refusal of a plan, as wrong usage if it is about the relief that was typed.
     fn blame(&self, error: RecipeError) -> Error {
         let is_typed = matches!(error.kind(), RecipeErrorKind::Range { value, .. } if self.relief == Some(*value));
         match is_typed {

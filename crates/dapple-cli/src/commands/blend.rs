@@ -80,11 +80,11 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// Runs it.
+/// Blends the layers.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, images and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend", &args.image.files);
     let outputs = claim(args, &mut job)?;
@@ -173,7 +173,7 @@ fn tile(args: &Args, reader: &mut Reader) -> Result<Option<Raster<f32>>> {
     Ok(Some(ranks.with_context(|| input::name(path))?))
 }
 
-/// Adds what to do about what is often refused.
+/// Adds a hint to frequent errors.
 fn advise(error: TileError) -> Error {
     let hint = match error.kind() {
         TileErrorKind::Raster(_) => "--size WxH repeats what is smaller and cuts what is larger",

@@ -4,8 +4,8 @@ use crate::args::{Axes, ImageArgs, Region, image_alpha};
 use crate::error::{Exit, Hint};
 use crate::input::{self, ALPHA_HINT, Kind};
 use crate::job::{Context, Job};
-use crate::words::Word;
 use crate::progress::Progress;
+use crate::words::Word;
 use anyhow::{Result, anyhow};
 use dapple::raster::Wrap;
 use dapple::recipe::ImageAlpha;
@@ -36,7 +36,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
 
-    /// What becomes of transparency, which is refused otherwise: `drop` shows the colors without it, and `over:COLOR` lays the
+    /// How transparency is handled, which is refused by default: `drop` shows the colors without it, and `over:COLOR` lays the
     /// image over a color, such as `over:#888`.
     #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha)]
     alpha: Option<ImageAlpha>,
@@ -62,11 +62,11 @@ pub(crate) struct Args {
     output: ImageArgs,
 }
 
-/// Runs it.
+/// Makes the blend tile.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, images and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend-map", &args.output.files);
     let (files, ending) = (&args.output.files, args.output.ending());

@@ -75,11 +75,11 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// Runs it.
+/// Covers a map with copies.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, images and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let method = args.method.method(args.images.len(), args.tiles)?;
     let names = names(args)?;
@@ -127,7 +127,7 @@ fn names(args: &Args) -> Result<Vec<&str>> {
     for tile in &args.images {
         if tile.has_weight() {
             let message = format!(
-                "{} has a weight, which means nothing to a tile",
+                "{} has a weight, which a tile does not take",
                 tile.path().display()
             );
             return Err(usage(message).hint("give it to a layer of `dapple blend`"));
@@ -187,7 +187,7 @@ fn read(args: &Args) -> Result<(Vec<Vec<Map>>, bool, bool)> {
     Ok((maps.collect(), has_alpha, is_deep))
 }
 
-/// Adds what to do about what is refused.
+/// Adds a hint to frequent errors.
 fn advise(error: TileError) -> Error {
     let hint = match error.kind() {
         TileErrorKind::Margin { .. } => {

@@ -1,4 +1,4 @@
-//! `dapple info`: what is in an image or a mesh, in numbers.
+//! `dapple info`: images and meshes in numbers.
 
 mod channels;
 mod mesh;
@@ -28,7 +28,7 @@ A seam ratio near 1 says that the step across the wrap is like the steps inside,
 means of 1, 2, 4 and 8 pixels. An image does not pass if, in any of its channels, the seam
 stands out by 2.5 standard deviations or more among the boundaries inside.";
 
-/// Tell what is in images and meshes: size, range, histogram, how well they repeat, what is wrong.
+/// Describe images and meshes: size, range, histogram, how well they repeat, faults.
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -72,17 +72,17 @@ dapple::raster::named! {
     }
 }
 
-/// What is found in a file.
+/// The findings about a file.
 pub(super) struct Findings {
     /// For people.
     text: String,
     /// For programs.
     json: Value,
-    /// Whether `--check` is content.
+    /// Whether `--check` passes.
     is_good: bool,
 }
 
-/// Runs it.
+/// Describes the files.
 ///
 /// # Errors
 ///
@@ -122,7 +122,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// Where the findings go: standard output, unless something else is said.
+    /// The output of the findings: standard output by default.
     fn target(&self) -> Result<Target> {
         let ending = match self.format {
             Some(Format::Text) => "txt",

@@ -30,7 +30,7 @@ Examples:
   dapple points white --count 100 --seed 7 --format json
 
 Kinds:
-  poisson   random points at least a radius apart, so many that no further one fits
+  poisson   random points at least a radius apart, with room for no further one
   variable  the same with a radius that varies: denser where --density is higher
   nested    poisson in levels, each of which holds the one before
   jittered  one point in each cell of a grid
@@ -46,7 +46,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     scatter: ScatterArgs,
 
-    /// Print what is known of the points: distances, empty circle, spectrum.
+    /// Print measurements of the points: distances, empty circle, spectrum.
     #[arg(long, help_heading = "Output")]
     report: bool,
 
@@ -87,11 +87,11 @@ dapple::raster::named! {
     }
 }
 
-/// Runs it.
+/// Scatters the points.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, images and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let target = match &args.output.output {
         Some(_) => (args.output).target("points", args.format.map_or("csv", Format::name))?,

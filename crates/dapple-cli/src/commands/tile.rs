@@ -100,11 +100,11 @@ struct Source {
     outputs: Option<[Option<OutputIdx>; 2]>,
 }
 
-/// Runs it.
+/// Makes the images repeat.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, images and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.method.check_used()?;
     let mut job = Job::new(context, "tile", &args.image.files);
@@ -158,7 +158,7 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     let normals = args.normal.iter().map(|path| (path, Kind::Normals));
     let inputs: Vec<_> = images.chain(normals).collect();
     if inputs.is_empty() {
-        return Err(usage("there is no image").hint("name one, or several that belong together"));
+        return Err(usage("missing image").hint("name one, or several that belong together"));
     }
     let paths: Vec<&Path> = inputs.iter().map(|(path, _)| path.as_path()).collect();
     let mut outputs = claim(&paths, args, job)?.into_iter();

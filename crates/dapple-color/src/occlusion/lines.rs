@@ -82,7 +82,7 @@ impl Heights {
         })
     }
 
-    /// What lies so many columns and rows from a row of pixels.
+    /// The heights at an offset in columns and rows from a row of pixels.
     fn line(&self, row: u32, [x, y]: [i32; 2]) -> &[f32] {
         let row = i64::from(row) + i64::from(y);
         let row = plane::index(self.wrap_y, row, self.padded.height());

@@ -44,13 +44,13 @@ pub(super) struct Local {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Neighbor {
     pub(super) block: u32,
-    /// What brings its points to where they are near.
+    /// The shift that brings its points near the block.
     pub(super) shift: DVec2,
     /// How many of its points are known here.
     pub(super) seen: usize,
 }
 
-/// What all blocks share.
+/// The domain, radius and rule that all blocks share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setting<'a> {
     pub(super) field: RadiusField<'a>,

@@ -1,4 +1,4 @@
-//! What programs take: which images, what their channels hold, and how they are written.
+//! Presets of programs: which images they take, the content of their channels, and their formats.
 //!
 //! References: each program's own documentation, beside its row in [`PRESETS`].
 
@@ -14,9 +14,9 @@ use std::fmt::Write as _;
 #[derive(Debug, PartialEq)]
 pub(super) struct Preset {
     pub(super) name: &'static str,
-    /// What takes them, for the help.
+    /// The help.
     about: &'static str,
-    /// What the names of its files begin with in a folder.
+    /// The prefix of the names of its files in a folder.
     pub(super) prefix: &'static str,
     pub(super) normal_y: NormalY,
     pub(super) images: &'static [PresetImage],
@@ -26,7 +26,7 @@ pub(super) struct Preset {
 /// An image of a preset.
 #[derive(Debug, PartialEq)]
 pub(super) struct PresetImage {
-    /// What its name has after that of the material: `NAME_PART.png`.
+    /// The part of its name after that of the material: `NAME_PART.png`.
     pub(super) part: &'static str,
     pub(super) image: Image,
 }
@@ -151,7 +151,7 @@ pub(super) static PRESETS: [Preset; 7] = [
         images: GLTF,
         ..PLAIN
     },
-    // The same, in one file; 4.4 "Binary glTF".
+    // "glTF 2.0 Specification", 4.4 "Binary glTF".
     Preset {
         name: "glb",
         about: "A plane of glTF with these textures in one file; also -o NAME.glb",

@@ -18,7 +18,7 @@ const BASE: &str = "base";
 /// The name of the map that is a layer's height.
 pub(in crate::commands) const HEIGHT: &str = "height";
 
-/// What the user wrote of a layer.
+/// A layer as it is typed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(in crate::commands) struct LayerArg {
     path: PathBuf,
@@ -163,11 +163,11 @@ impl LayerArg {
 pub(in crate::commands) struct Reader {
     /// The size that they are repeated or cut to.
     size: Option<Size>,
-    /// What becomes of their alpha.
+    /// How their alpha is handled.
     alpha: Alpha,
     /// The first that was read, and its size.
     first: Option<(PathBuf, [u32; 2])>,
-    /// What to do about images of unlike sizes.
+    /// The hint for images of unlike sizes.
     hint: &'static str,
 }
 
@@ -204,7 +204,7 @@ impl Reader {
     ///
     /// # Errors
     ///
-    /// As [`read`](Self::read); and if it is partly transparent, and that was not to be dropped or laid over a color.
+    /// Those of [`read`](Self::read); and if it is partly transparent and alpha is kept.
     pub(in crate::commands) fn read_opaque(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
         let loaded = self.read(path, kind)?;
         if loaded.alpha.is_some() {

@@ -71,7 +71,7 @@ impl MixingArgs {
     ///
     /// # Errors
     ///
-    /// If an option was given that means nothing here.
+    /// If an option was given that has no effect.
     pub(super) fn blend(&self, has_tile: bool, has_heights: bool) -> Result<Blend> {
         let weighting = self.weighting.unwrap_or(match (has_tile, has_heights) {
             (true, _) => WeightingName::Mask,
@@ -111,7 +111,7 @@ impl MixingArgs {
             ("wrap", self.wrap.is_some(), is_pyramid, "--mixing pyramid"),
         ] {
             if is_given && !is_used {
-                let message = format!("--{option} means nothing to this blend");
+                let message = format!("--{option} has no effect on this blend");
                 return Err(usage(message).hint(format!("add {hint}")));
             }
         }

@@ -71,11 +71,11 @@ pub(super) enum Method {
 }
 
 impl MethodArgs {
-    /// The method for so many tiles, which are or are not what is to be written.
+    /// The method for a number of tiles, for a map or for the tiles themselves.
     ///
     /// # Errors
     ///
-    /// If it is none for so many, or an option of another method was given.
+    /// If the method does not take this number of tiles, or an option of another method was given.
     pub(super) fn method(&self, count: usize, writes_tiles: bool) -> Result<Method> {
         let name = self.method.unwrap_or(match count {
             1 => Name::Disturb,
@@ -89,7 +89,7 @@ impl MethodArgs {
             ))
             .hint("take --method corners or borders")),
             Name::Disturb if writes_tiles => Err(usage(
-                "--tiles means nothing to disturb, whose copies are all different",
+                "--tiles has no effect on disturb, whose copies are all different",
             )
             .hint("add --size WxH, or more tiles")),
             Name::Corners if !(2..=CORNERS_MAX).contains(&count) => Err(usage(format!(
@@ -129,7 +129,7 @@ impl MethodArgs {
 }
 
 impl Method {
-    /// The names of the tiles of a set made of so many.
+    /// The names of the tiles of a set that is made of `count` tiles.
     pub(super) fn tile_names(self, count: usize) -> Vec<String> {
         let Self::Corners { .. } = self else {
             return (1..=count).map(|tile| tile.to_string()).collect();
@@ -153,7 +153,7 @@ impl Tiles<'_> {
     ///
     /// # Errors
     ///
-    /// What the method refuses.
+    /// A refusal of the method.
     pub(super) fn render(&self, seed: Seed, size: [u32; 2]) -> Result<Vec<Map>, TileError> {
         match self.method {
             Method::Disturb { frozen, margin } => {
@@ -187,7 +187,7 @@ impl Tiles<'_> {
     ///
     /// # Errors
     ///
-    /// What the method refuses.
+    /// A refusal of the method.
     pub(super) fn tiles(&self) -> Result<Vec<Vec<Map>>, TileError> {
         match self.method {
             Method::Corners { share } => self.corners(share)?.all(),

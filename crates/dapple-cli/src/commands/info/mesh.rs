@@ -1,4 +1,4 @@
-//! What is in a mesh, and what is wrong with it.
+//! The content of a mesh, and its faults.
 
 use super::Findings;
 use crate::input;
@@ -17,7 +17,7 @@ pub(super) fn is_mesh(path: &Path) -> bool {
     ENDINGS.contains(&ending.to_ascii_lowercase().as_str())
 }
 
-/// What is in the mesh.
+/// The findings about a mesh.
 ///
 /// # Errors
 ///
@@ -101,7 +101,7 @@ fn bounds(model: &Model) -> Option<[DVec3; 2]> {
     Some(rest.iter().fold([first; 2], grow))
 }
 
-/// What it has besides positions.
+/// The names of what it has besides positions.
 fn columns(model: &Model) -> Vec<&'static str> {
     let material = &model.material;
     let all = [

@@ -20,7 +20,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::Arc;
 
-/// How many points there are if nobody says it.
+/// The default number of points.
 const COUNT: u32 = 1000;
 /// The most columns and rows at which the density of an image is read.
 const PLACES_MAX: u32 = 2048;
@@ -36,7 +36,7 @@ dapple::raster::named! {
     }
 }
 
-/// What points there are to be.
+/// The kind of point set and its options.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Points")]
 pub(super) struct ScatterArgs {
@@ -48,7 +48,7 @@ pub(super) struct ScatterArgs {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     pub(super) seed: u64,
 
-    /// About how many points, at least 1; 1000 if nothing else says it.
+    /// About how many points, at least 1; by default 1000.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     count: Option<u32>,
 
@@ -74,7 +74,7 @@ pub(super) struct ScatterArgs {
     #[arg(long, value_name = "IMAGE|A:B")]
     density: Option<Density>,
 
-    /// variable: what becomes of the transparency of the image, which is refused otherwise: `drop` takes the colors without it,
+    /// variable: how the transparency of the image is handled, which is refused by default: `drop` takes the colors without it,
     /// and `over:COLOR` lays the image over a color, such as `over:black`.
     #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha, requires = "density")]
     alpha: Option<ImageAlpha>,
@@ -114,7 +114,7 @@ pub(super) struct ScatterArgs {
     wrap: Axes,
 }
 
-/// Points, and what is known of them.
+/// Points, with their levels and radius.
 #[derive(Debug)]
 pub(super) struct Scattered {
     pub(super) points: PointSet,
@@ -136,7 +136,7 @@ impl ScatterArgs {
     ///
     /// # Errors
     ///
-    /// If an option was given that the kind does not have, and whatever the kind refuses.
+    /// If an option was given that the kind does not have, or has a bad value.
     pub(super) fn scatter(&self) -> Result<Scattered> {
         self.check_used()?;
         let Extent([width, height]) = self.domain;
@@ -301,7 +301,7 @@ impl FromStr for Position {
             .collect();
         match parts.as_slice() {
             [Ok(x), Ok(y)] if x.is_finite() && y.is_finite() => Ok(Self([*x, *y])),
-            _ => Err(format!("{text:?} is no position; one is x,y")),
+            _ => Err(format!("{text:?} is not a position: give x,y")),
         }
     }
 }
@@ -321,7 +321,7 @@ fn square_cells(domain: Domain, count: u32) -> [u32; 2] {
     [along(domain.size.x), along(domain.size.y)]
 }
 
-/// Adds what to do about what is often refused.
+/// Adds a hint to frequent errors.
 fn advise(error: PointsError) -> Error {
     let hint = match error.kind() {
         PointsErrorKind::PeriodTooShort { .. } => {

@@ -38,7 +38,7 @@ pub(super) struct PlaneArgs {
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "On a mesh")]
 pub(super) struct SurfaceArgs {
-    /// The mesh to cover: .obj, .ply, .glb, .gltf or .off. What is wrong with it is repaired.
+    /// The mesh to cover: .obj, .ply, .glb, .gltf or .off. Faults of it are repaired.
     #[arg(long, value_name = "FILE")]
     pub(super) mesh: Option<PathBuf>,
 
@@ -46,7 +46,7 @@ pub(super) struct SurfaceArgs {
     #[arg(long, value_name = "FILE")]
     pub(super) directions: Option<PathBuf>,
 
-    /// How many points of the surface get a color: as it were the pixels on the mesh, 1 to 2^28; by default 65536.
+    /// The number of points of the surface that get a color, like pixels on the mesh: 1 to 2^28; by default 65536.
     #[arg(long, value_name = "N")]
     sites: Option<usize>,
 
@@ -107,7 +107,7 @@ pub(super) struct MatchArgs {
 fn angle(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(angle) if (0.0..=180.0).contains(&angle) => Ok(angle),
-        _ => Err(format!("{text:?} is no angle from 0 to 180 degrees")),
+        _ => Err(format!("{text:?} is not an angle from 0 to 180 degrees")),
     }
 }
 

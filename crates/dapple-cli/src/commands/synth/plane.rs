@@ -10,7 +10,7 @@ use dapple::synth::{PlaneTexture, synthesize_plane_with};
 use dapple::tile::Map;
 use serde_json::Value;
 
-/// The size of a texture that nobody gave one.
+/// The default size of a texture.
 const SIZE: [u32; 2] = [512; 2];
 
 /// Makes the image, and the maps that follow it.
@@ -47,7 +47,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// What a map of the example becomes.
+/// A map of the example, transferred to the texture.
 fn follow(texture: &PlaneTexture, example: &Map) -> Result<Map> {
     Ok(match example {
         Map::Value(raster) => Map::Value(texture.transfer(raster)?),

@@ -27,7 +27,7 @@ dapple::raster::named! {
 
 /// A method with its options.
 pub(super) struct Candidate {
-    /// What it is called on the command line.
+    /// Its name on the command line.
     pub(super) name: String,
     pub(super) method: Method,
     /// How many pixels apart the boundaries of a tile are that are like its wrap.
@@ -204,7 +204,7 @@ impl MethodArgs {
             }
         }
         if self.method == Feather && self.crossfade.is_some() && self.margin.is_none() {
-            return Err(usage("--crossfade means nothing without a margin").hint("add --margin PX"));
+            return Err(usage("--crossfade has no effect without a margin").hint("add --margin PX"));
         }
         Ok(())
     }

@@ -132,7 +132,7 @@ fn the_inside_of_a_bowl_sees_half_of_the_sky() {
     assert!((mean - 0.5).abs() < 0.025, "the mean is {mean}");
 }
 
-/// What the pixel sees, in `f64` and by the plainest means: every ray is walked on its own.
+/// The part of the sky that a pixel sees, in `f64`: every ray is walked on its own.
 fn oracle(height: &Raster<f32>, options: &OcclusionOptions, at: [i64; 2]) -> f64 {
     let pixel = options.extent / DVec2::new(height.width().into(), height.height().into());
     let z = |x: i64, y: i64| options.strength * f64::from(*height.at(x, y, options.wrap));
