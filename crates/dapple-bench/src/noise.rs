@@ -45,7 +45,11 @@ const N_POSITIONS: usize = 1 << 16;
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     picture(bench, &COARSE, 64)?;
     picture(bench, &FINE, 8)?;
-    one_position(bench)
+    if bench.wants(&ONE_POSITION) {
+        let field = GradientNoise2::new(SEED);
+        beside_perlin(bench, &ONE_POSITION, 128, |at| field.sample(at), confirm)?;
+    }
+    Ok(())
 }
 
 fn picture(bench: &mut Bench, case: &Case, px_per_cell: u32) -> Result<()> {
@@ -85,33 +89,42 @@ fn picture(bench: &mut Bench, case: &Case, px_per_cell: u32) -> Result<()> {
     )
 }
 
-fn one_position(bench: &mut Bench) -> Result<()> {
-    if !bench.wants(&ONE_POSITION) {
-        return Ok(());
-    }
-    let field = GradientNoise2::new(SEED);
+/// Measures one position after another, anywhere in a square of `cells`, beside Perlin noise of `noise-functions`.
+pub(crate) fn beside_perlin(
+    bench: &mut Bench,
+    case: &Case,
+    cells: u32,
+    sample: impl Fn(DVec2) -> f32 + Sync,
+    confirm: impl Fn(&[f32]) -> Result<()>,
+) -> Result<()> {
     let at: Vec<DVec2> = positions(N_POSITIONS)
         .into_iter()
-        .map(|at| at * 128.0)
+        .map(|at| at * f64::from(cells))
         .collect();
     let their_at: Vec<[f32; 2]> = at.iter().map(|at| at.as_vec2().to_array()).collect();
     let ours = Side::new(vec![0.0; N_POSITIONS], |values: &mut Vec<f32>| {
         for (value, &at) in values.iter_mut().zip(&at) {
-            *value = field.sample(at);
+            *value = sample(at);
         }
     });
     let theirs = Side::new(vec![0.0; N_POSITIONS], |values: &mut Vec<f32>| {
         noise::noise_functions_perlin(&their_at, values);
     });
-    bench.beside(&ONE_POSITION, 101, ours, theirs, |ours, theirs| {
+    bench.beside(case, 101, ours, theirs, |ours, theirs| {
         confirm(ours)?;
-        let spread = theirs.iter().map(|value| value * value).sum::<f32>();
-        ensure!(
-            spread > 0.01 * N_POSITIONS as f32,
-            "the peer's noise is flat: {spread}"
-        );
+        confirm_spread(theirs)?;
         Ok(Done::both(N_POSITIONS))
     })
+}
+
+/// The mean square of values of noise is above 0.01.
+pub(crate) fn confirm_spread(values: &[f32]) -> Result<()> {
+    let spread = values.iter().map(|value| value * value).sum::<f32>();
+    ensure!(
+        spread > 0.01 * values.len() as f32,
+        "the noise is flat: {spread}"
+    );
+    Ok(())
 }
 
 /// Values are within the bound, and their variance is near the stated one.

@@ -4,7 +4,7 @@
 
 use crate::{ColorError, ColorErrorKind};
 use dapple_raster::glam::DVec2;
-use dapple_raster::{Raster, Window, Wrap};
+use dapple_raster::{Raster, Window, Wrap, parallel};
 
 /// How many pixels a radius may reach over.
 const MAX_RADIUS: u32 = 1 << 14;
@@ -105,17 +105,9 @@ pub(crate) fn index(wrap: Wrap, index: i64, length: u32) -> usize {
 /// Has `fill` write every row, on all cores where the feature `rayon` is on.
 pub(crate) fn fill_rows(raster: &mut Raster<f32>, fill: impl Fn(u32, &mut [f32]) + Sync) {
     let width = raster.width() as usize;
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        let rows = raster.pixels_mut().par_chunks_exact_mut(width);
-        rows.enumerate()
-            .for_each(|(row, values)| fill(row as u32, values));
-    }
-    #[cfg(not(feature = "rayon"))]
-    for (row, values) in (0..).zip(raster.pixels_mut().chunks_exact_mut(width)) {
-        fill(row, values);
-    }
+    parallel::for_each_chunk(raster.pixels_mut(), width, |row, values| {
+        fill(row as u32, values);
+    });
 }
 
 #[cfg(test)]

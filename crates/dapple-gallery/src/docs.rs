@@ -55,7 +55,7 @@ pub struct Strip {
 }
 
 /// Everything that has pictures in its documentation: the workspace, then its crates as the README lists them.
-pub const DOCUMENTED: &[Documented] = &[
+pub static DOCUMENTED: &[Documented] = &[
     front::DOCUMENTED,
     color::DOCUMENTED,
     points::DOCUMENTED,

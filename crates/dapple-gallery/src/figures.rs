@@ -12,7 +12,7 @@ pub use surface::own::{Own, OwnTextured};
 use crate::{Figure, Paper};
 
 /// The papers, in the order of the page.
-pub const PAPERS: &[Paper] = &[
+pub static PAPERS: &[Paper] = &[
     worley::PAPER,
     wavelet::PAPER,
     surface::PAPER,

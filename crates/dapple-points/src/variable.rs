@@ -21,14 +21,12 @@ mod rule;
 use crate::{Domain, PointSet, PointsError, PointsErrorKind};
 use block::{Block, Neighbor, Setting};
 use dapple_hash::{Seed, hash1};
-use dapple_raster::Varying;
+use dapple_raster::{Varying, parallel};
 pub use density::{RSA_DENSITY, radius_for_count, radius_from_density};
 use fill::Filler;
 pub use gentle::gentle_radius_for_count;
 use glam::DVec2;
 use leaf::{RadiusField, Tree};
-#[cfg(feature = "rayon")]
-use rayon::prelude::*;
 pub use rule::DiskRule;
 
 /// The share of the open cells that gets a dart in each round. The first rounds, in which nearly every dart stays,
@@ -180,7 +178,8 @@ fn check_periods(domain: &Domain, tree: &Tree) -> Result<(), PointsError> {
 
 /// The blocks, each with those around it.
 fn blocks_of(tree: &Tree, setting: &Setting<'_>) -> Vec<Block> {
-    let make = |(index, leaf): (usize, &leaf::Leaf)| {
+    parallel::map(tree.leaves.len(), |index| {
+        let leaf = &tree.leaves[index];
         let mut block = Block::new(index as u32, *leaf, setting);
         for shift in shifts(setting.field.domain) {
             tree.visit_near(leaf, shift, setting.rule, |other| {
@@ -194,11 +193,7 @@ fn blocks_of(tree: &Tree, setting: &Setting<'_>) -> Vec<Block> {
             });
         }
         block
-    };
-    #[cfg(feature = "rayon")]
-    return tree.leaves.par_iter().enumerate().map(make).collect();
-    #[cfg(not(feature = "rayon"))]
-    tree.leaves.iter().enumerate().map(make).collect()
+    })
 }
 
 /// Where the copies of the domain lie that come close to it.
@@ -237,10 +232,7 @@ fn take_turns(blocks: &mut [Block], color: &[u32], work: impl Fn(&mut Block, &[B
         .iter()
         .map(|&index| core::mem::take(&mut blocks[index as usize]))
         .collect();
-    #[cfg(feature = "rayon")]
-    taken.par_iter_mut().for_each(|block| work(block, blocks));
-    #[cfg(not(feature = "rayon"))]
-    taken.iter_mut().for_each(|block| work(block, blocks));
+    parallel::for_each_mut(&mut taken, |_, block| work(block, blocks));
     for (&index, block) in color.iter().zip(taken) {
         blocks[index as usize] = block;
     }

@@ -30,10 +30,10 @@ impl Texture {
     /// ```
     #[must_use]
     pub fn gradient(&self, position: DVec2) -> DVec2 {
-        let Some(local) = self.pups.local(position) else {
+        let Some(local) = self.pups().local(position) else {
             return DVec2::NAN;
         };
-        let net = &self.pups.net;
+        let net = &self.pups().net;
         let value = f64::from(self.sample(position));
         let instances = &net.bins().instances;
         let values = self.values();

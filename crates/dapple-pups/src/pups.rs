@@ -199,7 +199,8 @@ impl Pups {
         mut out: RasterViewMut<'_, PointIdx>,
     ) -> Result<(), RasterError> {
         window.check_size(out.size())?;
-        render(&self.net, window, &Strongest, out.rows_mut().collect());
+        let mut rows: Vec<_> = out.rows_mut().collect();
+        render(&self.net, window, &Strongest, &mut rows);
         Ok(())
     }
 
@@ -256,7 +257,10 @@ impl Sink for Strongest {
     type Value = PointIdx;
 
     const PLANES: usize = 2;
-    const PER_PIXEL: usize = 1;
+
+    fn per_pixel(&self) -> usize {
+        1
+    }
 
     #[expect(
         clippy::needless_range_loop,
@@ -307,7 +311,7 @@ impl Sink for Strongest {
         }
     }
 
-    fn undefined(&self) -> PointIdx {
-        PointIdx(u32::MAX)
+    fn leave_undefined(&self, values: &mut [PointIdx]) {
+        values.fill(PointIdx(u32::MAX));
     }
 }

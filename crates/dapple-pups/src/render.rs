@@ -14,7 +14,7 @@ use crate::tile::Tiles;
 use crate::weight::AxialWeight;
 use core::ops::Range;
 use dapple_raster::Window;
-use dapple_raster::simd;
+use dapple_raster::{parallel, simd};
 use fearless_simd::{Level, dispatch, prelude::*};
 use glam::DVec2;
 
@@ -27,7 +27,7 @@ const BAND_ROWS: usize = 64;
 /// Fills the rows of a window, on all cores where the feature `rayon` is on.
 ///
 /// `rows` are those of the window, each with as many values as the sink makes of a pixel, times the width.
-pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: Vec<&mut [K::Value]>) {
+pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: &mut [&mut [K::Value]]) {
     render_at(simd::level(), net, window, sink, rows);
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn render_at<K: Sink>(
     net: &Net,
     window: &Window,
     sink: &K,
-    mut rows: Vec<&mut [K::Value]>,
+    rows: &mut [&mut [K::Value]],
 ) {
     let xs: Vec<f64> = (0..window.size[0])
         .map(|column| net.local(0, window.column_x(column)))
@@ -52,7 +52,7 @@ pub(crate) fn render_at<K: Sink>(
     let height = BAND_NUMBERS / Planes::<K>::per_row(xs.len());
     let height = height.clamp(ROWS, BAND_ROWS);
     let mut bands = Vec::new();
-    let mut rest = rows.as_mut_slice();
+    let mut rest = rows;
     for run in runs(&ys) {
         let members = band_members(net, &ys[run.clone()], height);
         for (first, members) in run.clone().step_by(height).zip(members) {
@@ -69,20 +69,9 @@ pub(crate) fn render_at<K: Sink>(
             });
         }
     }
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        bands
-            .into_par_iter()
-            .for_each_init(Planes::default, |planes, band| band.render(level, planes));
-    }
-    #[cfg(not(feature = "rayon"))]
-    {
-        let mut planes = Planes::default();
-        bands
-            .into_iter()
-            .for_each(|band| band.render(level, &mut planes));
-    }
+    parallel::consume_with(bands, Planes::default, |planes, _, band| {
+        band.render(level, planes);
+    });
 }
 
 /// A stretch of columns or rows whose coordinates go one way.
@@ -206,9 +195,10 @@ impl<K: Sink> Band<'_, '_, K> {
     #[inline(always)]
     fn resolve<S: Simd>(&mut self, simd: S, columns: &Lane, planes: &mut Planes<K>) {
         let Range { start, end } = columns.range;
+        let per_pixel = self.sink.per_pixel();
         for (row, values) in self.rows.iter_mut().enumerate() {
-            let values = &mut values[start * K::PER_PIXEL..end * K::PER_PIXEL];
-            for (index, values) in values.chunks_mut(LANES * K::PER_PIXEL).enumerate() {
+            let values = &mut values[start * per_pixel..end * per_pixel];
+            for (index, values) in values.chunks_mut(LANES * per_pixel).enumerate() {
                 let (sums, _) = planes.rows(index * LANES, row, 1);
                 let nearest = |pixel: usize| {
                     let x = columns.padded[index * LANES + pixel];
@@ -222,9 +212,10 @@ impl<K: Sink> Band<'_, '_, K> {
 
     /// Marks pixels whose positions are not finite.
     fn leave_undefined(&mut self, columns: &Range<usize>) {
+        let per_pixel = self.sink.per_pixel();
         for row in self.rows.iter_mut() {
-            row[columns.start * K::PER_PIXEL..columns.end * K::PER_PIXEL]
-                .fill(self.sink.undefined());
+            let values = &mut row[columns.start * per_pixel..columns.end * per_pixel];
+            self.sink.leave_undefined(values);
         }
     }
 }

@@ -12,23 +12,37 @@ use dapple_raster::simd;
 use fearless_simd::{dispatch, f32x4, f32x8, prelude::*};
 use glam::DVec2;
 
+/// What takes the records and the weights of a group of candidates.
+type TakeGroup<'a> = dyn FnMut(&[u32; GROUP], &[f32; GROUP]) + 'a;
+
 impl Net {
     /// Calls `take(state, record, weight)`, which gives the next state, for every candidate at a position that is in
     /// range, in the order in which weights are summed; `record` is its place in the [`Bins`]. Some weights are zero:
     /// which ones cannot be foreseen, so that leaving them out costs more than it saves.
     #[inline]
-    pub(crate) fn fold_weights<A>(
+    pub(crate) fn fold_weights<A: Copy>(
         &self,
         position: DVec2,
-        state: A,
-        take: impl FnMut(A, usize, f32) -> A,
+        mut state: A,
+        mut take: impl FnMut(A, usize, f32) -> A,
     ) -> A {
+        self.for_each_group(position, &mut |records, weights| {
+            for (&record, &weight) in records.iter().zip(weights) {
+                state = take(state, record as usize, weight);
+            }
+        });
+        state
+    }
+
+    /// Calls `take` with the records and weights of one group of candidates after the other; compiled once, whatever is
+    /// made of the weights.
+    fn for_each_group(&self, position: DVec2, take: &mut TakeGroup<'_>) {
         match self.options.weight {
             AxialWeight::Cubic => {
-                dispatch!(simd::level(), simd => self.walk(simd, Cubic, position, state, take))
+                dispatch!(simd::level(), simd => self.walk(simd, Cubic, position, take));
             }
             other => {
-                dispatch!(simd::level(), simd => self.walk(simd, other, position, state, take))
+                dispatch!(simd::level(), simd => self.walk(simd, other, position, take));
             }
         }
     }
@@ -54,24 +68,21 @@ impl Net {
     }
 
     #[inline(always)]
-    fn walk<S: Simd, P: Profile, A>(
+    fn walk<S: Simd, P: Profile>(
         &self,
         simd: S,
         profile: P,
         position: DVec2,
-        mut state: A,
-        mut take: impl FnMut(A, usize, f32) -> A,
-    ) -> A {
+        take: &mut TakeGroup<'_>,
+    ) {
         let bins = self.bins();
         let mut candidates = bins.first_candidates(position);
         loop {
             let weights = self.weights_of(simd, profile, bins, &candidates, position);
-            for (&record, weight) in candidates.records.iter().zip(weights) {
-                state = take(state, record as usize, weight);
-            }
+            take(&candidates.records, &weights);
             match candidates.next {
                 Some(next) => candidates = bins.next_candidates(next),
-                None => return state,
+                None => return,
             }
         }
     }

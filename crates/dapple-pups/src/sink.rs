@@ -16,7 +16,7 @@ pub(crate) trait Sink: Sync {
     const PLANES: usize;
 
     /// How many values there are to a pixel.
-    const PER_PIXEL: usize;
+    fn per_pixel(&self) -> usize;
 
     /// Takes in the weights of control point `point` in `N` rows of a tile. `sums` holds [`LANES`] numbers of every plane
     /// for each row, of which those from `lane` on are the tile's.
@@ -39,8 +39,8 @@ pub(crate) trait Sink: Sync {
         nearest: impl Fn(usize) -> u32,
     );
 
-    /// What stands for a value at a position that is not finite.
-    fn undefined(&self) -> Self::Value;
+    /// Marks the values of pixels whose positions are not finite.
+    fn leave_undefined(&self, values: &mut [Self::Value]);
 }
 
 /// The numbers that a band is summed in.
@@ -53,7 +53,7 @@ pub(crate) struct Planes<K> {
     origin: usize,
     /// Rows of pixels.
     height: usize,
-    sink: PhantomData<K>,
+    sink: PhantomData<fn(&K)>,
 }
 
 impl<K> Default for Planes<K> {

@@ -72,7 +72,7 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         planes: &mut Planes<K>,
     ) {
         // Where registers have 16 lanes, there are 32 of them.
-        if S::f32s::LEN < LANES {
+        if const { <S::f32s as SimdBase<S>>::LEN < LANES } {
             self.add_tiles::<S, S::f32s, FEW_ROWS, ORIENTED>(simd, member, tiles, planes);
         } else if member.footprint.n_columns > NARROW {
             self.add_tiles::<S, S::f32s, ROWS, ORIENTED>(simd, member, tiles, planes);

@@ -33,80 +33,79 @@ use std::sync::OnceLock;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Texture {
-    pub(crate) pups: Pups,
-    values: Values<1>,
+    values: Values,
 }
 
 /// A texture of vectors, such as colors: [`Texture`] for `N` numbers at once.
 #[derive(Clone, Debug)]
 pub struct VectorTexture<const N: usize> {
-    pups: Pups,
-    values: Values<N>,
+    values: Values,
 }
 
 impl Texture {
     pub(crate) fn new(pups: Pups, values: Vec<f32>) -> Result<Self, PupsError> {
-        let values = values.into_iter().map(|value| [value]).collect();
-        let values = Values::new(&pups, values)?;
-        Ok(Self { pups, values })
+        let values = Values::new(pups, 1, values)?;
+        Ok(Self { values })
     }
 
     /// The net that the values belong to.
     #[must_use]
     pub fn pups(&self) -> &Pups {
-        &self.pups
+        &self.values.pups
     }
 
     /// The values of the control points.
     #[must_use]
     pub fn values(&self) -> &[f32] {
-        self.values.by_point.as_flattened()
+        &self.values.by_point
     }
 }
 
 impl Field for Texture {
     #[inline]
     fn sample(&self, position: DVec2) -> f32 {
-        let [value] = self.values.sample(&self.pups, position);
-        value
+        let mut value = [0.0];
+        self.values.sample(position, &mut value);
+        value[0]
     }
 
     fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         window.check_size(out.size())?;
-        let sink = Mean {
-            values: &self.values.by_point,
-        };
-        render(&self.pups.net, window, &sink, out.rows_mut().collect());
+        let mut rows: Vec<_> = out.rows_mut().collect();
+        self.values.render(window, &mut rows);
         Ok(())
     }
 
     fn period(&self) -> [Option<f64>; 2] {
-        self.pups.domain().period()
+        self.pups().domain().period()
     }
 }
 
 impl<const N: usize> VectorTexture<N> {
     pub(crate) fn new(pups: Pups, values: Vec<[f32; N]>) -> Result<Self, PupsError> {
-        let values = Values::new(&pups, values)?;
-        Ok(Self { pups, values })
+        const { assert!(N > 0, "a vector has at least one number") };
+        let values = Values::new(pups, N, values.into_flattened())?;
+        Ok(Self { values })
     }
 
     /// The net that the values belong to.
     #[must_use]
     pub fn pups(&self) -> &Pups {
-        &self.pups
+        &self.values.pups
     }
 
     /// The values of the control points.
     #[must_use]
     pub fn values(&self) -> &[[f32; N]] {
-        &self.values.by_point
+        self.values.by_point.as_chunks().0
     }
 
     /// The vector at a position.
     #[must_use]
     pub fn sample(&self, position: DVec2) -> [f32; N] {
-        self.values.sample(&self.pups, position)
+        let mut vector = [0.0; N];
+        self.values.sample(position, &mut vector);
+        vector
     }
 
     /// The vectors at the pixel centers of a window, into memory of its size.
@@ -120,11 +119,8 @@ impl<const N: usize> VectorTexture<N> {
         mut out: RasterViewMut<'_, [f32; N]>,
     ) -> Result<(), RasterError> {
         window.check_size(out.size())?;
-        let sink = Mean {
-            values: &self.values.by_point,
-        };
-        let rows = out.rows_mut().map(<[_]>::as_flattened_mut).collect();
-        render(&self.pups.net, window, &sink, rows);
+        let rows = out.rows_mut().map(<[_]>::as_flattened_mut);
+        self.values.render(window, &mut rows.collect::<Vec<_>>());
         Ok(())
     }
 
@@ -141,69 +137,131 @@ impl<const N: usize> VectorTexture<N> {
     }
 }
 
-/// The values of the control points.
+/// The values of the control points of a net, `width` numbers each.
+///
+/// The width is a number, not a parameter of the type: what is done with values is compiled here, and in no crate that uses
+/// vectors of some width.
 #[derive(Clone, Debug)]
-struct Values<const N: usize> {
-    by_point: Vec<[f32; N]>,
+struct Values {
+    pups: Pups,
+    width: usize,
+    by_point: Vec<f32>,
     /// The values in the order of the records of the [`Bins`]; made when the first position is asked for.
-    by_record: OnceLock<Vec<[f32; N]>>,
+    by_record: OnceLock<Vec<f32>>,
 }
 
-impl<const N: usize> Values<N> {
+impl Values {
     /// Refuses columns of another length, and numbers that are not finite.
-    fn new(pups: &Pups, by_point: Vec<[f32; N]>) -> Result<Self, PupsError> {
-        const { assert!(N > 0, "a value has at least one number") };
-        PupsError::check_count("values", by_point.len(), pups.n_points())?;
-        let mut numbers = by_point.as_flattened().iter();
-        if let Some(&number) = numbers.find(|number| !number.is_finite()) {
+    fn new(pups: Pups, width: usize, by_point: Vec<f32>) -> Result<Self, PupsError> {
+        PupsError::check_count("values", by_point.len() / width, pups.n_points())?;
+        if let Some(&number) = by_point.iter().find(|number| !number.is_finite()) {
             let name = "value of a control point";
             PupsError::check(false, name, f64::from(number), "finite")?;
         }
         Ok(Self {
+            pups,
+            width,
             by_point,
             by_record: OnceLock::new(),
         })
     }
 
     #[inline]
-    fn by_record(&self, bins: &Bins) -> &[[f32; N]] {
+    fn by_record(&self, bins: &Bins) -> &[f32] {
         self.by_record.get_or_init(|| {
             let points = bins.points.iter();
-            points.map(|&point| self.by_point[point as usize]).collect()
+            let values = points.map(|&point| self.of_point(point));
+            values.collect::<Vec<_>>().concat()
         })
     }
 
+    fn of_point(&self, point: u32) -> &[f32] {
+        &self.by_point[point as usize * self.width..][..self.width]
+    }
+
     /// The weighted mean at one position, summed as [`Mean`] does.
-    #[inline]
-    fn sample(&self, pups: &Pups, position: DVec2) -> [f32; N] {
-        let Some(position) = pups.local(position) else {
-            return [f32::NAN; N];
+    fn sample(&self, position: DVec2, mean: &mut [f32]) {
+        let Some(position) = self.pups.local(position) else {
+            mean.fill(f32::NAN);
+            return;
         };
-        let values = self.by_record(pups.net.bins());
-        let add = |(total, mut sums): (f32, [f32; N]), record: usize, weight: f32| {
-            for (sum, value) in sums.iter_mut().zip(values[record]) {
-                *sum += weight * value;
+        let net = &self.pups.net;
+        let values = self.by_record(net.bins());
+        let total = match &mut *mean {
+            [mean] => {
+                let add = |(total, sum): (f32, f32), record: usize, weight: f32| {
+                    (total + weight, sum + weight * values[record])
+                };
+                let (total, sum) = net.fold_weights(position, (0.0, 0.0), add);
+                *mean = sum;
+                total
             }
-            (total + weight, sums)
+            sums => net.fold_weights(position, 0.0, |total, record, weight| {
+                for (sum, value) in sums.iter_mut().zip(&values[record * self.width..]) {
+                    *sum += weight * value;
+                }
+                total + weight
+            }),
         };
-        let (total, sums) = pups.net.fold_weights(position, (0.0, [0.0; N]), add);
         if total < LEAST_TOTAL {
-            return self.by_point[pups.net.nearest(position) as usize];
+            mean.copy_from_slice(self.of_point(net.nearest(position)));
+        } else {
+            mean.iter_mut().for_each(|sum| *sum /= total);
         }
-        sums.map(|sum| sum / total)
+    }
+
+    /// The weighted means at the pixel centers of a window.
+    fn render(&self, window: &Window, rows: &mut [&mut [f32]]) {
+        let mut first = 0;
+        while first < self.width {
+            let (values, width) = (&self.by_point, self.width);
+            first += if width - first >= 3 {
+                let mean = Mean::<3>::new(values, width, first);
+                render(&self.pups.net, window, &mean, rows);
+                3
+            } else {
+                let mean = Mean::<1>::new(values, width, first);
+                render(&self.pups.net, window, &mean, rows);
+                1
+            };
+        }
     }
 }
 
-/// Sums up weights, and weights times the `N` numbers of each value.
+/// Sums up weights, and weights times `N` numbers of each value.
 pub(crate) struct Mean<'a, const N: usize> {
-    pub(crate) values: &'a [[f32; N]],
+    /// The numbers of all values, one value after the other.
+    values: &'a [f32],
+    /// How many numbers a value has.
+    width: usize,
+    /// Which of them is the first of the `N`.
+    first: usize,
+}
+
+impl<'a, const N: usize> Mean<'a, N> {
+    pub(crate) fn new(values: &'a [f32], width: usize, first: usize) -> Self {
+        Self {
+            values,
+            width,
+            first,
+        }
+    }
+
+    /// The numbers of a control point.
+    #[inline(always)]
+    fn of_point(&self, point: u32) -> &[f32] {
+        &self.values[point as usize * self.width + self.first..][..N]
+    }
 }
 
 impl<const N: usize> Sink for Mean<'_, N> {
     type Value = f32;
 
     const PLANES: usize = N + 1;
-    const PER_PIXEL: usize = N;
+
+    fn per_pixel(&self) -> usize {
+        self.width
+    }
 
     #[expect(
         clippy::needless_range_loop,
@@ -218,7 +276,7 @@ impl<const N: usize> Sink for Mean<'_, N> {
         sums: &mut [f32],
         lane: usize,
     ) {
-        let value = &self.values[point as usize];
+        let value = self.of_point(point);
         for row in 0..ROWS {
             add(simd, sums, row * Self::PLANES * LANES + lane, weights[row]);
             for channel in 0..N {
@@ -237,26 +295,28 @@ impl<const N: usize> Sink for Mean<'_, N> {
         nearest: impl Fn(usize) -> u32,
     ) {
         let totals = &sums[..LANES];
-        if N == 1 && values.len() == LANES {
+        if N == 1 && self.width == 1 && values.len() == LANES {
             divide(simd, &sums[LANES..2 * LANES], totals, values);
         } else {
-            for (pixel, vector) in values.chunks_exact_mut(N).enumerate() {
+            for (pixel, vector) in values.chunks_exact_mut(self.width).enumerate() {
+                let vector = &mut vector[self.first..self.first + N];
                 for (channel, value) in vector.iter_mut().enumerate() {
                     *value = sums[(channel + 1) * LANES + pixel] / totals[pixel];
                 }
             }
         }
         if is_any_below(simd, totals, LEAST_TOTAL) {
-            for (pixel, vector) in values.chunks_exact_mut(N).enumerate() {
+            for (pixel, vector) in values.chunks_exact_mut(self.width).enumerate() {
                 if totals[pixel] < LEAST_TOTAL {
-                    vector.copy_from_slice(&self.values[nearest(pixel) as usize]);
+                    let value = self.of_point(nearest(pixel));
+                    vector[self.first..self.first + N].copy_from_slice(value);
                 }
             }
         }
     }
 
-    fn undefined(&self) -> f32 {
-        f32::NAN
+    fn leave_undefined(&self, values: &mut [f32]) {
+        values.fill(f32::NAN);
     }
 }
 

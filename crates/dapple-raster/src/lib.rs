@@ -31,6 +31,7 @@ mod view;
 mod window;
 mod wrap;
 
+pub mod parallel;
 #[cfg(feature = "simd")]
 pub mod simd;
 

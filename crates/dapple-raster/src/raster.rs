@@ -1,5 +1,6 @@
 //! Pixels that own their memory.
 
+use crate::parallel;
 use crate::window::check_size;
 use crate::{RasterError, RasterErrorKind, RasterView, RasterViewMut, Window, Wrap};
 use glam::DVec2;
@@ -224,6 +225,9 @@ impl<T: Sync> Raster<T> {
     }
 }
 
+/// The pixels of rows that are made at a time, unless one row has more.
+const BAND_PIXELS: u32 = 4096;
+
 impl<T: Send> Raster<T> {
     /// A raster whose values are those of `value` at the pixel centers of `window`, on all cores where the feature
     /// `rayon` is on.
@@ -256,14 +260,19 @@ impl<T: Send> Raster<T> {
     {
         check_size(size)?;
         let width = size[0] as usize;
-        let values = |index: u32| row(index).into_iter().take(width);
-        #[cfg(feature = "rayon")]
-        let data: Vec<T> = {
-            use rayon::prelude::*;
-            (0..size[1]).into_par_iter().flat_map_iter(values).collect()
-        };
-        #[cfg(not(feature = "rayon"))]
-        let data: Vec<T> = (0..size[1]).flat_map(values).collect();
+        // Narrow rows are made several at a time.
+        let n_rows = (BAND_PIXELS / size[0]).max(1);
+        let bands = parallel::map(size[1].div_ceil(n_rows) as usize, |band| {
+            let first = band as u32 * n_rows;
+            let rows = first..size[1].min(first.saturating_add(n_rows));
+            let mut values = Vec::with_capacity(width * rows.len());
+            rows.for_each(|index| values.extend(row(index).into_iter().take(width)));
+            values
+        });
+        let mut data = Vec::with_capacity(width * size[1] as usize);
+        bands
+            .into_iter()
+            .for_each(|mut band| data.append(&mut band));
         Self::from_vec(size, data)
     }
 }

@@ -1,5 +1,6 @@
 //! Borrowed rectangles of pixels, with a stride.
 
+use crate::parallel;
 use crate::{RasterError, RasterErrorKind};
 
 /// A rectangle of pixels, borrowed for reading.
@@ -191,21 +192,11 @@ impl<T: Send> RasterViewMut<'_, T> {
     /// # Panics
     ///
     /// If `height` is zero.
-    pub fn for_each_band(
-        self,
-        height: u32,
-        fill: impl Fn(u32, RasterViewMut<'_, T>) + Send + Sync,
-    ) {
+    pub fn for_each_band(self, height: u32, fill: impl Fn(u32, RasterViewMut<'_, T>) + Sync) {
         // There are at most `u32::MAX` rows, hence bands.
-        let bands = self.bands(height).enumerate();
-        let fill = |(band, view): (usize, RasterViewMut<'_, T>)| fill(band as u32 * height, view);
-        #[cfg(feature = "rayon")]
-        {
-            use rayon::prelude::*;
-            bands.collect::<Vec<_>>().into_par_iter().for_each(fill);
-        }
-        #[cfg(not(feature = "rayon"))]
-        bands.for_each(fill);
+        parallel::consume(self.bands(height).collect(), |band, view| {
+            fill(band as u32 * height, view);
+        });
     }
 }
 

@@ -21,7 +21,7 @@ use bluestein::Chirp;
 use core::f64::consts::TAU;
 use passes::Pass;
 
-pub(crate) use lines::{BAND, Element, LANES, map_columns, par_flat_map, par_map, times};
+pub(crate) use lines::{BAND, Element, LANES, map_columns, par_flat_map, times};
 pub(crate) use power::power_spectrum;
 
 /// A transform of one length, ready for many lines.

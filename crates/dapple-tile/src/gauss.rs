@@ -5,7 +5,7 @@
 //! shifted around the torus gives the shifted blur to the last bit.
 
 use crate::TileError;
-use dapple_raster::{Raster, Wrap};
+use dapple_raster::{Raster, Wrap, parallel};
 
 /// Where the bell is cut off, in standard deviations.
 const REACH: f64 = 3.5;
@@ -34,16 +34,9 @@ pub(crate) fn blur(
 fn rows(size: [u32; 2], fill: impl Fn(u32, &mut [f32]) + Sync) -> Result<Raster<f32>, TileError> {
     let mut raster = Raster::filled(size, 0.0)?;
     let width = size[0] as usize;
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        let rows = raster.pixels_mut().par_chunks_mut(width).enumerate();
-        rows.for_each(|(row, pixels)| fill(row as u32, pixels));
-    }
-    #[cfg(not(feature = "rayon"))]
-    for (row, pixels) in raster.pixels_mut().chunks_mut(width).enumerate() {
+    parallel::for_each_chunk(raster.pixels_mut(), width, |row, pixels| {
         fill(row as u32, pixels);
-    }
+    });
     Ok(raster)
 }
 
@@ -116,7 +109,7 @@ fn add_pair(sums: &mut [f32], [a, b]: [&[f32]; 2], weight: f32) {
 mod tests {
     use super::{blur, weights};
     use dapple_hash::{Seed, hash2, unit_f32};
-    use dapple_raster::{Raster, Wrap};
+    use dapple_raster::{Raster, Wrap, parallel};
 
     const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
 

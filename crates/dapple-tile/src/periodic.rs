@@ -16,9 +16,9 @@
 //! Everything is `f64` up to the pixels of the result.
 
 use crate::TileError;
-use crate::fourier::{BAND, Element, Fourier, LANES, par_flat_map, par_map, times};
+use crate::fourier::{BAND, Element, Fourier, LANES, par_flat_map, times};
 use core::f64::consts::PI;
-use dapple_raster::Raster;
+use dapple_raster::{Raster, parallel};
 
 /// Powers below this are taken as zero: it is far below the rounding of all sums, and far above numbers that are slow.
 const NEGLIGIBLE: f64 = 1e-40;
@@ -85,7 +85,7 @@ impl Smooth {
             let jumps = jumps[axis].as_ref()?;
             Some(Layer::new(jumps, repeats, size[axis]))
         };
-        let bands = |layer: Layer| par_map(size[0].div_ceil(BAND), |band| layer.band(band));
+        let bands = |layer: Layer| parallel::map(size[0].div_ceil(BAND), |band| layer.band(band));
         Self {
             size,
             across_x: layer(0).map(bands).unwrap_or_default(),

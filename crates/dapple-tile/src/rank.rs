@@ -13,7 +13,7 @@
 use crate::TileError;
 use crate::map::check_finite;
 use dapple_hash::{Seed, hash2};
-use dapple_raster::Raster;
+use dapple_raster::{Raster, parallel};
 
 /// The raster with every value replaced by `(rank + ½) / n`, where `rank` counts from 0 and `n` is the number of pixels.
 ///
@@ -41,20 +41,19 @@ use dapple_raster::Raster;
 pub fn rank_equalize(raster: &Raster<f32>) -> Result<Raster<f32>, TileError> {
     check_finite(raster)?;
     let mut order = keys(raster)?.into_pixels();
-    sort(&mut order);
+    parallel::sort(&mut order);
     let n = order.len() as f64;
     let mut ranks = raster.clone();
     let pixels = ranks.pixels_mut();
-    for (rank, &(_, index)) in order.iter().enumerate() {
-        pixels[index as usize] = ((rank as f64 + 0.5) / n) as f32;
+    for (rank, &key) in order.iter().enumerate() {
+        pixels[key as u32 as usize] = ((rank as f64 + 0.5) / n) as f32;
     }
     Ok(ranks)
 }
 
-/// A sort key for each pixel, and its index: no two are equal.
-///
-/// The upper half of the key is the value as a whole number of the same order, the lower half the hash of the place.
-fn keys(raster: &Raster<f32>) -> Result<Raster<(u64, u32)>, TileError> {
+/// A sort key for each pixel: the value as a whole number of the same order, the hash of the place, and, in the lowest bits,
+/// the pixel's index. No two are equal.
+fn keys(raster: &Raster<f32>) -> Result<Raster<u128>, TileError> {
     const PLACES: Seed = Seed(0).child("rank", 0);
     let width = raster.width();
     Ok(Raster::from_rows(raster.size(), |row| {
@@ -62,7 +61,7 @@ fn keys(raster: &Raster<f32>) -> Result<Raster<(u64, u32)>, TileError> {
         values.map(move |(&value, column)| {
             let hash = hash2(PLACES, [column.into(), row.into()], 0);
             let key = u64::from(ordered_bits(value)) << 32 | hash >> 32;
-            (key, row * width + column)
+            u128::from(key) << 32 | u128::from(row * width + column)
         })
     })?)
 }
@@ -73,14 +72,6 @@ fn ordered_bits(value: f32) -> u32 {
     let bits = (value + 0.0).to_bits();
     let sign = 1 << 31;
     if bits & sign == 0 { bits | sign } else { !bits }
-}
-
-/// Sorts keys that all differ, so that every way to sort them gives the same.
-fn sort(keys: &mut [(u64, u32)]) {
-    #[cfg(feature = "rayon")]
-    rayon::prelude::ParallelSliceMut::par_sort_unstable(keys);
-    #[cfg(not(feature = "rayon"))]
-    keys.sort_unstable();
 }
 
 #[cfg(test)]

@@ -51,21 +51,13 @@ pub fn repeat_into<T: Copy + Send + Sync>(
     out: RasterViewMut<'_, T>,
 ) {
     let [left, top] = [0, 1].map(|axis| Wrap::Repeat.index(first[axis], tile.size()[axis]));
-    let fill = |(band, mut rows): (u32, RasterViewMut<'_, T>)| {
-        let above = i64::from(top) + i64::from(band) * i64::from(BAND_ROWS);
+    out.for_each_band(BAND_ROWS, |first_row, mut rows| {
+        let above = i64::from(top) + i64::from(first_row);
         for (row, to) in (above..).zip(rows.rows_mut()) {
             let row = Wrap::Repeat.index(row, tile.height());
             repeat_row(tile.row(row), left as usize, to);
         }
-    };
-    let bands = (0..).zip(out.bands(BAND_ROWS));
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        bands.collect::<Vec<_>>().into_par_iter().for_each(fill);
-    }
-    #[cfg(not(feature = "rayon"))]
-    bands.for_each(fill);
+    });
 }
 
 /// How many rows a thread fills at a time.

@@ -4,8 +4,8 @@
 
 use crate::ends::{Halving, Line};
 use crate::kernel::two_scale;
-use crate::pass::fill_chunks;
 use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
+use dapple_raster::parallel;
 use fearless_simd::{Level, Simd, dispatch};
 
 /// A filter that doubles a line.
@@ -68,7 +68,7 @@ impl Doubling {
     pub(crate) fn plane(&self, level: Level, along_rows: &Self, coarse: &[f32], fine: &mut [f32]) {
         let width = along_rows.coarse.len;
         let scratch = || vec![0.0; width + 2 * PAD];
-        fill_chunks(fine, along_rows.fine.len, scratch, |padded, row, fine| {
+        parallel::for_each_chunk_with(fine, along_rows.fine.len, scratch, |padded, row, fine| {
             dispatch!(level, simd => self.row(simd, along_rows, row, coarse, (padded, fine)));
         });
     }

@@ -5,7 +5,7 @@
 //! pass reads or writes single values with the stride of a row, which would cost more than the filter.
 
 use crate::recursion::{Lanes, LineFilter};
-use dapple_raster::simd;
+use dapple_raster::{parallel, simd};
 use fearless_simd::{Level, dispatch, f32x8, prelude::*};
 
 /// How many lines are filtered side by side.
@@ -42,24 +42,19 @@ pub(crate) fn filter_lines_into(
     for (values, first_line) in batches {
         let n_groups = (values.len() / len).div_ceil(LANES);
         let groups = &mut batch[..n_groups * group_len];
-        fill_chunks(groups, group_len, Lanes::default, |lanes, group, target| {
+        parallel::for_each_chunk_with(groups, group_len, Lanes::default, |lanes, group, target| {
             let lines = &values[group * LANES * len..];
             let lines = &lines[..lines.len().min(LANES * len)];
             dispatch!(level, simd => filter_group(simd, filter, lanes, lines, target));
         });
-        fill_chunks(
-            result,
-            ROWS * n_lines,
-            || (),
-            |(), chunk, rows| {
-                let parts = groups
-                    .chunks_exact(group_len)
-                    .map(|group| &group[chunk * ROWS * LANES..]);
-                for (part, column) in parts.zip((first_line..).step_by(LANES)) {
-                    write_columns(part, rows, n_lines, column);
-                }
-            },
-        );
+        parallel::for_each_chunk(result, ROWS * n_lines, |chunk, rows| {
+            let parts = groups
+                .chunks_exact(group_len)
+                .map(|group| &group[chunk * ROWS * LANES..]);
+            for (part, column) in parts.zip((first_line..).step_by(LANES)) {
+                write_columns(part, rows, n_lines, column);
+            }
+        });
     }
 }
 
@@ -130,33 +125,6 @@ fn write_columns(values: &[f32], rows: &mut [f32], width: usize, column: usize) 
         match row.first_chunk_mut::<LANES>() {
             Some(row) => *row = *part,
             None => row.copy_from_slice(&part[..row.len()]),
-        }
-    }
-}
-
-/// Has `fill` write every chunk of `size` values, on all cores where the feature `rayon` is on, with memory that it can use
-/// again.
-pub(crate) fn fill_chunks<S>(
-    values: &mut [f32],
-    size: usize,
-    scratch: impl Fn() -> S + Sync + Send,
-    fill: impl Fn(&mut S, usize, &mut [f32]) + Sync + Send,
-) {
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        values.par_chunks_mut(size).enumerate().for_each_init(
-            scratch,
-            |scratch, (chunk, values)| {
-                fill(scratch, chunk, values);
-            },
-        );
-    }
-    #[cfg(not(feature = "rayon"))]
-    {
-        let mut scratch = scratch();
-        for (chunk, values) in values.chunks_mut(size).enumerate() {
-            fill(&mut scratch, chunk, values);
         }
     }
 }

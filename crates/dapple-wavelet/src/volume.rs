@@ -6,10 +6,10 @@
 use crate::doubling::Doubling;
 use crate::ends::lengths;
 use crate::line::check_finite;
-use crate::pass::{fill_chunks, filter_lines};
+use crate::pass::filter_lines;
 use crate::recursion::LineFilter;
 use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
-use dapple_raster::simd;
+use dapple_raster::{parallel, simd};
 
 impl SplineFilter {
     /// The nearest volume of half the size, along each axis as [`coarse_len`](Self::coarse_len) says.
@@ -55,7 +55,7 @@ impl SplineFilter {
         let [coarse_slice, fine_slice] = [x.coarse.len * y.coarse.len, x.fine.len * y.fine.len];
         let mut fine = vec![0.0; fine_slice * z.fine.len];
         let scratch = || (vec![0.0; coarse_slice], vec![0.0; coarse_slice]);
-        fill_chunks(
+        parallel::for_each_chunk_with(
             &mut fine,
             fine_slice,
             scratch,

@@ -97,16 +97,17 @@ pub(super) fn exchange(shell: &Shell) -> anyhow::Result<()> {
             file: "rock.npy",
         },
     ];
+    let (here, missing): (Vec<_>, Vec<_>) = judges.iter().partition(|judge| judge.is_here(shell));
+    for judge in missing {
+        crate::say(&format!("skipped: there is no {}", judge.needs));
+    }
+    if here.is_empty() {
+        return Ok(());
+    }
+    let dapple = command_of_tests(shell)?;
     let folder = shell.create_temp_dir()?;
-    for judge in &judges {
-        let probe = judge.command(shell, judge.probe).quiet().ignore_status();
-        let found = probe.ignore_stdout().ignore_stderr().output();
-        if !found.is_ok_and(|output| output.status.success()) {
-            crate::say(&format!("skipped: there is no {}", judge.needs));
-            continue;
-        }
+    for judge in here {
         let file = folder.path().join(judge.file);
-        let dapple = command_of_tests(shell)?;
         let bake = cmd!(shell, "{dapple} bake rock --size 64x40 --quiet -o {file}");
         let maps = judge.file.ends_with(".npy").then_some(["--maps", "normal"]);
         bake.quiet().args(maps.into_iter().flatten()).run()?;
@@ -127,6 +128,12 @@ fn command_of_tests(shell: &Shell) -> anyhow::Result<PathBuf> {
 }
 
 impl Judge {
+    fn is_here(&self, shell: &Shell) -> bool {
+        let probe = self.command(shell, self.probe).quiet().ignore_status();
+        let output = probe.ignore_stdout().ignore_stderr().output();
+        output.is_ok_and(|output| output.status.success())
+    }
+
     fn command<'a>(&self, shell: &'a Shell, code: &str) -> Cmd<'a> {
         let [program, options @ ..] = self.program.as_slice() else {
             return shell.cmd("false");

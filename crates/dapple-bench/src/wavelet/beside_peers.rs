@@ -2,13 +2,12 @@
 
 use super::{SIDE, confirm_equal, down_and_up, white_noise};
 use crate::harness::{Bench, Done, Side};
+use crate::noise::{beside_perlin, confirm_spread};
 use crate::peers::fourier::FourierProjection;
-use crate::peers::noise;
 use crate::row::{Case, Must, Unit};
-use crate::sets::{SEED, positions};
-use anyhow::{Result, ensure};
+use crate::sets::SEED;
+use anyhow::Result;
 use dapple_wavelet::WaveletNoise;
-use glam::DVec2;
 
 const FOURIER: Case = Case {
     group: "wavelet",
@@ -27,9 +26,6 @@ const NOISE: Case = Case {
     must: Must::CostAtMost(3.0),
     note: "positions anywhere in a tile of 128×128 cells, in random order",
 };
-
-/// How many positions are asked for in one run.
-const N_POSITIONS: usize = 1 << 16;
 
 /// Cells along each axis of the noise tile.
 const N_CELLS: u32 = 128;
@@ -54,34 +50,8 @@ pub(super) fn run(bench: &mut Bench) -> Result<()> {
         )?;
     }
     if bench.wants(&NOISE) {
-        one_position(bench)?;
+        let tile = WaveletNoise::<2>::new(N_CELLS, SEED)?;
+        beside_perlin(bench, &NOISE, N_CELLS, |at| tile.sample(at), confirm_spread)?;
     }
     Ok(())
-}
-
-fn one_position(bench: &mut Bench) -> Result<()> {
-    let tile = WaveletNoise::<2>::new(N_CELLS, SEED)?;
-    let at: Vec<DVec2> = positions(N_POSITIONS)
-        .into_iter()
-        .map(|at| at * f64::from(N_CELLS))
-        .collect();
-    let their_at: Vec<[f32; 2]> = at.iter().map(|at| at.as_vec2().to_array()).collect();
-    let ours = Side::new(vec![0.0; N_POSITIONS], |values: &mut Vec<f32>| {
-        for (value, &at) in values.iter_mut().zip(&at) {
-            *value = tile.sample(at);
-        }
-    });
-    let theirs = Side::new(vec![0.0; N_POSITIONS], |values: &mut Vec<f32>| {
-        noise::noise_functions_perlin(&their_at, values);
-    });
-    bench.beside(&NOISE, 101, ours, theirs, |ours, theirs| {
-        for values in [ours, theirs] {
-            let spread = values.iter().map(|value| value * value).sum::<f32>();
-            ensure!(
-                spread > 0.01 * N_POSITIONS as f32,
-                "the noise is flat: {spread}"
-            );
-        }
-        Ok(Done::both(N_POSITIONS))
-    })
 }

@@ -5,9 +5,8 @@ use super::images::Cover;
 use super::patch::{Image, Patch, Rows};
 use crate::grid::LazyGrid;
 use crate::lattice::Lattice;
+use dapple_raster::parallel;
 use glam::DVec2;
-#[cfg(feature = "rayon")]
-use rayon::prelude::*;
 
 /// About how many points a tile has.
 const POINTS_PER_TILE: f64 = 8192.0;
@@ -50,23 +49,18 @@ impl<'a> Tiles<'a> {
 
     /// The rows of all points.
     pub(super) fn rows(&self, sites: &[DVec2]) -> Result<Rows, Refusal> {
-        let mut tiles = self.fill(sites);
+        let tiles = self.fill(sites);
         let grid = LazyGrid::new(self.lattice, sites);
-        let rows = |(index, tile): (usize, &mut Tile)| {
-            let images = core::mem::take(&mut tile.images);
+        let parts = parallel::map(tiles.len(), |index| {
+            let tile = &tiles[index];
             let (column, row) = (index % self.count(0), index / self.count(0));
             let corner =
                 |column: usize, row: usize| DVec2::new(self.starts[0][column], self.starts[1][row]);
             let (low, high) = (corner(column, row), corner(column + 1, row + 1));
             let cover = Cover::new(self.lattice, low, high, self.margin);
-            let mut patch = Patch::new(self.lattice, cover, &images, tile.points.len())?;
-            Ok(patch.rows(&grid)?)
-        };
-        #[cfg(feature = "rayon")]
-        let parts: Vec<Result<Rows, Refusal>> =
-            tiles.par_iter_mut().enumerate().map(rows).collect();
-        #[cfg(not(feature = "rayon"))]
-        let parts: Vec<Result<Rows, Refusal>> = tiles.iter_mut().enumerate().map(rows).collect();
+            let mut patch = Patch::new(self.lattice, cover, &tile.images, tile.points.len())?;
+            Ok::<Rows, Refusal>(patch.rows(&grid)?)
+        });
         // The refusal is that of the first tile that has one, whichever was there first.
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
         Ok(merged(&tiles, &parts, sites.len()))

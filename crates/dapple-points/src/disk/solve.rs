@@ -8,6 +8,7 @@ use super::mask::Coverage;
 use super::sheet::{GIVEN, POINT, Sheet, domain_rows};
 use super::slice::{Band, cover, dart_chances};
 use dapple_hash::Seed;
+use dapple_raster::parallel;
 use fearless_simd::{Level, dispatch};
 use glam::DVec2;
 
@@ -171,17 +172,6 @@ fn neighbors(band: usize, count: usize) -> impl Iterator<Item = usize> {
 }
 
 /// Calls `work` for every item, on all cores where the feature `rayon` is on.
-fn for_each<T: Send>(items: impl Iterator<Item = T>, work: impl Fn(T) + Send + Sync) {
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        let mut items: Vec<T> = items.collect();
-        if items.len() == 1 {
-            items.drain(..).for_each(work);
-        } else {
-            items.into_par_iter().for_each(work);
-        }
-    }
-    #[cfg(not(feature = "rayon"))]
-    items.for_each(work);
+fn for_each<T: Send>(items: impl Iterator<Item = T>, work: impl Fn(T) + Sync) {
+    parallel::consume(items.collect(), |_, item| work(item));
 }

@@ -106,15 +106,13 @@ fn every_simd_level_gives_the_same_bits() {
         let reference = bits(&case.texture().to_raster(&window).unwrap());
         for_every_level(|level| {
             let mut raster = Raster::filled(window.size, 0.0).unwrap();
-            let sink = Mean {
-                values: values.as_chunks::<1>().0,
-            };
+            let sink = Mean::<1>::new(&values, 1, 0);
             render_at(
                 level,
                 &pups.net,
                 &window,
                 &sink,
-                raster.view_mut().rows_mut().collect(),
+                &mut raster.view_mut().rows_mut().collect::<Vec<_>>(),
             );
             assert_eq!(bits(&raster), reference, "{} at {level:?}", case.name);
         });
@@ -134,15 +132,13 @@ fn supports_of_any_size_in_pixels_give_the_bits_of_single_positions() {
         let sampled = Raster::from_window(&window, |position| texture.sample(position)).unwrap();
         for_every_level(|level| {
             let mut raster = Raster::filled(window.size, 0.0).unwrap();
-            let sink = Mean {
-                values: texture.values().as_chunks::<1>().0,
-            };
+            let sink = Mean::<1>::new(texture.values(), 1, 0);
             render_at(
                 level,
                 &texture.pups().net,
                 &window,
                 &sink,
-                raster.view_mut().rows_mut().collect(),
+                &mut raster.view_mut().rows_mut().collect::<Vec<_>>(),
             );
             assert_eq!(bits(&raster), bits(&sampled), "side {side} at {level:?}");
         });

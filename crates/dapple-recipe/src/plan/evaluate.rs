@@ -4,7 +4,7 @@ use super::step::{Laid, Step, needed};
 use super::{Picture, Values, Whole};
 use crate::{RecipeError, RecipeErrorKind};
 use dapple_color::LinearRgb;
-use dapple_raster::{Raster, RasterViewMut, Texel, Window};
+use dapple_raster::{Raster, RasterViewMut, Texel, Window, parallel};
 use glam::DVec2;
 use std::sync::Arc;
 
@@ -81,8 +81,8 @@ pub(super) fn window(
     }
     let [width, height] = window.size;
     let rows = (CHUNK_PIXELS / width.max(1)).max(1);
-    let chunk = |chunk: u32| {
-        let first = chunk * rows;
+    let chunks = parallel::map(height.div_ceil(rows) as usize, |chunk| {
+        let first = chunk as u32 * rows;
         let part = Window {
             first: [
                 window.first[0],
@@ -103,16 +103,9 @@ pub(super) fn window(
             wanted,
             &known.collect::<Vec<_>>(),
         )
-    };
-    let chunks = 0..height.div_ceil(rows);
-    #[cfg(feature = "rayon")]
-    let chunks: Result<Vec<_>, _> = {
-        use rayon::prelude::*;
-        chunks.into_par_iter().map(chunk).collect()
-    };
-    #[cfg(not(feature = "rayon"))]
-    let chunks: Result<Vec<_>, _> = chunks.map(chunk).collect();
-    Ok(join(chunks?))
+    });
+    // The error is that of the first chunk that has one, whichever was there first.
+    Ok(join(chunks.into_iter().collect::<Result<_, _>>()?))
 }
 
 /// The values of all chunks, one after the other, for each of the steps.

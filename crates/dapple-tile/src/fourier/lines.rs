@@ -1,7 +1,6 @@
 //! Lines side by side, and the way of planes through them.
 
-#[cfg(feature = "rayon")]
-use rayon::prelude::*;
+use dapple_raster::parallel;
 
 /// How many complex lines are transformed side by side: what fills vector registers and leaves lines of a few thousand
 /// elements in the second-level cache.
@@ -57,13 +56,5 @@ pub(crate) fn par_flat_map<T: Copy + Send>(
     count: usize,
     make: impl Fn(usize) -> Vec<T> + Sync,
 ) -> Vec<T> {
-    par_map(count, make).concat()
-}
-
-/// What `make` gives for each index below `count`, in order, on all cores where the feature `rayon` is on.
-pub(crate) fn par_map<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    #[cfg(feature = "rayon")]
-    return (0..count).into_par_iter().map(&make).collect();
-    #[cfg(not(feature = "rayon"))]
-    return (0..count).map(make).collect();
+    parallel::map(count, make).concat()
 }

@@ -11,7 +11,7 @@
 use super::quotient;
 use crate::TileError;
 use crate::axis::transpose;
-use dapple_raster::{Raster, Wrap};
+use dapple_raster::{Raster, Wrap, parallel};
 
 /// The side of a square, in pixels.
 const SIDE: u32 = 8;
@@ -141,13 +141,7 @@ impl<'a> Places<'a> {
 
     fn mean_distance(&self, squares: &[Square]) -> f64 {
         let distance = |square: &Square| self.distance(square, |_| false);
-        #[cfg(feature = "rayon")]
-        let distances: Vec<f64> = {
-            use rayon::prelude::*;
-            squares.par_iter().map(distance).collect()
-        };
-        #[cfg(not(feature = "rayon"))]
-        let distances: Vec<f64> = squares.iter().map(distance).collect();
+        let distances = parallel::map(squares.len(), |index| distance(&squares[index]));
         distances.iter().sum::<f64>() / squares.len() as f64
     }
 

@@ -19,7 +19,7 @@ pub(crate) struct OwnArguments {
     #[arg(long, value_name = "FILE", requires = "exemplar")]
     pub(crate) mesh: Option<PathBuf>,
 
-    /// The image (PNG, JPEG, EXR) that the texture is synthesized from.
+    /// The image (PNG, JPEG) that the texture is synthesized from.
     #[arg(long, value_name = "FILE", requires = "mesh")]
     exemplar: Option<PathBuf>,
 

@@ -5,8 +5,7 @@
 
 use crate::PointSet;
 use core::f64::consts::TAU;
-#[cfg(feature = "rayon")]
-use rayon::prelude::*;
+use dapple_raster::parallel;
 
 /// Points per block: its tables stay in the second-level cache for the usual thousands of points.
 const BLOCK: usize = 256;
@@ -51,18 +50,14 @@ impl Periodogram {
                 let angles = block.iter().map(|at| TAU * ((at[axis] - origin) / size));
                 Multiples::new(angles, self.counts[axis])
             });
-            let add_column = |(x, sums): (usize, &mut [Products])| {
+            parallel::for_each_chunk(&mut sums, n_rows, |x, sums| {
                 for (y, sums) in sums.iter_mut().enumerate() {
                     let products = xs.products(x, &ys, y);
                     for (sum, product) in sums.iter_mut().zip(products) {
                         *sum += product;
                     }
                 }
-            };
-            #[cfg(feature = "rayon")]
-            sums.par_chunks_mut(n_rows).enumerate().for_each(add_column);
-            #[cfg(not(feature = "rayon"))]
-            sums.chunks_mut(n_rows).enumerate().for_each(add_column);
+            });
         }
         let n_points = set.len() as f64;
         for (power, [cc, ss, sc, cs]) in self.powers.iter_mut().zip(sums) {

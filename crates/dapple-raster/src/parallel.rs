@@ -1,0 +1,168 @@
+//! Work on all cores where the feature `rayon` is on, and one piece after the other where it is not.
+//!
+//! Every piece is made on its own and put where it belongs, so that the bits do not depend on the number of threads. This is
+//! the only place that uses `rayon`. Its code is large and made anew for every closure that it is given, so it is given
+//! only one, which calls through a reference what is to be done.
+
+#[cfg(feature = "rayon")]
+use std::sync::{Mutex, PoisonError};
+
+/// How many pieces there are for each thread at most: enough that no thread waits long for another.
+const PIECES: usize = 64;
+
+/// The number of threads that can work at once: 1 where the feature `rayon` is off.
+#[must_use]
+pub fn n_threads() -> usize {
+    #[cfg(feature = "rayon")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "rayon"))]
+    return 1;
+}
+
+/// Calls `work` once with each number below `count`, in any order.
+pub fn for_each(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    #[cfg(feature = "rayon")]
+    if count > 1 && n_threads() > 1 {
+        use rayon::prelude::*;
+        (0..count).into_par_iter().for_each(work);
+        return;
+    }
+    (0..count).for_each(work);
+}
+
+/// What `make` gives for each number below `count`, in their order; each is worth a task of its own.
+pub fn map<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    map_at_least(1, count, make)
+}
+
+/// What `make` gives for each number below `count`, in their order; `least` of them together are worth a task.
+pub fn map_at_least<T: Send>(
+    least: usize,
+    count: usize,
+    make: impl Fn(usize) -> T + Sync,
+) -> Vec<T> {
+    #[cfg(feature = "rayon")]
+    if count > least && n_threads() > 1 {
+        let size = piece(count, least);
+        let pieces: Vec<_> = (0..count.div_ceil(size))
+            .map(|_| Mutex::new(Vec::new()))
+            .collect();
+        for_each(pieces.len(), &|piece| {
+            let first = piece * size;
+            let made: Vec<T> = (first..count.min(first + size)).map(&make).collect();
+            *lock(&pieces[piece]) = made;
+        });
+        let mut all = Vec::with_capacity(count);
+        for piece in pieces {
+            all.append(&mut piece.into_inner().unwrap_or_else(PoisonError::into_inner));
+        }
+        return all;
+    }
+    (0..count).map(make).collect()
+}
+
+/// Calls `work` once with each of some items and its number, in any order; each is worth a task of its own.
+pub fn for_each_mut<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
+    for_each_mut_at_least(1, items, work);
+}
+
+/// Calls `work` as [`for_each_mut`] does; `least` items together are worth a task.
+pub fn for_each_mut_at_least<T: Send>(
+    least: usize,
+    items: &mut [T],
+    work: impl Fn(usize, &mut T) + Sync,
+) {
+    let size = piece(items.len(), least);
+    for_each_chunk(items, size, |chunk, items| {
+        for (index, item) in (chunk * size..).zip(items) {
+            work(index, item);
+        }
+    });
+}
+
+/// Calls `work` once with each chunk of `size` values (the last one may be shorter) and its number, in any order.
+///
+/// # Panics
+///
+/// If `size` is zero.
+pub fn for_each_chunk<T: Send>(
+    values: &mut [T],
+    size: usize,
+    work: impl Fn(usize, &mut [T]) + Sync,
+) {
+    for_each_chunk_with(values, size, || (), |(), chunk, values| work(chunk, values));
+}
+
+/// Calls `work` as [`for_each_chunk`] does, with scratch memory that a thread uses for one chunk after the other.
+///
+/// # Panics
+///
+/// If `size` is zero.
+pub fn for_each_chunk_with<T: Send, S: Send>(
+    values: &mut [T],
+    size: usize,
+    scratch: impl Fn() -> S + Sync,
+    work: impl Fn(&mut S, usize, &mut [T]) + Sync,
+) {
+    let chunks = values.chunks_mut(size).collect();
+    consume_with(chunks, scratch, |scratch, chunk, values| {
+        work(scratch, chunk, values);
+    });
+}
+
+/// Calls `work` once with each of some items and its number, in any order.
+pub fn consume<T: Send>(items: Vec<T>, work: impl Fn(usize, T) + Sync) {
+    consume_with(items, || (), |(), index, item| work(index, item));
+}
+
+/// Calls `work` as [`consume`] does, with scratch memory that a thread uses for one item after the other.
+pub fn consume_with<T: Send, S: Send>(
+    items: Vec<T>,
+    scratch: impl Fn() -> S + Sync,
+    work: impl Fn(&mut S, usize, T) + Sync,
+) {
+    #[cfg(feature = "rayon")]
+    if items.len() > 1 && n_threads() > 1 {
+        let size = piece(items.len(), 1);
+        let mut items: Vec<_> = items.into_iter().map(Some).collect();
+        let pieces: Vec<_> = items.chunks_mut(size).map(Mutex::new).collect();
+        let free = Mutex::new(Vec::new());
+        for_each(pieces.len(), &|piece| {
+            let before = lock(&free).pop();
+            let mut memory = before.unwrap_or_else(&scratch);
+            for (index, item) in (piece * size..).zip(lock(&pieces[piece]).iter_mut()) {
+                if let Some(item) = item.take() {
+                    work(&mut memory, index, item);
+                }
+            }
+            lock(&free).push(memory);
+        });
+        return;
+    }
+    let mut memory = scratch();
+    for (index, item) in items.into_iter().enumerate() {
+        work(&mut memory, index, item);
+    }
+}
+
+/// Sorts numbers, ascending.
+pub fn sort(numbers: &mut [u128]) {
+    #[cfg(feature = "rayon")]
+    rayon::slice::ParallelSliceMut::par_sort_unstable(numbers);
+    #[cfg(not(feature = "rayon"))]
+    numbers.sort_unstable();
+}
+
+/// How many of `count` things are a piece of work, of which `least` are worth one.
+fn piece(count: usize, least: usize) -> usize {
+    count.div_ceil(PIECES * n_threads()).max(least).max(1)
+}
+
+/// What a lock holds, whether or not a thread panicked with it: rayon passes the panic on.
+#[cfg(feature = "rayon")]
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests;
