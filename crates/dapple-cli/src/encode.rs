@@ -142,6 +142,18 @@ pub(crate) fn ramped_recipe(ramp: &RampArg, input: &Input) -> Node {
     })
 }
 
+/// The map of the same kind whose raster an expression makes of the raster of a map.
+macro_rules! map_raster {
+    ($map:expr, $raster:ident => $make:expr) => {
+        match $map {
+            Map::Value($raster) => Map::Value($make),
+            Map::Color($raster) => Map::Color($make),
+            Map::Normal($raster) => Map::Normal($make),
+        }
+    };
+}
+pub(crate) use map_raster;
+
 /// The bytes of a file with a map.
 ///
 /// Values are `round(value * max)` in PNG and raw heights, and as they are in EXR and NumPy arrays; color is sRGB in PNG

@@ -6,6 +6,7 @@
 )]
 
 use crate::args::{Alpha, Region};
+use crate::encode::map_raster;
 use crate::error::{Hint, usage};
 use anyhow::{Context, Error, Result, anyhow};
 use dapple::color::{Code, LinearRgb, LinearRgba, Normal};
@@ -287,11 +288,7 @@ pub(crate) fn text(path: &Path) -> Result<String> {
 /// A part of a map.
 fn crop(map: &Map, region: Region) -> Result<Map> {
     let Region { first, size } = region;
-    Ok(match map {
-        Map::Value(raster) => Map::Value(raster.crop(first, size)?),
-        Map::Color(raster) => Map::Color(raster.crop(first, size)?),
-        Map::Normal(raster) => Map::Normal(raster.crop(first, size)?),
-    })
+    Ok(map_raster!(map, raster => raster.crop(first, size)?))
 }
 
 /// The normals that the channels of an image stand for.

@@ -71,6 +71,11 @@ impl<T: Named> Word<T> {
 }
 
 impl<T> Word<T> {
+    /// Reads no value yet.
+    pub(crate) fn none() -> Self {
+        Self(Vec::new())
+    }
+
     /// Reads one more value.
     pub(crate) fn or(mut self, name: &'static str, help: &'static str, value: T) -> Self {
         self.0.push((PossibleValue::new(name).help(help), value));

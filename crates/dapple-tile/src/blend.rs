@@ -88,7 +88,7 @@ pub enum Mixing {
 }
 
 impl Blend {
-    /// Blends in this way.
+    /// A blend with these shares and this mixing.
     #[must_use]
     pub fn new(weighting: Weighting, mixing: Mixing) -> Self {
         Self { weighting, mixing }

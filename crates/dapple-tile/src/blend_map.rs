@@ -100,13 +100,13 @@ impl BlendMap {
         }
     }
 
-    /// With another contrast, at least 0.
+    /// Sets the contrast, at least 0.
     #[must_use]
     pub fn with_contrast(self, contrast: f64) -> Self {
         Self { contrast, ..self }
     }
 
-    /// With something else past the edges, x first.
+    /// Sets what lies past the edges, x first.
     #[must_use]
     pub fn with_wrap(self, wrap: [Wrap; 2]) -> Self {
         Self { wrap, ..self }

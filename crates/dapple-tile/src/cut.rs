@@ -26,11 +26,11 @@ pub(crate) struct Band {
 /// Where a cut begins and ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ends {
-    /// Anywhere.
+    /// In any columns.
     Free,
     /// The last pixel is below the first one or beside it, as in rows that repeat.
     Closed,
-    /// In these columns of the first and the last row.
+    /// In these columns.
     At([u32; 2]),
 }
 
@@ -147,7 +147,7 @@ pub(crate) fn inset(half_width: f64) -> u32 {
     (half_width.ceil() as u32).saturating_sub(1)
 }
 
-/// Adds what two planes differ by, in as many columns from `first` on as there are costs.
+/// Adds the differences of two planes to the costs, whose columns begin at `first`.
 pub(crate) fn add_differences(
     [a, b]: [&Raster<f32>; 2],
     first: usize,

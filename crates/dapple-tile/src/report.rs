@@ -129,7 +129,7 @@ pub struct DetailKept {
 }
 
 impl SeamReport {
-    /// The largest ratio that is told: what is larger, or infinite, is told as this.
+    /// The largest ratio in a report: larger and infinite ratios are cut off to it.
     pub const MOST: f64 = 1e9;
 
     /// How well a tile repeats.

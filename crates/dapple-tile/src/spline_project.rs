@@ -34,13 +34,13 @@ pub enum Basis {
 }
 
 dapple_raster::named! {
-    /// What the pixels of the image are to the spline.
+    /// How the pixels of the image determine the spline.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum Pixels {
-        /// Its coefficients, as in the paper.
+        /// They are its coefficients, as in the paper.
         #[default]
         Coefficients = "coefficients",
-        /// Its values at the pixel centers; coefficients come from a prefilter. To sines, pixels are always this.
+        /// They are its values at the pixel centers; coefficients come from a prefilter. To sines, pixels are always this.
         Samples = "samples",
     }
 }
@@ -57,9 +57,9 @@ pub struct SplineProject {
     pub levels: u32,
     /// Where coarse coefficients lie. By default centered.
     pub phase: Phase,
-    /// What the tile is made of. By default quadratic B-splines.
+    /// The functions that the tile is made of. By default quadratic B-splines.
     pub basis: Basis,
-    /// What pixels are. By default coefficients.
+    /// How pixels determine the spline. By default as its coefficients.
     pub pixels: Pixels,
 }
 

@@ -13,7 +13,7 @@ pub(crate) struct Line {
 /// The values after the last one, and before the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Ends {
-    /// The other end.
+    /// Those of the other end of the line, which repeats.
     Repeat,
     /// The mirror image, at the start and at the end: with the end value twice, or once.
     Mirror { twice: [bool; 2] },
@@ -185,7 +185,7 @@ pub(crate) fn lengths(
     Ok(lengths)
 }
 
-/// As often as no raster can be halved: its sides are below 2^32.
+/// More levels than any raster has, whose sides are below 2^32.
 const MOST_LEVELS: u32 = 32;
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! A part of an image on the command line: `x,y,w,h`, in pixels from the top left corner.
 
+use super::Numbers;
 use serde::Serialize;
 use std::str::FromStr;
 
@@ -26,10 +27,8 @@ impl FromStr for Region {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Result<Vec<u32>, _> =
-            text.split(',').map(|part| part.trim().parse()).collect();
-        match numbers.as_deref() {
-            Ok(&[x, y, w, h]) if w > 0 && h > 0 => Ok(Self {
+        match text.parse() {
+            Ok(Numbers([x, y, w, h])) if w > 0 && h > 0 => Ok(Self {
                 first: [x, y],
                 size: [w, h],
             }),

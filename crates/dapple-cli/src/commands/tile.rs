@@ -4,7 +4,7 @@ mod method;
 
 use crate::args::{AlphaArgs, Axes, ImageArgs, Region, Size};
 use crate::commands::info::seams_json;
-use crate::encode::Format;
+use crate::encode::{Format, map_raster};
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
@@ -344,11 +344,7 @@ fn reports(
 
 /// Two copies of a map beside and below each other.
 fn doubled(map: &Map) -> Result<Map> {
-    Ok(match map {
-        Map::Value(raster) => Map::Value(twice(raster)?),
-        Map::Color(raster) => Map::Color(twice(raster)?),
-        Map::Normal(raster) => Map::Normal(twice(raster)?),
-    })
+    Ok(map_raster!(map, raster => twice(raster)?))
 }
 
 /// Two copies of a raster beside and below each other.

@@ -66,9 +66,9 @@ pub(super) struct Block {
     pub(super) neighbors: Vec<Neighbor>,
     /// The points that this block has placed.
     pub(super) samples: Vec<Sample>,
-    /// Those, and the ones around.
+    /// The points of this block and of those around it.
     pub(super) locals: Vec<Local>,
-    /// The first thing that went wrong.
+    /// The first error.
     pub(super) error: Option<PointsError>,
     /// The columns and rows of the cells without a point, in random order.
     pub(super) open: Vec<[u16; 2]>,
@@ -87,7 +87,7 @@ pub(super) struct Block {
     slots: Vec<u32>,
     /// Points without a cell of their own.
     aside: Vec<u32>,
-    /// A buffer.
+    /// Scratch memory.
     found: Vec<u32>,
 }
 

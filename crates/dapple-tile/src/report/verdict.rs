@@ -66,7 +66,7 @@ impl fmt::Display for Fault {
 }
 
 impl SeamReport {
-    /// All that is wrong with the tile; nothing if it [passes](Self::passes).
+    /// The faults of the tile; none if it [passes](Self::passes).
     ///
     /// Without a source only steps are looked for. A wrap that shows less than the boundaries inside is no fault.
     #[must_use]

@@ -4,7 +4,7 @@
 
 use crate::encode::Format;
 use crate::layers::{Channel, Image, Layers};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use crate::words::Word;
 use dapple::color::NormalY;
 use dapple::recipe::MapKind;
 use serde::{Serialize, Serializer};
@@ -192,12 +192,10 @@ pub(super) static PRESETS: [Preset; 7] = [
 
 impl Preset {
     /// Reads a preset by its name.
-    pub(super) fn parser() -> impl TypedValueParser<Value = &'static Self> {
-        let values = PRESETS.iter();
-        let values = values.map(|preset| PossibleValue::new(preset.name).help(preset.about));
-        PossibleValuesParser::new(values).try_map(|name| {
-            let is_named = |preset: &&Self| preset.name.eq_ignore_ascii_case(&name);
-            PRESETS.iter().find(is_named).ok_or("unknown preset")
+    pub(super) fn parser() -> Word<&'static Self> {
+        let presets = PRESETS.iter();
+        presets.fold(Word::none(), |words, preset| {
+            words.or(preset.name, preset.about, preset)
         })
     }
 

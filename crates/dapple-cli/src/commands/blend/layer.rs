@@ -1,6 +1,7 @@
 //! A layer on the command line: `grass.png,weight=mask.png,height=grass_height.png,normal=grass_normal.png`.
 
 use crate::args::{Alpha, Size};
+use crate::encode::map_raster;
 use crate::error::{Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::words::{slip, with_underscores};
@@ -327,11 +328,7 @@ fn weight(text: &str) -> Result<Weight, String> {
 /// A map in another size: repeated, or cut.
 fn repeated(map: &Map, size: Size) -> Result<Map> {
     let context = "the images cannot be repeated";
-    Ok(match map {
-        Map::Value(raster) => Map::Value(repeat(raster, size.0).context(context)?),
-        Map::Color(raster) => Map::Color(repeat(raster, size.0).context(context)?),
-        Map::Normal(raster) => Map::Normal(repeat(raster, size.0).context(context)?),
-    })
+    Ok(map_raster!(map, raster => repeat(raster, size.0).context(context)?))
 }
 
 #[cfg(test)]

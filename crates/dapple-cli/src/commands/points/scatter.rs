@@ -1,6 +1,6 @@
 //! The kinds of point sets, and the options that each of them takes.
 
-use crate::args::{Axes, Extent, Size, image_alpha, seed};
+use crate::args::{Axes, Extent, Numbers, Size, image_alpha, seed};
 use crate::error::{Hint, usage};
 use crate::input::{self, ALPHA_HINT, Kind as ImageKind};
 use crate::words::Word;
@@ -107,7 +107,7 @@ pub(super) struct ScatterArgs {
         allow_hyphen_values = true,
         help_heading = "Domain"
     )]
-    origin: Position,
+    origin: Numbers<f64, 2>,
 
     /// Along which axes the domain wraps: the points then repeat without a seam.
     #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both, help_heading = "Domain")]
@@ -283,25 +283,6 @@ impl FromStr for Density {
             }
             Some([Ok(a), Ok(b)]) => Err(format!("densities are above 0 and finite, not {a}:{b}")),
             _ => Ok(Self::Image(PathBuf::from(text))),
-        }
-    }
-}
-
-/// Two finite numbers, `x,y`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct Position([f64; 2]);
-
-impl FromStr for Position {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let parts: Vec<_> = text
-            .split(',')
-            .map(|part| part.trim().parse::<f64>())
-            .collect();
-        match parts.as_slice() {
-            [Ok(x), Ok(y)] if x.is_finite() && y.is_finite() => Ok(Self([*x, *y])),
-            _ => Err(format!("{text:?} is not a position: give x,y")),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Synthesis of an image.
 
 use super::{Args, Input, STEPS, advise, shown};
-use crate::encode::Format;
+use crate::encode::{Format, map_raster};
 use crate::error::Exit;
 use crate::job::{Context, Job};
 use crate::progress::Progress;
@@ -49,9 +49,5 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
 
 /// A map of the example, transferred to the texture.
 fn follow(texture: &PlaneTexture, example: &Map) -> Result<Map> {
-    Ok(match example {
-        Map::Value(raster) => Map::Value(texture.transfer(raster)?),
-        Map::Color(raster) => Map::Color(texture.transfer(raster)?),
-        Map::Normal(raster) => Map::Normal(texture.transfer(raster)?),
-    })
+    Ok(map_raster!(example, raster => texture.transfer(raster)?))
 }
