@@ -5,7 +5,7 @@
 #![expect(clippy::disallowed_methods, reason = "golden images are files")]
 
 use anyhow::{Context, bail, ensure};
-use dapple_color::{Code, ColorRamp, LinearRgb, NormalOptions, Palette, normal_map};
+use dapple_color::{Code, ColorRamp, HeightPlane, LinearRgb, Palette, normal_map};
 use dapple_gallery::draw::{Canvas, label_color};
 use dapple_graph::delaunay;
 use dapple_hash::{Seed, hash2, unit_f32, unit_f64};
@@ -114,7 +114,7 @@ fn folder() -> PathBuf {
 fn color_normal_map() -> anyhow::Result<Vec<u8>> {
     let dome = |at: DVec2| (0.2 - (at - DVec2::splat(0.5)).length_squared()).max(0.0) as f32;
     let height = Raster::from_window(&window()?, dome)?;
-    let normals = normal_map(&height, &NormalOptions::for_window(&window()?))?;
+    let normals = normal_map(&height, &HeightPlane::for_window(&window()?).into())?;
     let codes = normals.map(|normal| normal.to_codes::<u8>());
     Ok(encode_png(codes.view(), Transfer::Data)?)
 }

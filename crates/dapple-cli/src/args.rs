@@ -1,4 +1,4 @@
-//! What many subcommands take: how large, where to, in which format.
+//! Options that many subcommands share: size, output, format.
 
 mod alpha;
 mod numbers;
@@ -16,43 +16,43 @@ use crate::encode::Format;
 use crate::error::{Hint, usage};
 use crate::output::Target;
 use crate::progress::Style;
+use crate::words::Word;
 use anyhow::Result;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// What every subcommand takes.
+/// Options of every subcommand.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Common")]
 pub(crate) struct Common {
-    /// How many threads compute; 0 is one for each core. The result is the same bit for bit.
+    /// The number of threads; 0 is one for each core. The results have the same bits.
     #[arg(long, global = true, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub(crate) threads: u16,
 
     /// How progress is shown on standard error: as a bar on a terminal and as lines elsewhere, or always as lines, or as lines
     /// of JSON.
-    #[arg(long, global = true, value_enum, value_name = "STYLE", default_value_t = Style::Auto)]
+    #[arg(long, global = true, value_name = "STYLE", value_parser = Word::<Style>::all(), default_value_t = Style::Auto)]
     pub(crate) progress: Style,
 
-    /// Print nothing but errors and what was asked for.
+    /// Print only errors and requested reports.
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
 }
 
-/// Where files go, whatever they hold.
+/// The output of every subcommand that writes files.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
-    /// Where to write: a file, a folder, or `-` for standard output. What is there as a folder or ends with a slash is a folder;
-    /// of several files, a name without an ending is one, too. Missing folders are made.
+    /// Where to write: a file, a folder, or `-` for standard output. An existing folder and a path that ends with a slash are
+    /// folders; for several files, so is a path without an ending. Missing folders are created.
     #[arg(short, long, value_name = "FILE|DIR/")]
     pub(crate) output: Option<PathBuf>,
 
-    /// What the files in a folder are called: `NAME.EXT`, or `NAME_MAP.EXT`. By default after what is drawn.
+    /// The name of the files in a folder: `NAME.EXT`, or `NAME_MAP.EXT`. By default that of the recipe, input or subcommand.
     #[arg(long, value_name = "NAME", value_parser = plain_name)]
     pub(crate) name: Option<String>,
 
-    /// Replace files that are there. Without it nothing is overwritten.
+    /// Replace existing files. Without it no file is overwritten.
     #[arg(long)]
     pub(crate) force: bool,
 
@@ -81,7 +81,7 @@ pub(crate) struct ImageArgs {
     /// The format. By default by the ending of the output: EXR for `.exr`, a NumPy array for `.npy`, raw heights for `.r16`; for
     /// `.png` 8 bits for color and 16 bits for data (gray images and normals), and 16 bits for color, too, if the input is
     /// deeper than 8.
-    #[arg(long, value_enum, value_name = "FORMAT")]
+    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all())]
     pub(crate) format: Option<Format>,
 
     /// Color gray results: a palette (gray, lagoon, ember, terrain, cow, giraffe, labels) or colors from low to high,
@@ -90,25 +90,25 @@ pub(crate) struct ImageArgs {
     pub(crate) ramp: Option<RampArg>,
 }
 
-/// Along which axes something repeats.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Axes {
-    /// Left and right fit together.
-    X,
-    /// Top and bottom fit together.
-    Y,
-    /// All sides fit together.
-    Both,
-    /// Nothing repeats.
-    None,
+dapple::raster::named! {
+    /// Along which axes something repeats.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(crate) enum Axes {
+        /// Left and right fit together.
+        X = "x",
+        /// Top and bottom fit together.
+        Y = "y",
+        /// All sides fit together.
+        Both = "both",
+        /// The picture does not repeat.
+        None = "none",
+    }
 }
 
 impl Axes {
-    /// Reads the axes of what does nothing along none.
-    pub(crate) fn some() -> impl TypedValueParser<Value = Self> {
-        let names = PossibleValuesParser::new(["x", "y", "both"]);
-        names.try_map(|name| Self::from_str(&name, true))
+    /// Reads one or both axes, where `none` has no meaning.
+    pub(crate) fn some() -> Word<Self> {
+        Word::some(&[Self::X, Self::Y, Self::Both])
     }
 
     /// Whether x and y repeat.
@@ -132,7 +132,7 @@ impl OutputArgs {
     ///
     /// # Errors
     ///
-    /// As [`targets`](Self::targets).
+    /// Those of [`targets`](Self::targets).
     pub(crate) fn target(&self, name: &str, ending: &str) -> Result<Target> {
         Ok(self.targets(name, &[""], ending)?.main)
     }
@@ -179,7 +179,7 @@ impl OutputArgs {
         Ok(Targets { main, files })
     }
 
-    /// The folder, if the output is one for so many files.
+    /// The folder, if the output is one for this number of files.
     pub(crate) fn folder(&self, n_files: usize) -> Option<&Path> {
         let output = self.output.as_deref()?;
         let ends_with_slash = output

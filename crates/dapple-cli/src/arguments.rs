@@ -1,7 +1,7 @@
 //! The command line as people type it.
 //!
-//! Options are read in any case and with `_` for `-`, and a negative number after an option is its value. What another program
-//! calls an option is answered with what it is called here.
+//! Options are read in any case and with `_` for `-`, and a negative number after an option is its value. The names that
+//! other programs give to options are answered with the names here.
 
 use crate::cli::{Cli, command};
 use crate::words::with_dashes;
@@ -10,7 +10,7 @@ use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::ffi::OsString;
 
-/// What options that there are not are called here: the subcommands, the option, and what to type.
+/// Options of other programs: the subcommands, the option, and what to type instead.
 const ELSEWHERE: [(&[&str], &str, &str); 9] = [
     (
         &["worley", "noise", "wavelet"],
@@ -104,7 +104,7 @@ fn takes_more(word: &OsString) -> bool {
     word.starts_with("--") && word.len() > 2 && !word.contains('=')
 }
 
-/// The error with what to type instead of an option that is called otherwise here.
+/// The error with the name that an option of another program has here.
 fn advised(mut error: clap::Error, words: &[OsString]) -> clap::Error {
     let unknown = match error.get(ContextKind::InvalidArg) {
         Some(ContextValue::String(option)) if error.kind() == ErrorKind::UnknownArgument => option,

@@ -30,7 +30,7 @@ pub(crate) struct MapFile {
     pub(crate) sheet: Option<OutputIdx>,
 }
 
-/// What programs that read the maps of a recipe need to know: a unit of the plane is a meter.
+/// The scale of a recipe, for programs that read its maps: a unit of the plane is a meter.
 pub(crate) fn report(recipe: &Recipe) -> Value {
     json!({
         "name": recipe.name,
@@ -112,11 +112,11 @@ pub(crate) fn read_picture(path: &Path, alpha: Option<ImageAlpha>, hint: &str) -
     })
 }
 
-/// Draws the maps of a bake into files that were claimed, and says of each row that it is done.
+/// Writes the maps of a bake into claimed files, and counts the rows in the progress.
 ///
 /// # Errors
 ///
-/// What the recipe or the operating system refuses.
+/// A refusal of the recipe or of the operating system.
 pub(crate) fn write(
     job: &mut Job<'_>,
     bake: Bake<'_>,
@@ -147,11 +147,11 @@ pub(crate) fn write(
     Ok(())
 }
 
-/// The files of images in memory, and says of each row that it is done.
+/// Encodes images in memory, and counts the rows in the progress.
 ///
 /// # Errors
 ///
-/// What the recipe refuses.
+/// A refusal of the recipe.
 pub(crate) fn encode(
     bake: Bake<'_>,
     images: &[Image],
@@ -200,12 +200,12 @@ fn n_rows(band: &Band) -> u64 {
 ///
 /// # Errors
 ///
-/// As [`Format::choose`].
+/// Those of [`Format::choose`].
 pub(crate) fn format(asked: Option<Format>, target: &Target) -> Result<Format> {
     Format::choose(asked, target, Format::Png16)
 }
 
-/// Adds what can be done about an error of a recipe.
+/// Adds a hint to an error of a recipe.
 pub(crate) fn advise(error: RecipeError) -> Error {
     let hint = match error.kind() {
         RecipeErrorKind::Global { .. } => {

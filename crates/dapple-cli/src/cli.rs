@@ -5,15 +5,15 @@ use crate::commands::Command;
 use crate::error::EXIT_CODES;
 use clap::{Arg, Command as ClapCommand, CommandFactory, Parser};
 
-/// What `dapple --help` says before the subcommands.
+/// The text of `dapple --help` before the subcommands.
 const ABOUT: &str = "\
 Makes textures: bakes the maps of materials from recipes, draws cells and noise, makes
 images repeat, blends them, and synthesizes more from an example, on the plane and on models.
 
 The same options and the same seed give the same bits on every machine, with any number of threads.
-Nothing is overwritten without --force, and what is not done whole leaves nothing behind.";
+No file is overwritten without --force, and a failed or interrupted command leaves no files.";
 
-/// What it says at the end.
+/// The text at the end.
 const EXAMPLES: &str = "\
 Examples:
   dapple bake flagstone -o out/ --size 2048
@@ -23,7 +23,7 @@ Examples:
   dapple points poisson --count 500 -o points.csv
   dapple info photo.png
 
-`dapple help SUBCOMMAND` says more of one, with examples.";
+`dapple help SUBCOMMAND` explains a subcommand, with examples.";
 
 /// The command line.
 #[derive(Debug, Parser)]
@@ -87,5 +87,24 @@ mod tests {
             }
         }
         assert!(n_values > 50, "they were seen: {n_values}");
+    }
+    #[test]
+    fn the_help_of_values_is_a_plain_sentence() {
+        let mut n_sentences = 0;
+        for subcommand in command().get_subcommands() {
+            for arg in subcommand.get_arguments() {
+                for value in arg.get_possible_values() {
+                    let Some(help) = value.get_help().map(ToString::to_string) else {
+                        continue;
+                    };
+                    assert!(!help.contains("](") && !help.ends_with('.'), "{help}");
+                    n_sentences += 1;
+                }
+            }
+        }
+        assert!(
+            n_sentences > 60,
+            "values of libraries have help, too: {n_sentences}"
+        );
     }
 }

@@ -47,7 +47,7 @@ pub(crate) enum Command {
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// The error of the subcommand.
 pub(crate) fn run(command: &Command, context: &Context) -> Result<Exit> {
     match command {
         Command::Bake(args) => bake::run(args, context),

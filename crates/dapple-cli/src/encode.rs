@@ -4,30 +4,28 @@ use crate::args::RampArg;
 use crate::error::{Hint, usage};
 use crate::output::Target;
 use anyhow::Result;
-use clap::ValueEnum;
 use dapple::color::{Interpolation, LinearRgb, LinearRgba, Outside, RampSpace};
 use dapple::image::{Content, Depth, Encoding, RowWriter};
 use dapple::raster::Raster;
 use dapple::recipe::{Input, Node, Ramped};
 use dapple::tile::Map;
-use serde::Serialize;
 use std::io::Cursor;
 
-/// The formats of images.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Format {
-    /// PNG with 8 bits per channel.
-    Png8,
-    /// PNG with 16 bits per channel; also png.
-    #[value(alias = "png")]
-    Png16,
-    /// OpenEXR with 32-bit floating point.
-    Exr,
-    /// A NumPy array of 32-bit floating point.
-    Npy,
-    /// Raw heights of 16 bits, as terrain importers take them, with a JSON file that says their size.
-    R16,
+dapple::raster::named! {
+    /// The formats of images.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(crate) enum Format {
+        /// PNG with 8 bits per channel.
+        Png8 = "png8",
+        /// PNG with 16 bits per channel; also png.
+        Png16 = "png16" | "png",
+        /// OpenEXR with 32-bit floating point.
+        Exr = "exr",
+        /// A NumPy array of 32-bit floating point.
+        Npy = "npy",
+        /// Raw heights of 16 bits, as terrain importers take them, with a JSON file that says their size.
+        R16 = "r16",
+    }
 }
 
 impl Format {
@@ -50,7 +48,7 @@ impl Format {
                 return Ok(asked.unwrap_or(default));
             }
             (_, ending) => {
-                let error = usage(format!("{target}: there is no image format {ending:?}"));
+                let error = usage(format!("{target}: unknown image format {ending:?}"));
                 return Err(error.hint("let the name end in .png, .exr, .npy or .r16"));
             }
         };
@@ -90,11 +88,11 @@ impl Format {
         }
     }
 
-    /// Refuses raw heights for what is no single number at each pixel.
+    /// Refuses raw heights for content that is not a single number at each pixel.
     ///
     /// # Errors
     ///
-    /// If they are to hold something else.
+    /// If the content has several channels.
     pub(crate) fn check(self, content: Content, target: &Target) -> Result<()> {
         if self != Self::R16 || content == Content::Gray {
             return Ok(());
@@ -115,7 +113,7 @@ impl Format {
     }
 }
 
-/// The format of a map if nobody says one: PNG with 8 bits for color that is not deeper, with 16 for everything else.
+/// The default format of a map: PNG with 8 bits for color that is not deeper, with 16 for everything else.
 pub(crate) fn default_format(map: &Map, is_deep: bool) -> Format {
     match map {
         Map::Color(_) if !is_deep => Format::Png8,
@@ -143,6 +141,18 @@ pub(crate) fn ramped_recipe(ramp: &RampArg, input: &Input) -> Node {
         outside: Outside::Clamp,
     })
 }
+
+/// The map of the same kind whose raster an expression makes of the raster of a map.
+macro_rules! map_raster {
+    ($map:expr, $raster:ident => $make:expr) => {
+        match $map {
+            Map::Value($raster) => Map::Value($make),
+            Map::Color($raster) => Map::Color($make),
+            Map::Normal($raster) => Map::Normal($make),
+        }
+    };
+}
+pub(crate) use map_raster;
 
 /// The bytes of a file with a map.
 ///
@@ -186,7 +196,7 @@ pub(crate) fn encode_with_alpha(
     Ok(rows.finish()?.into_inner())
 }
 
-/// What an image of a map holds.
+/// The content of an image of a map.
 pub(crate) fn content(map: &Map) -> Content {
     match map {
         Map::Value(_) => Content::Gray,

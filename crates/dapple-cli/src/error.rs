@@ -1,4 +1,4 @@
-//! What went wrong, for people: a message, its causes, a hint what to do about it, and the exit code.
+//! Errors for people: a message, its causes, a hint what to do about it, and the exit code.
 
 use anyhow::Error;
 use dapple::points::{PointsError, PointsErrorKind};
@@ -26,7 +26,7 @@ pub(crate) enum Exit {
     Interrupted = 130,
 }
 
-/// What `--help` and the manual pages say of the exit codes.
+/// The exit codes in `--help` and the manual pages.
 pub(crate) const EXIT_CODES: &str = "\
 Exit codes:
   0    done
@@ -61,7 +61,7 @@ impl std::error::Error for Refusal {
     }
 }
 
-/// A command line that clap cannot tell to be wrong.
+/// An error of the command line that clap does not find.
 pub(crate) fn usage(message: impl Into<String>) -> Error {
     Error::new(Refusal {
         error: Error::msg(message.into()),
@@ -72,13 +72,13 @@ pub(crate) fn usage(message: impl Into<String>) -> Error {
 
 /// Adds a hint to an error.
 pub(crate) trait Hint {
-    /// What it becomes.
+    /// The type of the result.
     type Hinted;
 
-    /// The same with a hint: an imperative sentence without a full stop.
+    /// Adds a hint: an imperative sentence without a full stop.
     fn hint(self, hint: impl Into<String>) -> Self::Hinted;
 
-    /// The same as an error of the command line: a library found the value wrong that was typed.
+    /// Marks it as an error of the command line: a library has refused a value that was typed.
     fn wrong_value(self) -> Self::Hinted;
 }
 
@@ -200,7 +200,7 @@ fn option_with(number: f64, arguments: &[String]) -> Option<String> {
 /// How to exit after an error.
 fn exit(error: &Error) -> Exit {
     if is_broken_pipe(error) {
-        // Whoever read the other end has seen enough.
+        // The reader of the pipe has closed it.
         return Exit::Done;
     }
     let refusals = error.chain().filter_map(|cause| cause.downcast_ref());

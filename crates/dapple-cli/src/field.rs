@@ -9,6 +9,7 @@ use crate::job::{Context, Job, put_text};
 use crate::layers::{Image, Layers};
 use crate::output::Target;
 use crate::progress::Progress;
+use crate::words::Word;
 use anyhow::{Error, Result};
 use dapple::hash::Seed;
 use dapple::recipe::{
@@ -17,10 +18,10 @@ use dapple::recipe::{
 };
 use serde::Serialize;
 
-/// What commands that draw a field take.
+/// Options of subcommands that draw a field.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 pub(crate) struct FieldArgs {
-    /// What all chance comes from.
+    /// The seed of all random choices.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     pub(crate) seed: u64,
 
@@ -29,7 +30,7 @@ pub(crate) struct FieldArgs {
     pub(crate) size: Size,
 
     /// Along which axes the picture repeats.
-    #[arg(long, value_enum, default_value_t = Axes::Both)]
+    #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
     pub(crate) wrap: Axes,
 
     /// Make only this part of the picture, in pixels: bit for bit the crop of the whole.
@@ -52,7 +53,7 @@ pub(crate) struct FieldArgs {
 pub(crate) enum RangeArg {
     /// The values as they are.
     Raw,
-    /// What becomes 0 and 1.
+    /// The values that become 0 and 1.
     Ends([f32; 2]),
 }
 
@@ -69,7 +70,7 @@ impl std::str::FromStr for RangeArg {
                 Ok(Self::Ends([low, high]))
             }
             _ => Err(format!(
-                "{text:?} is no range; one is such as 0,1 or -3,3 or raw"
+                "{text:?} is not a range: give two numbers, such as 0,1 or -3,3, or raw"
             )),
         }
     }
@@ -80,7 +81,7 @@ impl std::str::FromStr for RangeArg {
 pub(crate) struct Field {
     /// The name of the subcommand.
     pub(crate) command: &'static str,
-    /// What makes it.
+    /// The node that makes it.
     pub(crate) node: Node,
     /// Whether it makes colors.
     pub(crate) is_color: bool,
@@ -98,7 +99,7 @@ pub(crate) struct Field {
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options out of range, and files that cannot be written.
 pub(crate) fn draw(
     field: &Field,
     args: &FieldArgs,

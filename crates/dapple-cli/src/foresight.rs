@@ -1,4 +1,4 @@
-//! How much work a bake is, said before it begins: pixels, bytes, and about how long.
+//! An estimate of the work of a bake, before it begins: pixels, bytes, and about how long.
 
 use crate::baking::advise;
 use crate::error::Hint;
@@ -9,18 +9,18 @@ use dapple::recipe::{Bake, BakeMemory, BakeOptions, Plan};
 use indicatif::{DecimalBytes, HumanDuration};
 use std::time::{Duration, Instant};
 
-/// The most pixels that are baked by someone who has not asked for a large bake: 32768 × 32768.
+/// The most pixels that are baked without `--banded`: 32768 × 32768.
 const MOST_PIXELS: u64 = 1 << 30;
-/// From here on the work is said before it begins: 8192 × 8192.
+/// The number of pixels from which on the estimate is printed: 8192 × 8192.
 const TOLD_PIXELS: u64 = 1 << 26;
 /// Columns and rows of the small bake whose pace is measured.
 const PROBE: [u32; 2] = [256; 2];
 
-/// Says what a bake will take, if that is worth a word.
+/// Prints an estimate of the work of a large bake.
 ///
 /// # Errors
 ///
-/// If there are more than [`MOST_PIXELS`] and the bake is not banded, or what the recipe refuses.
+/// If there are more than [`MOST_PIXELS`] and the bake is not banded, or if the recipe is refused.
 pub(crate) fn foresee(
     plan: &Plan,
     options: &BakeOptions,

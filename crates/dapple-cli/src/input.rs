@@ -1,4 +1,4 @@
-//! What is read: images, meshes and text, with errors that say what to do.
+//! Input files: images, meshes and text, with errors that say what to do.
 
 #![expect(
     clippy::disallowed_methods,
@@ -6,6 +6,7 @@
 )]
 
 use crate::args::{Alpha, Region};
+use crate::encode::map_raster;
 use crate::error::{Hint, usage};
 use anyhow::{Context, Error, Result, anyhow};
 use dapple::color::{Code, LinearRgb, LinearRgba, Normal};
@@ -23,10 +24,10 @@ use std::path::Path;
 
 /// The most bytes of a text that is read.
 const TEXT_MAX: u64 = 1 << 28;
-/// How many similar names are told.
+/// The number of similar names in an error message.
 const NAMES_MAX: usize = 3;
 
-/// How the numbers of an image are meant.
+/// The quantity that the numbers of an image stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// Gray images are values as they are, others are color.
@@ -65,7 +66,7 @@ impl Loaded {
 ///
 /// # Errors
 ///
-/// If there is no such file, or it is none, is empty or damaged.
+/// If the file does not exist, has another format, or is empty or damaged.
 pub(crate) fn image(path: &Path) -> Result<Image> {
     let limits = Limits::default();
     if path == Path::new("-") {
@@ -80,15 +81,15 @@ pub(crate) fn image(path: &Path) -> Result<Image> {
     read_image(path, &limits).map_err(advise)
 }
 
-/// What to do about an image with alpha, where an option says what becomes of it.
+/// The hint for an image with alpha where an option handles it.
 pub(crate) const ALPHA_HINT: &str = "add --alpha drop or --alpha over:COLOR";
 
 /// Reads an image as a map that has no alpha, or a part of it.
 ///
 /// # Errors
 ///
-/// As [`image`]; and if its channels cannot be meant so, or the part is not inside of it; with the hint, if some pixels are
-/// transparent and it is not said what becomes of that.
+/// Those of [`image`]; channels that do not fit the kind; a part that is not inside of the image; and, with the hint,
+/// transparent pixels where `alpha` is `None`.
 pub(crate) fn map(
     path: &Path,
     kind: Kind,
@@ -104,7 +105,7 @@ pub(crate) fn map(
     )?;
     if loaded.alpha.is_some() {
         let message = format!(
-            "{} is partly transparent, and alpha means nothing here",
+            "{} is partly transparent, which is not possible here",
             name(path)
         );
         return Err(usage(message).hint(hint));
@@ -112,11 +113,11 @@ pub(crate) fn map(
     Ok(loaded)
 }
 
-/// Reads an image as a map, or a part of it, and does with its alpha what was asked for.
+/// Reads an image as a map, or a part of it, and keeps, drops or composites its alpha. Normals have no alpha.
 ///
 /// # Errors
 ///
-/// As [`image`]; and if its channels cannot be meant so, or the part is not inside of it. Normals have no alpha.
+/// Those of [`image`]; channels that do not fit the kind; a part that is not inside of the image.
 pub(crate) fn map_with_alpha(
     path: &Path,
     kind: Kind,
@@ -227,7 +228,7 @@ pub(crate) fn check_size(
     )))
 }
 
-/// What an input is called in messages.
+/// The name of an input in messages.
 pub(crate) fn name(path: &Path) -> String {
     if path == Path::new("-") {
         "standard input".to_owned()
@@ -240,7 +241,7 @@ pub(crate) fn name(path: &Path) -> String {
 ///
 /// # Errors
 ///
-/// If there is no such file, or it is none, is empty or damaged.
+/// If the file does not exist, has another format, or is empty or damaged.
 pub(crate) fn model(path: &Path) -> Result<Model> {
     check_file(path, "a mesh")?;
     read_model(path).map_err(|error| {
@@ -253,7 +254,8 @@ pub(crate) fn model(path: &Path) -> Result<Model> {
             }
             _ => None,
         };
-        let error = Error::new(error).context(format!("{}: no mesh was read", path.display()));
+        let error =
+            Error::new(error).context(format!("{} cannot be read as a mesh", path.display()));
         match hint {
             Some(hint) => error.hint(hint),
             None => error,
@@ -289,17 +291,13 @@ pub(crate) fn text(path: &Path) -> Result<String> {
     if bytes.len() as u64 > TEXT_MAX {
         return Err(anyhow!("{} has more than {TEXT_MAX} bytes", path.display()));
     }
-    String::from_utf8(bytes).map_err(|_| anyhow!("{} is no text in UTF-8", path.display()))
+    String::from_utf8(bytes).map_err(|_| anyhow!("{} is not a text in UTF-8", path.display()))
 }
 
 /// A part of a map.
 fn crop(map: &Map, region: Region) -> Result<Map> {
     let Region { first, size } = region;
-    Ok(match map {
-        Map::Value(raster) => Map::Value(raster.crop(first, size)?),
-        Map::Color(raster) => Map::Color(raster.crop(first, size)?),
-        Map::Normal(raster) => Map::Normal(raster.crop(first, size)?),
-    })
+    Ok(map_raster!(map, raster => raster.crop(first, size)?))
 }
 
 /// The normals that the channels of an image stand for.
@@ -332,7 +330,7 @@ fn normal(parts: [f32; 3]) -> Normal {
     Normal::from_codes(parts.map(u16::from_unit))
 }
 
-/// Adds a hint to what often goes wrong.
+/// Adds a hint to frequent errors.
 fn advise(error: ImageError) -> Error {
     let hint = match error.kind() {
         ImageErrorKind::UnknownFormat => {
@@ -349,7 +347,7 @@ fn advise(error: ImageError) -> Error {
     }
 }
 
-/// Refuses what is not there, is a folder, or is empty.
+/// Refuses a path that does not exist, a folder, and an empty file.
 fn check_file(path: &Path, what: &str) -> Result<()> {
     let found = match fs::metadata(path) {
         Ok(found) => found,
@@ -373,7 +371,7 @@ fn check_file(path: &Path, what: &str) -> Result<()> {
     Ok(())
 }
 
-/// The names in the same folder that may have been meant, the most alike first.
+/// Similar names in the folder of a path, the most similar first.
 fn similar_names(path: &Path) -> Vec<String> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let folder = path.parent().unwrap_or(Path::new(""));

@@ -1,6 +1,6 @@
 //! A run of a subcommand: its files, what it says, and the JSON file beside the output.
 
-use crate::args::{ImageArgs, OutputArgs};
+use crate::args::{ImageArgs, OutputArgs, Targets};
 use crate::encode::{Format, content, default_format, encode, encode_with_alpha, ramped, range};
 use crate::error::{Exit, Hint, usage};
 use crate::output::{OutputIdx, Outputs, Target};
@@ -15,10 +15,10 @@ use std::fs::File;
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::Path;
 
-/// What holds for the whole process.
+/// Settings of the whole process.
 #[derive(Clone, Debug)]
 pub(crate) struct Context {
-    /// Whether nothing is said that was not asked for.
+    /// Whether only errors and requested reports are printed.
     pub(crate) quiet: bool,
     /// How progress is shown.
     pub(crate) progress: Style,
@@ -38,7 +38,7 @@ pub(crate) struct Job<'a> {
     sidecar: Option<OutputIdx>,
 }
 
-/// What the JSON file says of an output.
+/// The entry of an output in the JSON file.
 #[derive(Clone, Debug, Default, Serialize)]
 struct FileRecord {
     file: String,
@@ -67,8 +67,8 @@ struct Sidecar<'a> {
     raw: Option<RawSize>,
 }
 
-/// What raw heights do not say themselves, by the names by which the landscape importer of Unreal reads it from the JSON file
-/// beside them.
+/// The size and bits of raw heights, which the file does not hold, by the names that the landscape importer of Unreal reads
+/// from the JSON file beside it.
 #[derive(Serialize)]
 struct RawSize {
     width: u32,
@@ -89,7 +89,7 @@ impl FileRecord {
 }
 
 impl<'a> Job<'a> {
-    /// Begins.
+    /// Begins a run.
     pub(crate) fn new(context: &'a Context, command: &'static str, args: &'a OutputArgs) -> Self {
         Self {
             context,
@@ -105,20 +105,39 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// As [`Outputs::claim`], and if it would go to a terminal.
+    /// Those of [`Outputs::claim`], and if it would go to a terminal.
     pub(crate) fn claim(&mut self, target: &Target) -> Result<OutputIdx> {
         if *target == Target::Stdout && io::stdout().is_terminal() {
-            let error = usage("standard output is a terminal, which shows no such files");
-            return Err(error.hint("give a file with -o, or lead it on with a pipe"));
+            let error = usage("standard output is a terminal, which cannot show this file");
+            return Err(error.hint("give a file with -o, or add a pipe"));
         }
         self.claim_text(target)
+    }
+
+    /// Claims a file for each image, and the JSON file. A name or a format that no image has is refused here, before the work.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Format::choose`], [`claim`](Self::claim) and [`claim_sidecar`](Self::claim_sidecar).
+    pub(crate) fn claim_images(
+        &mut self,
+        targets: &Targets,
+        asked: Option<Format>,
+    ) -> Result<Vec<OutputIdx>> {
+        let mut outputs = Vec::new();
+        for target in &targets.files {
+            Format::choose(asked, target, Format::Png16)?;
+            outputs.push(self.claim(target)?);
+        }
+        self.claim_sidecar(&targets.main)?;
+        Ok(outputs)
     }
 
     /// Claims a file of text.
     ///
     /// # Errors
     ///
-    /// As [`Outputs::claim`].
+    /// Those of [`Outputs::claim`].
     pub(crate) fn claim_text(&mut self, target: &Target) -> Result<OutputIdx> {
         let output = self.claim_in_folder(target)?;
         let record = FileRecord {
@@ -134,7 +153,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// As [`Outputs::claim`], and if there is no name for it.
+    /// Those of [`Outputs::claim`], and if there is no name for it.
     pub(crate) fn claim_sidecar(&mut self, main: &Target) -> Result<()> {
         let target = match &self.args.json {
             None => {
@@ -158,7 +177,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// As [`Outputs::write`].
+    /// Those of [`Outputs::write`].
     pub(crate) fn write(&self, output: OutputIdx, bytes: &[u8]) -> Result<()> {
         self.outputs.write(output, bytes)
     }
@@ -167,7 +186,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// As [`encode`] and [`Outputs::write`].
+    /// Those of [`encode`] and [`Outputs::write`].
     pub(crate) fn write_map(&mut self, output: OutputIdx, map: &Map, format: Format) -> Result<()> {
         format.check(content(map), self.target(output))?;
         self.write(output, &encode(map, format)?)?;
@@ -175,7 +194,7 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Says on standard error what is going to be done, unless that is to be quiet.
+    /// Announces work on standard error, unless the command is quiet.
     pub(crate) fn note_work(&self, text: &str) {
         if !self.context.quiet {
             eprintln_if_possible(text);
@@ -187,11 +206,11 @@ impl<'a> Job<'a> {
         self.outputs.target(output)
     }
 
-    /// What writes a file that was claimed, from its start. It has to be flushed before the job is finished.
+    /// A writer for a claimed file, from its start. It has to be flushed before the job is finished.
     ///
     /// # Errors
     ///
-    /// As [`Outputs::writer`].
+    /// Those of [`Outputs::writer`].
     pub(crate) fn writer(&self, output: OutputIdx) -> Result<BufWriter<File>> {
         self.outputs.writer(output)
     }
@@ -215,7 +234,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// As [`Format::choose`] and [`write_map`](Self::write_map).
+    /// Those of [`Format::choose`] and [`write_map`](Self::write_map).
     pub(crate) fn write_image(
         &mut self,
         output: OutputIdx,
@@ -233,7 +252,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// As [`write_image`](Self::write_image).
+    /// Those of [`write_image`](Self::write_image).
     pub(crate) fn write_with_alpha(
         &mut self,
         output: OutputIdx,
@@ -253,11 +272,11 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Says what was asked for, on standard output unless that is taken.
+    /// Prints a requested report on standard output, or on standard error if an output goes there.
     ///
     /// # Errors
     ///
-    /// If nobody listens.
+    /// If standard output cannot be written.
     pub(crate) fn say(&self, text: &str) -> Result<()> {
         let is_taken =
             |(output, _): &(OutputIdx, FileRecord)| *self.outputs.target(*output) == Target::Stdout;
@@ -272,7 +291,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     ///
-    /// As [`Outputs::commit`].
+    /// Those of [`Outputs::commit`].
     pub(crate) fn finish(mut self, options: &impl Serialize, report: Value) -> Result<()> {
         if let Some(sidecar) = self.sidecar {
             for (output, record) in &mut self.files {
@@ -319,7 +338,7 @@ impl<'a> Job<'a> {
     /// The JSON file where none was named: the output's name with the ending `.json`.
     fn beside(&self, main: &Target) -> Result<Target> {
         let Some(path) = main.path() else {
-            return Err(usage("there is no output for the JSON file to lie beside")
+            return Err(usage("the JSON file has no output to be written beside")
                 .hint("name it: --json=FILE"));
         };
         let target = Target::Path(path.with_extension("json"));
@@ -338,7 +357,7 @@ impl<'a> Job<'a> {
 ///
 /// # Errors
 ///
-/// If nobody listens.
+/// If standard output cannot be written.
 pub(crate) fn say(text: &str) -> Result<()> {
     let mut stdout = io::stdout().lock();
     stdout.write_all(text.as_bytes())?;
@@ -350,7 +369,7 @@ pub(crate) fn say(text: &str) -> Result<()> {
 ///
 /// # Errors
 ///
-/// What goes wrong with the output, or if nobody listens.
+/// If the output cannot be written.
 pub(crate) fn put_text(
     mut job: Job<'_>,
     name: &str,
@@ -369,18 +388,18 @@ pub(crate) fn put_text(
     Ok(Exit::Done)
 }
 
-/// Prints to standard error. If nobody listens there, nobody is missed.
+/// Prints to standard error, and ignores errors.
 pub(crate) fn eprintln_if_possible(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// What is said of a file to a program.
+/// The line about a written file, as JSON.
 fn told_as_json(record: &FileRecord) -> String {
     serde_json::json!({ "wrote": record.file, "size": record.size, "format": record.format })
         .to_string()
 }
 
-/// What is said of a file.
+/// The line about a written file.
 fn told(record: &FileRecord) -> String {
     let FileRecord {
         file, size, format, ..

@@ -1,4 +1,4 @@
-//! What the channels of an image hold: a map, or several maps packed into one image.
+//! The content of the channels of an image: a map, or several maps packed into one image.
 
 use crate::encode::Format;
 use anyhow::{Result, anyhow};
@@ -17,7 +17,7 @@ pub(crate) struct Image {
     pub(crate) format: Format,
 }
 
-/// What the channels of an image hold.
+/// The content of the channels of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Layers {
     /// A map with all of its channels.
@@ -26,14 +26,14 @@ pub(crate) enum Layers {
     Rgba([Channel; 4]),
 }
 
-/// What a channel holds.
+/// The content of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Channel {
     /// A map of numbers.
     Of(MapKind),
-    /// One less a map of numbers.
+    /// One minus a map of numbers.
     OneLess(MapKind),
-    /// The same number everywhere.
+    /// A constant.
     Always(f32),
 }
 
@@ -44,7 +44,7 @@ pub(crate) enum LayerRows<'a> {
 }
 
 impl Layers {
-    /// The maps that it is made of.
+    /// The maps that the channels hold.
     pub(crate) fn kinds(&self) -> Vec<MapKind> {
         match self {
             Self::Map(kind) => vec![*kind],
@@ -52,7 +52,7 @@ impl Layers {
         }
     }
 
-    /// What kind of image it is.
+    /// The kind of image, which decides how it is written.
     pub(crate) fn content(&self) -> Content {
         match self {
             Self::Map(MapKind::Normal) => Content::Normal,
@@ -72,7 +72,7 @@ impl Layers {
         }
     }
 
-    /// The rows of a band, which has all maps that it is made of.
+    /// The rows of a band that has all maps of the image.
     pub(crate) fn rows<'a>(&self, band: &'a Band) -> Result<LayerRows<'a>> {
         match self {
             Self::Map(kind) => Ok(LayerRows::Map(Cow::Borrowed(map_of(*kind, band)?))),
@@ -110,7 +110,7 @@ impl Channel {
     }
 }
 
-/// As help texts have it: `albedo in sRGB`, or `R metallic, G ao, B 1, A 1 - roughness`.
+/// The text of help: `albedo in sRGB`, or `R metallic, G ao, B 1, A 1 - roughness`.
 impl fmt::Display for Layers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

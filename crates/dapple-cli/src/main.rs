@@ -1,9 +1,9 @@
 //! The command `dapple`: textures from the command line.
 //!
 //! `cli.rs` has the command line as a whole, `commands/` a file for each subcommand, and the other files what they share:
-//! `arguments.rs` the words as they are typed, `args.rs` the options, `input.rs` what is read, `encode.rs` and `output.rs` what is written, `baking.rs` recipes drawn band by
-//! band, `layers.rs` what the channels of an image hold, `field.rs` a single field as a recipe, `job.rs` a run from its first claim of a file to its last word,
-//! `error.rs` what went wrong.
+//! `arguments.rs` the words as they are typed, `words.rs` names of values, `args.rs` options, `input.rs` reading, `encode.rs`
+//! and `output.rs` writing, `baking.rs` recipes drawn band by band, `layers.rs` the channels of an image, `field.rs` a single
+//! field as a recipe, `job.rs` a run from its first claimed file to its end, `error.rs` errors.
 
 #![forbid(unsafe_code)]
 
@@ -44,7 +44,7 @@ fn main() -> ExitCode {
 
 fn run(cli: &Cli, arguments: &[String]) -> Result<Exit> {
     ctrlc::set_handler(|| output::exit_without_rubbish(Exit::Interrupted))
-        .context("there is no way to hear of Ctrl-C")?;
+        .context("the handler of Ctrl-C cannot be installed")?;
     rayon::ThreadPoolBuilder::new()
         .num_threads(cli.common.threads.into())
         .build_global()

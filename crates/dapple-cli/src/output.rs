@@ -1,11 +1,10 @@
 //! The files of a run: claimed before the work starts, written aside, and all put in their places at the end.
 //!
-//! Each file is written under a temporary name in the folder where it will lie. When all of them are whole they are
-//! renamed, one right after the other, so that whoever looks finds the old file or the whole new one, however the command
-//! ends. Nothing that is there is replaced without `--force`: this is looked at when a file is claimed, before hours of work,
-//! and holds again when it is put in its place.
+//! Each file is written under a temporary name in its folder. When all of them are complete they are renamed, one right
+//! after the other: a reader finds the old file or the whole new one, however the command ends. Without `--force` no
+//! existing file is replaced: this is checked when a file is claimed, before hours of work, and again when it is renamed.
 //!
-//! Standard output, devices and pipes get their bytes at the end, in one go.
+//! Standard output, devices and pipes get their bytes at the end.
 
 #![expect(
     clippy::disallowed_methods,
@@ -39,7 +38,7 @@ pub(crate) enum Target {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct OutputIdx(usize);
 
-/// What is known of the content of a file.
+/// The size and checksum of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Content {
     /// How many bytes it has.
@@ -48,7 +47,7 @@ pub(crate) struct Content {
     pub(crate) sha256: String,
 }
 
-/// The files of a run. What was not committed is taken away when this goes.
+/// The files of a run. Those that were not committed are removed on drop.
 #[derive(Debug)]
 pub(crate) struct Outputs {
     force: bool,
@@ -98,7 +97,7 @@ impl Target {
             .to_ascii_lowercase()
     }
 
-    /// The same file with another ending.
+    /// This file with another ending.
     pub(crate) fn with_ending(self, ending: &str) -> Self {
         match self {
             Self::Stdout => Self::Stdout,
@@ -151,7 +150,7 @@ impl fmt::Display for Target {
 }
 
 impl Outputs {
-    /// No file yet. With `force`, files that are there are replaced.
+    /// Begins without any file. With `force`, existing files are replaced.
     pub(crate) fn new(force: bool) -> Self {
         Self {
             force,
@@ -179,7 +178,7 @@ impl Outputs {
         Err(anyhow!("{} is a file, and not a folder", folder.display()))
     }
 
-    /// Makes room for a file, under its temporary name.
+    /// Creates the temporary file of an output.
     ///
     /// # Errors
     ///
@@ -212,7 +211,7 @@ impl Outputs {
         Ok(OutputIdx(self.files.len() - 1))
     }
 
-    /// What writes a file that was claimed, from its start. It has to be flushed before [`commit`](Self::commit).
+    /// A writer for a claimed file, from its start. It has to be flushed before [`commit`](Self::commit).
     ///
     /// # Errors
     ///
@@ -242,7 +241,7 @@ impl Outputs {
         &self.files[output.0].target
     }
 
-    /// What is in a file that was written, and flushed.
+    /// The size and checksum of a file that was written and flushed.
     ///
     /// # Errors
     ///
@@ -267,7 +266,7 @@ impl Outputs {
         }
         let mut held = registry::hold();
         let mut placed: Vec<Target> = Vec::new();
-        // What is not taken out by then goes with `self` if there is an error.
+        // After an error, the files that are still in the list are removed with `self`.
         while !self.files.is_empty() {
             let file = self.files.remove(0);
             let Place::File(path) = &file.place else {
@@ -335,7 +334,7 @@ fn place(target: &Target) -> Result<Place> {
         }
         Ok(found) if !found.is_file() => Ok(Place::Device(path.clone())),
         Ok(_) => {
-            // What a link leads to is replaced, and the link stays.
+            // The target of a link is replaced, and the link stays.
             let path = fs::canonicalize(path);
             Ok(Place::File(
                 path.with_context(|| cannot_be_written(target))?,

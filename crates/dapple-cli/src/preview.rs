@@ -2,7 +2,6 @@
 
 use crate::baking::advise;
 use anyhow::{Result, bail};
-use clap::ValueEnum;
 use dapple::color::{LinearRgb, NormalY};
 use dapple::points::glam::{DVec2, DVec3, Vec3};
 use dapple::preview::{
@@ -10,21 +9,21 @@ use dapple::preview::{
 };
 use dapple::raster::{Raster, Wrap};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
-use serde::Serialize;
 
 /// The side of the picture, in pixels.
 const SIDE: u32 = 512;
 /// The pixels along the longer side of the maps that it shows.
 const TILE: u32 = 512;
 
-/// What the material is on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Thing {
-    /// A plane of 2 x 2 tiles.
-    Plane,
-    /// A ball.
-    Sphere,
+dapple::raster::named! {
+    /// The shape that the material is on.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(crate) enum Thing {
+        /// A plane of 2 x 2 tiles.
+        Plane = "plane",
+        /// A ball.
+        Sphere = "sphere",
+    }
 }
 
 /// The maps of a tile.
@@ -41,7 +40,7 @@ struct Maps {
 ///
 /// # Errors
 ///
-/// What the recipe refuses.
+/// A refusal of the recipe.
 pub(crate) fn picture(recipe: &Recipe, images: &Images, thing: Thing) -> Result<Raster<LinearRgb>> {
     let aspect = recipe.extent[0] / recipe.extent[1];
     let (shape, camera, tiles) = match thing {
@@ -111,7 +110,7 @@ impl Maps {
         })
     }
 
-    /// What a place of a thing looks like.
+    /// The material at a point of the surface.
     fn material(&self, surface: &Surface) -> Material {
         let uv = surface.uv().unwrap_or_default() * self.tiles;
         let wrap = [Wrap::Repeat; 2];

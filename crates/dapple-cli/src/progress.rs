@@ -1,39 +1,40 @@
-//! How far the work is, on standard error: a bar on a terminal, and lines elsewhere, if it takes a while.
+//! Progress on standard error: a bar on a terminal, and lines elsewhere, if the work takes a while.
 
 #![expect(
     clippy::disallowed_methods,
-    reason = "lines come at most so often, and no value depends on it"
+    reason = "the time limits how often lines are printed, and no value depends on it"
 )]
 
 use crate::job::{Context, eprintln_if_possible};
-use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How long no bar is shown.
+/// The time before a bar is shown.
 const DELAY: Duration = Duration::from_millis(500);
-/// How often what is shown moves.
+/// The time between frames of a bar.
 const TICK: Duration = Duration::from_millis(120);
 /// The time between lines for people.
 const PERIOD: Duration = Duration::from_secs(5);
 /// The time between lines for programs.
 const PERIOD_JSON: Duration = Duration::from_millis(100);
 
-/// How progress is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Style {
-    /// A bar on a terminal, and lines elsewhere.
-    #[default]
-    Auto,
-    /// A line every few seconds.
-    Lines,
-    /// Lines of JSON, also for the files that were written.
-    Json,
+dapple::raster::named! {
+    /// How progress is shown.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub(crate) enum Style {
+        /// A bar on a terminal, and lines elsewhere.
+        #[default]
+        Auto = "auto",
+        /// A line every few seconds.
+        Lines = "lines",
+        /// Lines of JSON, also for the files that were written.
+        Json = "json",
+    }
 }
 
-/// A bar, or a spinner where nobody knows how long it takes. It goes away when this does.
+/// A bar, or a spinner where the length is not known. It is removed on drop.
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: ProgressBar,
@@ -44,7 +45,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Shows that something is worked on.
+    /// Shows a spinner.
     pub(crate) fn spinner(label: &'static str, context: &Context) -> Self {
         let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
         Self::new(ProgressBar::no_length(), style, label, context)
@@ -56,7 +57,7 @@ impl Progress {
         Self::new(ProgressBar::new(length), style, label, context)
     }
 
-    /// Says how much is done by now.
+    /// Sets how much is done.
     pub(crate) fn set(&self, done: u64) {
         if done > 0 && done == self.bar.position() {
             return;
@@ -74,7 +75,7 @@ impl Progress {
         eprintln_if_possible(&line(self.label, done, length, is_json));
     }
 
-    /// Says that so much more is done.
+    /// Adds to what is done.
     pub(crate) fn add(&self, more: u64) {
         self.set(self.bar.position() + more);
     }

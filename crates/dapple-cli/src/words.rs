@@ -3,11 +3,11 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, Command, Error};
+use dapple::raster::Named;
 use dapple::recipe::similar_words;
 use serde::de::value::Error as WordError;
 use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::ffi::OsStr;
-use std::marker::PhantomData;
 
 /// A word as the names of maps and of fields are written: in small letters, with `_`.
 pub(crate) fn with_underscores(word: &str) -> String {
@@ -19,17 +19,17 @@ pub(crate) fn with_dashes(word: &str) -> String {
     word.trim().to_lowercase().replace('_', "-")
 }
 
-/// The error message for a word that is none of a kind, with the one that was perhaps meant, or all of them and `more`.
+/// The error message for an unknown word: the most similar name, or all names and `more`.
 pub(crate) fn unknown(kind: &str, word: &str, names: &[&str], more: &str) -> String {
     slip(kind, word, names.iter().copied()).unwrap_or_else(|| {
         format!(
-            "{word:?} is no {kind}; there are {}{more}",
+            "unknown {kind} {word:?}: there are {}{more}",
             names.join(", ")
         )
     })
 }
 
-/// The error message for a word that is a slip of a name, if it is one.
+/// The error message for a misspelled name, if the word is one.
 pub(crate) fn slip<'a>(
     kind: &str,
     word: &str,
@@ -37,53 +37,97 @@ pub(crate) fn slip<'a>(
 ) -> Option<String> {
     let written = with_underscores(word);
     let near = similar_words(&written, names).into_iter().next()?;
-    (near != written).then(|| format!("{word:?} is no {kind}; did you mean {near}?"))
+    (near != written).then(|| format!("unknown {kind} {word:?}: did you mean {near}?"))
 }
 
-/// Reads a value of a library by the name that it has in recipes.
+/// Reads a value by its name, and lists the names in the help.
 #[derive(Clone, Debug)]
-pub(crate) struct Word<T> {
-    names: &'static [&'static str],
-    of: PhantomData<fn() -> T>,
-}
+pub(crate) struct Word<T>(Vec<(PossibleValue, T)>);
 
-impl<T> Word<T> {
-    /// Of these values, with `-` where recipes have `_`.
-    pub(crate) fn of(names: &'static [&'static str]) -> Self {
-        Self {
-            names,
-            of: PhantomData,
-        }
+impl<T: Named> Word<T> {
+    /// Reads all values of a kind. The help of each is the first sentence of its documentation.
+    pub(crate) fn all() -> Self {
+        Self::some(T::ALL)
+    }
+
+    /// Reads some values of a kind.
+    pub(crate) fn some(values: &[T]) -> Self {
+        let named = |&value: &T| {
+            let aliases = value.aliases().iter().map(|alias| with_dashes(alias));
+            let name = PossibleValue::new(with_dashes(value.name())).aliases(aliases);
+            match first_sentence(value.documentation()) {
+                help if help.is_empty() => (name, value),
+                help => (name.help(help), value),
+            }
+        };
+        Self(values.iter().map(named).collect())
+    }
+
+    /// Reads other values, each of which is made of one of these.
+    pub(crate) fn map<U>(self, change: fn(T) -> U) -> Word<U> {
+        let changed = |(name, value)| (name, change(value));
+        Word(self.0.into_iter().map(changed).collect())
     }
 }
 
-impl<T: DeserializeOwned + Clone + Send + Sync + 'static> TypedValueParser for Word<T> {
+impl<T> Word<T> {
+    /// Reads no value yet.
+    pub(crate) fn none() -> Self {
+        Self(Vec::new())
+    }
+
+    /// Reads one more value.
+    pub(crate) fn or(mut self, name: &'static str, help: &'static str, value: T) -> Self {
+        self.0.push((PossibleValue::new(name).help(help), value));
+        self
+    }
+}
+
+impl<T: DeserializeOwned> Word<T> {
+    /// Reads values that recipes write by these names, with `-` where recipes have `_`.
+    pub(crate) fn of(names: &'static [&'static str]) -> Self {
+        let named = |&name: &&'static str| {
+            let written = with_underscores(name);
+            let value = IntoDeserializer::<WordError>::into_deserializer(written.as_str());
+            Some((PossibleValue::new(name), T::deserialize(value).ok()?))
+        };
+        Self(names.iter().filter_map(named).collect())
+    }
+}
+
+impl<T: Clone + Send + Sync + 'static> TypedValueParser for Word<T> {
     type Value = T;
 
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, text: &OsStr) -> Result<T, Error> {
         let word = with_dashes(&text.to_string_lossy());
-        // What is none of the names is refused as it was written.
-        let text = match self.names.contains(&word.as_str()) {
-            true => OsStr::new(&word),
-            false => text,
-        };
-        let names = PossibleValuesParser::new(self.names);
-        let name = names.parse_ref(command, arg, text)?;
-        let name = with_underscores(&name);
-        let value = T::deserialize(IntoDeserializer::<WordError>::into_deserializer(
-            name.as_str(),
-        ));
-        value.map_err(|error| Error::raw(ErrorKind::InvalidValue, error).with_cmd(command))
+        if let Some((_, value)) = self.0.iter().find(|(name, _)| name.matches(&word, true)) {
+            return Ok(value.clone());
+        }
+        let names = self.0.iter().map(|(name, _)| name.clone());
+        let refused = PossibleValuesParser::new(names).parse_ref(command, arg, text);
+        Err(refused
+            .err()
+            .unwrap_or_else(|| Error::new(ErrorKind::InvalidValue)))
     }
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
-        Some(Box::new(self.names.iter().map(PossibleValue::new)))
+        Some(Box::new(self.0.iter().map(|(name, _)| name.clone())))
     }
+}
+
+/// The first sentence of a documentation in Markdown, without its full stop.
+fn first_sentence(documentation: &str) -> String {
+    let words: Vec<_> = documentation.split_whitespace().collect();
+    let text = words.join(" ");
+    let sentence = text
+        .split_once(". ")
+        .map_or(text.as_str(), |(first, _)| first);
+    sentence.trim_end_matches('.').replace('`', "")
 }
 
 #[cfg(test)]
 mod tests {
-    use super::unknown;
+    use super::{first_sentence, unknown};
 
     #[test]
     fn an_unknown_word_is_answered_with_the_nearest_or_with_all() {
@@ -91,11 +135,18 @@ mod tests {
         let message = |word: &str| unknown("map", word, &names, ", or all");
         assert_eq!(
             message("Hight"),
-            "\"Hight\" is no map; did you mean height?"
+            "unknown map \"Hight\": did you mean height?"
         );
         assert_eq!(
             message("xyz"),
-            "\"xyz\" is no map; there are height, normal, or all"
+            "unknown map \"xyz\": there are height, normal, or all"
         );
+    }
+
+    #[test]
+    fn the_help_of_a_value_is_one_sentence() {
+        let help = first_sentence(" The mean, over\n `n` pixels. It is slow.\n");
+        assert_eq!(help, "The mean, over n pixels");
+        assert_eq!(first_sentence(" Tents.\n"), "Tents");
     }
 }

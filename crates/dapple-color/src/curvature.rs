@@ -16,9 +16,9 @@
 //! the derivative over that radius. Lengths are in units of the plane and curvature in one over them: it does not depend on
 //! the resolution as long as the radius is at least a pixel. Where a part is not finite the curvature is 0.
 
-use crate::{ColorError, plane};
+use crate::{ColorError, HeightPlane, plane};
+use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
-use dapple_raster::{Raster, Window, Wrap};
 
 /// How heights become curvature.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,13 +28,8 @@ use dapple_raster::{Raster, Window, Wrap};
     serde(default, deny_unknown_fields)
 )]
 pub struct CurvatureOptions {
-    /// How many units of the plane a height of 1 stands for; negative turns hills into dents. By default 1.
-    pub strength: f64,
-    /// The width and height of the raster in the plane, above zero. By default 1 × 1, as in [`Window::unit`]; a raster
-    /// with square pixels that is not square needs its true proportions here.
-    pub extent: DVec2,
-    /// What lies past the edges of the height, per axis. By default both repeat.
-    pub wrap: [Wrap; 2],
+    /// How the heights lie in the plane.
+    pub plane: HeightPlane,
     /// The size of what is measured, in units of the plane, at least zero. By default 1/128. It is rounded to whole pixels,
     /// and less than one is one.
     pub radius: f64,
@@ -42,28 +37,24 @@ pub struct CurvatureOptions {
 
 impl Default for CurvatureOptions {
     fn default() -> Self {
+        HeightPlane::default().into()
+    }
+}
+
+impl From<HeightPlane> for CurvatureOptions {
+    /// The other options are the default.
+    fn from(plane: HeightPlane) -> Self {
         Self {
-            strength: 1.0,
-            extent: DVec2::ONE,
-            wrap: [Wrap::Repeat; 2],
+            plane,
             radius: 0.007_812_5,
         }
     }
 }
 
 impl CurvatureOptions {
-    /// The options with the extent of a window, for heights that were rendered there.
-    #[must_use]
-    pub fn for_window(window: &Window) -> Self {
-        Self {
-            extent: plane::extent(window),
-            ..Self::default()
-        }
-    }
-
     /// How many columns and rows around a pixel its value depends on, in a raster of `size` pixels.
     ///
-    /// A crop with so many more pixels on each side has the same bits inside: see [`curvature_of_part`]. Options that
+    /// A crop that has these margins on each side has the same bits inside: see [`curvature_of_part`]. Options that
     /// [`curvature`] refuses have a halo of 1 × 1.
     #[must_use]
     pub fn halo(&self, size: [u32; 2]) -> [u32; 2] {
@@ -72,8 +63,8 @@ impl CurvatureOptions {
 
     /// The radius in columns and rows.
     fn spans(&self, size: [u32; 2]) -> Result<[u32; 2], ColorError> {
-        plane::check("strength of the curvature", self.strength, self.extent)?;
-        let pixel = plane::pixel(self.extent, size);
+        self.plane.check("strength of the curvature")?;
+        let pixel = self.plane.pixel(size);
         plane::check_radius("radius of the curvature", self.radius, pixel)?;
         // The margin rounds half a pixel up, whatever the extent rounds to.
         Ok([pixel.x, pixel.y].map(|pixel| ((self.radius / pixel + 0.5 + 1e-9) as u32).max(1)))
@@ -118,7 +109,7 @@ pub fn curvature(
 ///
 /// # Errors
 ///
-/// As [`curvature`].
+/// Those of [`curvature`].
 pub fn curvature_of_part(
     height: &Raster<f32>,
     whole: [u32; 2],
@@ -128,7 +119,7 @@ pub fn curvature_of_part(
     let spans = options.spans(whole)?;
     let [step_x, step_y] = spans.map(i64::from);
     let scales = Scales::new(options, whole, spans);
-    let [wrap_x, wrap_y] = options.wrap;
+    let [wrap_x, wrap_y] = options.plane.wrap;
     let mut bent = Raster::filled(size, 0.0)?;
     plane::fill_rows(&mut bent, |row, values| {
         let [above, below] =
@@ -172,11 +163,12 @@ struct Scales {
 
 impl Scales {
     fn new(options: &CurvatureOptions, size: [u32; 2], spans: [u32; 2]) -> Self {
-        let step = plane::pixel(options.extent, size) * DVec2::from(spans.map(f64::from));
+        let strength = options.plane.strength;
+        let step = options.plane.pixel(size) * DVec2::from(spans.map(f64::from));
         Self {
-            first: options.strength / (2.0 * step),
-            second: options.strength / (step * step),
-            mixed: options.strength / (4.0 * step.x * step.y),
+            first: strength / (2.0 * step),
+            second: strength / (step * step),
+            mixed: strength / (4.0 * step.x * step.y),
         }
     }
 

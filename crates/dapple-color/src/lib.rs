@@ -14,7 +14,7 @@
 //! // A groove along the middle of the unit square, with walls of 45 degrees.
 //! let window = Window::unit([64, 64])?;
 //! let height = Raster::from_window(&window, |at| (at.x - 0.5).abs() as f32)?;
-//! let options = OcclusionOptions { radius: 0.5, ..OcclusionOptions::for_window(&window) };
+//! let options = OcclusionOptions { radius: 0.5, ..HeightPlane::for_window(&window).into() };
 //! let seen = ambient_occlusion(&height, &options)?;
 //! assert!((0.5..0.6).contains(&seen.row(32)[33]), "half of the sky, but for the end of the walls");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -45,4 +45,5 @@ pub use normal::{
 };
 pub use occlusion::{OcclusionOptions, ambient_occlusion, ambient_occlusion_of_part};
 pub use palette::Palette;
+pub use plane::HeightPlane;
 pub use ramp::{ColorRamp, ColorStop, Interpolation, Outside, RampSpace};

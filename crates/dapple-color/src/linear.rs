@@ -38,9 +38,9 @@ pub struct LinearRgba {
 }
 
 impl LinearRgb {
-    /// No light.
+    /// Black: no light.
     pub const BLACK: Self = Self::gray(0.0);
-    /// The most light that a screen shows.
+    /// White: the most light that a screen shows.
     pub const WHITE: Self = Self::gray(1.0);
 
     /// A color from its linear parts.
@@ -112,7 +112,7 @@ impl LinearRgba {
         [r, g, b, C::from_unit(self.alpha)]
     }
 
-    /// What is seen with this color in front of an opaque one.
+    /// This color laid over an opaque one.
     #[must_use]
     pub fn over(self, background: LinearRgb) -> LinearRgb {
         background.lerp(self.color, self.alpha)

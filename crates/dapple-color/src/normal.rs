@@ -10,9 +10,9 @@
 //! Slopes are heights per unit of the *plane*, in which the raster has a stated extent, and not per pixel: twice the
 //! resolution gives the same normals, on finer pixels. Where a part of the slope is not finite the normal is flat.
 
-use crate::{Code, ColorError, plane};
+use crate::{Code, ColorError, HeightPlane};
+use dapple_raster::Raster;
 use dapple_raster::glam::DVec2;
-use dapple_raster::{Raster, Window, Wrap};
 
 /// A unit vector on a surface: x to the right, y up or down as [`NormalY`] says, z out of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,69 +25,50 @@ pub struct Normal {
     pub z: f32,
 }
 
-/// Where the second part of a normal, the green one of its color, points.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "lowercase")
-)]
-pub enum NormalY {
-    /// Up, as in OpenGL, glTF, Blender, Unity and Godot.
-    #[default]
-    OpenGl,
-    /// Down, as in DirectX and Unreal.
-    DirectX,
+dapple_raster::named! {
+    /// Where the second part of a normal, the green one of its color, points.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum NormalY {
+        /// Up, as in OpenGL, glTF, Blender, Unity and Godot.
+        #[default]
+        OpenGl = "opengl",
+        /// Down, as in DirectX and Unreal.
+        DirectX = "directx",
+    }
 }
 
 /// How a height becomes a normal.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
 pub struct NormalOptions {
-    /// How many units of the plane a height of 1 stands for; negative turns hills into dents. By default 1.
-    pub strength: f64,
-    /// The width and height of the raster in the plane, above zero. By default 1 × 1, as in [`Window::unit`]; a raster
-    /// with square pixels that is not square needs its true proportions here.
-    pub extent: DVec2,
-    /// What lies past the edges of the height, per axis. By default both repeat.
-    pub wrap: [Wrap; 2],
+    /// How the heights lie in the plane.
+    pub plane: HeightPlane,
     /// Where green points. By default up.
     pub y: NormalY,
 }
 
-impl Default for NormalOptions {
-    fn default() -> Self {
-        Self {
-            strength: 1.0,
-            extent: DVec2::ONE,
-            wrap: [Wrap::Repeat; 2],
-            y: NormalY::OpenGl,
-        }
+impl From<HeightPlane> for NormalOptions {
+    /// Green points up.
+    fn from(plane: HeightPlane) -> Self {
+        let y = NormalY::default();
+        Self { plane, y }
     }
 }
 
 impl NormalOptions {
-    /// The options with the extent of a window, for heights that were rendered there.
-    #[must_use]
-    pub fn for_window(window: &Window) -> Self {
-        Self {
-            extent: plane::extent(window),
-            ..Self::default()
-        }
-    }
-
     /// The normal of a slope: heights per unit of the plane to the right, and downward.
     #[must_use]
     pub fn normal(&self, slope: DVec2) -> Normal {
+        let strength = self.plane.strength;
         let up = match self.y {
-            NormalY::OpenGl => self.strength,
-            NormalY::DirectX => -self.strength,
+            NormalY::OpenGl => strength,
+            NormalY::DirectX => -strength,
         };
-        let [x, y] = [-self.strength * slope.x, up * slope.y];
+        let [x, y] = [-strength * slope.x, up * slope.y];
         let length = (x * x + y * y + 1.0).sqrt();
         if !length.is_finite() {
             return Normal::FLAT;
@@ -97,7 +78,7 @@ impl NormalOptions {
     }
 
     fn check(&self) -> Result<(), ColorError> {
-        plane::check("strength of the normal map", self.strength, self.extent)
+        self.plane.check("strength of the normal map")
     }
 }
 
@@ -136,7 +117,7 @@ pub fn normal_map(
 ///
 /// # Errors
 ///
-/// As [`normal_map`].
+/// Those of [`normal_map`].
 pub fn normal_map_of_part(
     height: &Raster<f32>,
     whole: [u32; 2],
@@ -145,8 +126,8 @@ pub fn normal_map_of_part(
     options.check()?;
     let size = height.size();
     // Slope per difference of two neighbors.
-    let scale = DVec2::new(whole[0].into(), whole[1].into()) / (2.0 * options.extent);
-    let [wrap_x, wrap_y] = options.wrap;
+    let scale = DVec2::new(whole[0].into(), whole[1].into()) / (2.0 * options.plane.extent);
+    let [wrap_x, wrap_y] = options.plane.wrap;
     let last = size[0] - 1;
     let [before_first, after_last] = [-1, i64::from(size[0])].map(|at| wrap_x.index(at, size[0]));
     let normals = Raster::from_rows(size, |row| {

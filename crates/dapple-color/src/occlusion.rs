@@ -24,9 +24,8 @@
 //! Heights times the strength, the radius and the extent are in units of the plane. A height that is not finite hides
 //! nothing, and the tangent plane beside it is level, as in a normal map.
 
-use crate::{ColorError, ColorErrorKind, plane};
-use dapple_raster::glam::DVec2;
-use dapple_raster::{Raster, Window, Wrap, simd};
+use crate::{ColorError, ColorErrorKind, HeightPlane, plane};
+use dapple_raster::{Raster, simd};
 use fearless_simd::{Level, dispatch};
 use lines::Heights;
 use rays::Ray;
@@ -44,13 +43,8 @@ mod sky;
     serde(default, deny_unknown_fields)
 )]
 pub struct OcclusionOptions {
-    /// How many units of the plane a height of 1 stands for; negative turns hills into dents. By default 1.
-    pub strength: f64,
-    /// The width and height of the raster in the plane, above zero. By default 1 × 1, as in [`Window::unit`]; a raster
-    /// with square pixels that is not square needs its true proportions here.
-    pub extent: DVec2,
-    /// What lies past the edges of the height, per axis. By default both repeat.
-    pub wrap: [Wrap; 2],
+    /// How the heights lie in the plane.
+    pub plane: HeightPlane,
     /// How far away heights hide the sky, in units of the plane, at least zero; less than a pixel hides nothing. By
     /// default 1/16. The time grows with its logarithm once it is more than 16 pixels.
     pub radius: f64,
@@ -61,10 +55,15 @@ pub struct OcclusionOptions {
 
 impl Default for OcclusionOptions {
     fn default() -> Self {
+        HeightPlane::default().into()
+    }
+}
+
+impl From<HeightPlane> for OcclusionOptions {
+    /// The other options are the default.
+    fn from(plane: HeightPlane) -> Self {
         Self {
-            strength: 1.0,
-            extent: DVec2::ONE,
-            wrap: [Wrap::Repeat; 2],
+            plane,
             radius: 0.0625,
             fade: 0.5,
         }
@@ -72,18 +71,9 @@ impl Default for OcclusionOptions {
 }
 
 impl OcclusionOptions {
-    /// The options with the extent of a window, for heights that were rendered there.
-    #[must_use]
-    pub fn for_window(window: &Window) -> Self {
-        Self {
-            extent: plane::extent(window),
-            ..Self::default()
-        }
-    }
-
     /// How many columns and rows around a pixel its value depends on, in a raster of `size` pixels.
     ///
-    /// A crop with so many more pixels on each side has the same bits inside: see [`ambient_occlusion_of_part`]. Options
+    /// A crop that has these margins on each side has the same bits inside: see [`ambient_occlusion_of_part`]. Options
     /// that [`ambient_occlusion`] refuses have a halo of 1 × 1.
     #[must_use]
     pub fn halo(&self, size: [u32; 2]) -> [u32; 2] {
@@ -93,8 +83,8 @@ impl OcclusionOptions {
     }
 
     fn rays(&self, size: [u32; 2]) -> Result<Vec<Ray>, ColorError> {
-        plane::check("strength of the occlusion", self.strength, self.extent)?;
-        let pixel = plane::pixel(self.extent, size);
+        self.plane.check("strength of the occlusion")?;
+        let pixel = self.plane.pixel(size);
         plane::check_radius("radius of the occlusion", self.radius, pixel)?;
         // Written so that what is not a number is refused too.
         if !(0.0..=1.0).contains(&self.fade) {
@@ -145,7 +135,7 @@ pub fn ambient_occlusion(
 ///
 /// # Errors
 ///
-/// As [`ambient_occlusion`].
+/// Those of [`ambient_occlusion`].
 pub fn ambient_occlusion_of_part(
     height: &Raster<f32>,
     whole: [u32; 2],
@@ -164,7 +154,7 @@ fn occlusion_at(
     let heights = Heights::new(height, whole, options, &rays)?;
     let mut seen = Raster::filled(height.size(), 0.0)?;
     plane::fill_rows(&mut seen, |row, values| {
-        let lines = heights.lines(row, &rays, options.strength);
+        let lines = heights.lines(row, &rays, options.plane.strength);
         dispatch!(level, simd => see_row(simd, &lines, values));
     });
     Ok(seen)

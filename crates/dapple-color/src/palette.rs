@@ -5,68 +5,54 @@
 
 use crate::{ColorRamp, LinearRgb};
 
-/// A named list of colors.
-///
-#[cfg_attr(doc, doc = include_str!("../docs/palette.md"))]
-///
-/// # Examples
-///
-/// ```
-/// use dapple_color::Palette;
-///
-/// let ramp = Palette::Giraffe.ramp();
-/// assert_eq!(ramp.stops().len(), Palette::Giraffe.colors().len());
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-#[non_exhaustive]
-pub enum Palette {
-    /// Black to white.
+dapple_raster::named! {
+    /// A named list of colors.
     ///
-    #[cfg_attr(doc, doc = include_str!("../docs/palette-gray.md"))]
-    Gray,
-    /// Deep blue through teal and green to pale yellow; lighter all the way, so that it reads as a height.
+    #[cfg_attr(doc, doc = include_str!("../docs/palette.md"))]
     ///
-    #[cfg_attr(doc, doc = include_str!("../docs/palette-lagoon.md"))]
-    Lagoon,
-    /// Black through dark red and orange to pale yellow; lighter all the way.
+    /// # Examples
     ///
-    #[cfg_attr(doc, doc = include_str!("../docs/palette-ember.md"))]
-    Ember,
-    /// Sea floor, shallows, beach, meadow, forest, rock and snow.
+    /// ```
+    /// use dapple_color::Palette;
     ///
-    #[cfg_attr(doc, doc = include_str!("../docs/palette-terrain.md"))]
-    Terrain,
-    /// The white and the black of a cow.
-    ///
-    #[cfg_attr(doc, doc = include_str!("../docs/palette-cow.md"))]
-    Cow,
-    /// The cream between the spots of a giraffe, and their browns.
-    ///
-    #[cfg_attr(doc, doc = include_str!("../docs/palette-giraffe.md"))]
-    Giraffe,
-    /// Eight colors that are easy to tell apart, for labels.
-    ///
-    #[cfg_attr(doc, doc = include_str!("../docs/palette-labels.md"))]
-    Labels,
+    /// let ramp = Palette::Giraffe.ramp();
+    /// assert_eq!(ramp.stops().len(), Palette::Giraffe.colors().len());
+    /// ```
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
+    pub enum Palette {
+        /// Black to white.
+        ///
+        #[cfg_attr(doc, doc = include_str!("../docs/palette-gray.md"))]
+        Gray = "gray",
+        /// Deep blue through teal and green to pale yellow; lighter all the way, so that it reads as a height.
+        ///
+        #[cfg_attr(doc, doc = include_str!("../docs/palette-lagoon.md"))]
+        Lagoon = "lagoon",
+        /// Black through dark red and orange to pale yellow; lighter all the way.
+        ///
+        #[cfg_attr(doc, doc = include_str!("../docs/palette-ember.md"))]
+        Ember = "ember",
+        /// Sea floor, shallows, beach, meadow, forest, rock and snow.
+        ///
+        #[cfg_attr(doc, doc = include_str!("../docs/palette-terrain.md"))]
+        Terrain = "terrain",
+        /// The white and the black of a cow.
+        ///
+        #[cfg_attr(doc, doc = include_str!("../docs/palette-cow.md"))]
+        Cow = "cow",
+        /// The cream between the spots of a giraffe, and their browns.
+        ///
+        #[cfg_attr(doc, doc = include_str!("../docs/palette-giraffe.md"))]
+        Giraffe = "giraffe",
+        /// Eight colors that are easy to tell apart, for labels.
+        ///
+        #[cfg_attr(doc, doc = include_str!("../docs/palette-labels.md"))]
+        Labels = "labels",
+    }
 }
 
 impl Palette {
-    /// All palettes, in the order of their definition.
-    pub const ALL: [Self; 7] = [
-        Self::Gray,
-        Self::Lagoon,
-        Self::Ember,
-        Self::Terrain,
-        Self::Cow,
-        Self::Giraffe,
-        Self::Labels,
-    ];
-
     /// The colors, from that of low values to that of high ones.
     #[must_use]
     pub fn colors(self) -> Vec<LinearRgb> {
@@ -140,6 +126,7 @@ impl Palette {
 #[cfg(test)]
 mod tests {
     use super::Palette;
+    use dapple_raster::Named;
 
     #[test]
     fn ramps_reach_the_first_and_the_last_color() {

@@ -1,4 +1,4 @@
-//! The plane in which heights lie: what all maps from heights ask of their options.
+//! The plane in which heights lie, which all maps from heights share.
 //!
 //! Lengths are in units of the plane; a raster covers a stated extent of it.
 
@@ -9,27 +9,65 @@ use dapple_raster::{Raster, Window, Wrap, parallel};
 /// How many pixels a radius may reach over.
 const MAX_RADIUS: u32 = 1 << 14;
 
-/// The width and height of a window in the plane.
-pub(crate) fn extent(window: &Window) -> DVec2 {
-    let size = DVec2::new(window.size[0].into(), window.size[1].into());
-    (window.pixel * window.scale * size).abs()
+/// How a raster of heights lies in the plane, for normals, occlusion and curvature.
+///
+/// The options of each are made of it with [`From`], and hold it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct HeightPlane {
+    /// How many units of the plane a height of 1 stands for; negative turns hills into dents. By default 1.
+    pub strength: f64,
+    /// The width and height of the raster in the plane, above zero. By default 1 × 1, as in [`Window::unit`]; a raster
+    /// with square pixels that is not square needs its true proportions here.
+    pub extent: DVec2,
+    /// What lies past the edges of the height, per axis. By default both repeat.
+    pub wrap: [Wrap; 2],
 }
 
-/// Refuses a strength that is not finite and an extent that is not above zero and finite.
-pub(crate) fn check(what: &'static str, strength: f64, extent: DVec2) -> Result<(), ColorError> {
-    if !strength.is_finite() {
-        let value = strength;
-        return Err(ColorError::new(ColorErrorKind::NotFinite { what, value }));
+impl Default for HeightPlane {
+    fn default() -> Self {
+        Self {
+            strength: 1.0,
+            extent: DVec2::ONE,
+            wrap: [Wrap::Repeat; 2],
+        }
     }
-    if !(extent.is_finite() && extent.x > 0.0 && extent.y > 0.0) {
-        return Err(ColorError::new(ColorErrorKind::Extent { extent }));
-    }
-    Ok(())
 }
 
-/// The width and height of a pixel in the plane.
-pub(crate) fn pixel(extent: DVec2, size: [u32; 2]) -> DVec2 {
-    extent / DVec2::new(size[0].max(1).into(), size[1].max(1).into())
+impl HeightPlane {
+    /// The plane of heights that were rendered in a window.
+    #[must_use]
+    pub fn for_window(window: &Window) -> Self {
+        let size = DVec2::new(window.size[0].into(), window.size[1].into());
+        Self {
+            extent: (window.pixel * window.scale * size).abs(),
+            ..Self::default()
+        }
+    }
+
+    /// Refuses a strength that is not finite and an extent that is not above zero and finite. `what` names the strength.
+    pub(crate) fn check(&self, what: &'static str) -> Result<(), ColorError> {
+        let Self {
+            strength, extent, ..
+        } = *self;
+        if !strength.is_finite() {
+            let value = strength;
+            return Err(ColorError::new(ColorErrorKind::NotFinite { what, value }));
+        }
+        if !(extent.is_finite() && extent.x > 0.0 && extent.y > 0.0) {
+            return Err(ColorError::new(ColorErrorKind::Extent { extent }));
+        }
+        Ok(())
+    }
+
+    /// The width and height of a pixel of a raster of `size` pixels.
+    pub(crate) fn pixel(&self, size: [u32; 2]) -> DVec2 {
+        self.extent / DVec2::new(size[0].max(1).into(), size[1].max(1).into())
+    }
 }
 
 /// Refuses a radius that is not a number of pixels from 0 to [`MAX_RADIUS`].
@@ -71,3 +109,6 @@ pub(crate) fn fill_rows(raster: &mut Raster<f32>, fill: impl Fn(u32, &mut [f32])
         fill(row as u32, values);
     });
 }
+
+#[cfg(test)]
+pub(crate) mod checks;

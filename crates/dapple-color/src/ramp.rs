@@ -21,59 +21,50 @@ pub struct ColorStop {
     pub color: LinearRgb,
 }
 
-/// What lies between two stops of a color ramp.
-///
-#[cfg_attr(doc, doc = include_str!("../docs/interpolation.md"))]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Interpolation {
-    /// A straight line from color to color.
-    #[default]
-    Linear,
-    /// The color of the stop before; see [`ColorRamp::bands`] for bands of equal width.
-    Stepped,
-    /// From color to color by `3t² - 2t³`, which has no kink at a stop.
-    Smooth,
+dapple_raster::named! {
+    /// What lies between two stops of a color ramp.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/interpolation.md"))]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Interpolation {
+        /// A straight line from color to color.
+        #[default]
+        Linear = "linear",
+        /// The color of the stop before; see [`ColorRamp::bands`] for bands of equal width.
+        Stepped = "stepped",
+        /// From color to color by `3t² - 2t³`, which has no kink at a stop.
+        Smooth = "smooth",
+    }
 }
 
-/// The space in which a color ramp mixes the colors of two stops.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum RampSpace {
-    /// Oklab (Ottosson 2020): equal steps look about equal, and the middle of two colors is halfway in lightness and hue.
-    /// Between two strong colors a part may be a little below 0 or above 1, which files cut off.
-    #[default]
-    Oklab,
-    /// The codes of sRGB, as most drawing programs mix. Parts below 0 are mixed as those above, with their sign.
-    Srgb,
-    /// Linear light, as lamps mix; for numbers that are no colors, and where black to white has to be a straight line.
-    Linear,
+dapple_raster::named! {
+    /// The space in which a color ramp mixes the colors of two stops.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum RampSpace {
+        /// Oklab (Ottosson 2020): equal steps look about equal, and the middle of two colors is halfway in lightness and hue.
+        /// Between two strong colors a part may be a little below 0 or above 1, which files cut off.
+        #[default]
+        Oklab = "oklab",
+        /// The codes of sRGB, as most drawing programs mix. Parts below 0 are mixed as those above, with their sign.
+        Srgb = "srgb",
+        /// Linear light, as lamps mix; for numbers that are no colors, and where black to white has to be a straight line.
+        Linear = "linear",
+    }
 }
 
-/// What lies before the first stop and after the last.
-///
-#[cfg_attr(doc, doc = include_str!("../docs/outside.md"))]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-#[non_exhaustive]
-pub enum Outside {
-    /// The color of the nearest stop.
-    #[default]
-    Clamp,
-    /// The ramp again and again; the first color holds where one ends and the next begins.
-    Repeat,
+dapple_raster::named! {
+    /// What lies before the first stop and after the last.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/outside.md"))]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
+    pub enum Outside {
+        /// The color of the nearest stop.
+        #[default]
+        Clamp = "clamp",
+        /// The ramp again and again; the first color holds where one ends and the next begins.
+        Repeat = "repeat",
+    }
 }
 
 /// Turns numbers into colors.
@@ -140,7 +131,7 @@ impl ColorRamp {
         Self::new(even_stops(colors))
     }
 
-    /// As [`even`](Self::even), for colors that are known to be finite and not none.
+    /// A ramp of stops at equal distances from 0 to 1, of at least one color, all of them finite.
     pub(crate) fn even_unchecked(colors: &[LinearRgb]) -> Self {
         Self::unchecked(even_stops(colors))
     }
@@ -184,7 +175,7 @@ impl ColorRamp {
         Ok(Self::new(stops)?.with_interpolation(Interpolation::Stepped))
     }
 
-    /// The same stops, mixed in another space.
+    /// Sets the space in which the colors of two stops are mixed.
     #[must_use]
     pub fn with_space(self, space: RampSpace) -> Self {
         let colors = self.stops.iter().map(|stop| space.of_linear(stop.color));
@@ -195,7 +186,7 @@ impl ColorRamp {
         }
     }
 
-    /// The same stops with another rule between them.
+    /// Sets how colors change between two stops.
     #[must_use]
     pub fn with_interpolation(self, interpolation: Interpolation) -> Self {
         Self {
@@ -204,7 +195,7 @@ impl ColorRamp {
         }
     }
 
-    /// The same stops with another rule outside of them.
+    /// Sets the color before the first stop and after the last.
     #[must_use]
     pub fn with_outside(self, outside: Outside) -> Self {
         Self { outside, ..self }

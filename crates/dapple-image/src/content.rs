@@ -7,7 +7,7 @@ use crate::PngPixel;
 use crate::Transfer;
 use dapple_color::{Code, LinearRgb, LinearRgba, Normal};
 
-/// What the pixels of an image are, which decides how they are written.
+/// The quantity that the pixels of an image hold, which decides how they are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Content {
     /// Data such as heights and masks. PNG: gray from 0 to 1, `round(value · max)`, linear, without a color chunk.

@@ -16,7 +16,7 @@ pub struct ImageError {
 }
 
 dapple_raster::error_kind! {
-    /// What went wrong.
+    /// The kind of failure.
     ImageErrorKind {
         /// The operating system refused to read or write; the source says why.
         Io => "the file cannot be read or written";
@@ -29,7 +29,7 @@ dapple_raster::error_kind! {
         } => "the {format} data is damaged";
         /// The file uses a feature of its format that is not read.
         Unsupported {
-            /// What is not read.
+            /// The name of the feature.
             feature: &'static str,
         } => "{feature} is not supported";
         /// The image has no pixel.
@@ -137,7 +137,7 @@ impl ImageError {
         self
     }
 
-    /// What went wrong.
+    /// The kind of failure.
     #[must_use]
     pub fn kind(&self) -> &ImageErrorKind {
         &self.kind

@@ -68,7 +68,7 @@ impl ExrPlane {
     }
 }
 
-/// What an OpenEXR file holds: its planes, in the order of the file (by name, within each part).
+/// The content of an OpenEXR file: its planes, in the order of the file (by name, within each part).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExrImage {
     /// The planes. Those of a named part are named `part.channel`, unless it is the only part of the file.
@@ -135,7 +135,7 @@ impl ExrImage {
         Raster::from_vec(red.size(), pixels).map_err(|error| ImageError::damaged("OpenEXR", error))
     }
 
-    /// What the names of the planes of color begin with: nothing, or the only layer of color with its dot.
+    /// The prefix of the names of the planes of color: empty, or the only layer of color with its dot.
     pub(crate) fn color_layer(&self) -> &str {
         let layers = self.planes.iter().filter_map(|plane| {
             let layer = plane.name.strip_suffix("R")?;

@@ -33,52 +33,34 @@ pub enum Image {
 /// [`ImageErrorKind::UnknownFormat`] if it is none that is known, [`ImageErrorKind::Unsupported`] if the feature of the
 /// crate that reads it is off, else those of `decode_png`, `decode_jpeg` and `decode_exr`.
 pub fn decode_image(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
+    #[cfg(feature = "png")]
     if bytes.starts_with(&PNG_SIGNATURE) {
-        read_png(bytes, limits)
-    } else if bytes.starts_with(&JPEG_SIGNATURE) {
-        read_jpeg(bytes, limits)
-    } else if bytes.starts_with(&EXR_SIGNATURE) {
-        read_exr(bytes, limits)
-    } else {
-        Err(ImageError::new(ImageErrorKind::UnknownFormat))
+        return crate::decode_png(bytes, limits).map(Image::Png);
     }
+    #[cfg(feature = "jpeg")]
+    if bytes.starts_with(&JPEG_SIGNATURE) {
+        return crate::decode_jpeg(bytes, limits).map(Image::Jpeg);
+    }
+    #[cfg(feature = "exr")]
+    if bytes.starts_with(&EXR_SIGNATURE) {
+        return crate::decode_exr(bytes, limits).map(Image::Exr);
+    }
+    let _ = limits;
+    let left_out = LEFT_OUT
+        .iter()
+        .find(|(signature, _)| bytes.starts_with(signature));
+    Err(ImageError::new(match left_out {
+        Some(&(_, feature)) => ImageErrorKind::Unsupported { feature },
+        None => ImageErrorKind::UnknownFormat,
+    }))
 }
 
-#[cfg(feature = "png")]
-fn read_png(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
-    crate::decode_png(bytes, limits).map(Image::Png)
-}
-
-#[cfg(not(feature = "png"))]
-fn read_png(_bytes: &[u8], _limits: &Limits) -> Result<Image, ImageError> {
-    Err(left_out("PNG without the feature `png`"))
-}
-
-#[cfg(feature = "jpeg")]
-fn read_jpeg(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
-    crate::decode_jpeg(bytes, limits).map(Image::Jpeg)
-}
-
-#[cfg(not(feature = "jpeg"))]
-fn read_jpeg(_bytes: &[u8], _limits: &Limits) -> Result<Image, ImageError> {
-    Err(left_out("JPEG without the feature `jpeg`"))
-}
-
-#[cfg(feature = "exr")]
-fn read_exr(bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
-    crate::decode_exr(bytes, limits).map(Image::Exr)
-}
-
-#[cfg(not(feature = "exr"))]
-fn read_exr(_bytes: &[u8], _limits: &Limits) -> Result<Image, ImageError> {
-    Err(left_out("OpenEXR without the feature `exr`"))
-}
-
-/// The refusal of a format whose codec is not compiled in.
-#[cfg(not(all(feature = "png", feature = "jpeg", feature = "exr")))]
-fn left_out(feature: &'static str) -> ImageError {
-    ImageError::new(ImageErrorKind::Unsupported { feature })
-}
+/// The signatures of formats whose codec may not be compiled in, and the text of the refusal.
+const LEFT_OUT: [(&[u8], &str); 3] = [
+    (&PNG_SIGNATURE, "PNG without the feature `png`"),
+    (&JPEG_SIGNATURE, "JPEG without the feature `jpeg`"),
+    (&EXR_SIGNATURE, "OpenEXR without the feature `exr`"),
+];
 
 /// Reads an image file, whose format is found out by its first bytes (the name does not matter).
 ///
@@ -170,13 +152,11 @@ mod tests {
 
     #[test]
     fn a_format_whose_codec_is_left_out_is_named() {
-        for (signature, format) in [
-            (PNG_SIGNATURE.as_slice(), "PNG without the feature `png`"),
-            (&JPEG_SIGNATURE, "JPEG without the feature `jpeg`"),
-            (&EXR_SIGNATURE, "OpenEXR without the feature `exr`"),
-        ] {
+        for (signature, format) in LEFT_OUT {
             let error = decode_image(signature, &Limits::default()).unwrap_err();
             assert!(error.to_string().starts_with(format), "{error}");
         }
+        let error = decode_image(b"GIF89a", &Limits::default()).unwrap_err();
+        assert_eq!(error.kind(), &ImageErrorKind::UnknownFormat);
     }
 }

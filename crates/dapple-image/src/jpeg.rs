@@ -106,7 +106,7 @@ fn check_end(bytes: &[u8]) -> Result<(), ImageError> {
     }
 }
 
-/// What a file says of its coding: a marker, the bits of a sample, and the number of channels.
+/// The coding of a file: a marker, the bits of a sample, and the number of channels.
 ///
 /// It stands in the header of the frame (T.81, B.2.2), before the first scan.
 fn frame(bytes: &[u8]) -> Option<[u8; 3]> {
@@ -139,7 +139,7 @@ fn frame(bytes: &[u8]) -> Option<[u8; 3]> {
     }
 }
 
-/// What of a frame is not read (T.81, table B.1; T.87 for JPEG-LS).
+/// The unsupported feature of a frame (T.81, table B.1; T.87 for JPEG-LS).
 fn unread_feature([marker, bits, channels]: [u8; 3]) -> Option<&'static str> {
     Some(match marker {
         0xc3 | 0xc7 | 0xcb | 0xcf => "lossless JPEG",

@@ -30,7 +30,7 @@ pub(crate) use stream::PngStream;
 #[cfg(feature = "png")]
 const GAMMA_OF_SRGB: u32 = 45_455;
 
-/// What the numbers in an 8- or 16-bit file mean.
+/// The transfer curve of the numbers in an 8- or 16-bit file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Transfer {

@@ -13,7 +13,7 @@ use std::io::Write;
 
 /// The header of a NumPy file ends at a multiple of this.
 const ALIGNMENT: usize = 64;
-/// What comes before the text of the header: the magic string, the version 1.0, and the length of the text.
+/// The bytes before the text of the header: the magic string, the version 1.0, and the length of the text.
 const PREAMBLE: usize = 10;
 
 /// A file of plain numbers on its way into `sink`.

@@ -1,4 +1,4 @@
-//! Maximal Poisson-disk sets: random points that are at least a radius apart, so many that no further one fits.
+//! Maximal Poisson-disk sets: random points at least a radius apart, with room for no further one.
 //!
 //! The distribution is that of random sequential addition: darts fall uniformly at random, one after another, and each
 //! that keeps its distance from all before stays (R. L. Cook, "Stochastic Sampling in Computer Graphics", ACM
@@ -36,7 +36,7 @@ pub const MAX_POISSON_DISK_POINTS: u64 = 1 << 26;
 /// How much closer than the radius given points may be, relatively, for positions that were rounded by their maker.
 const GIVEN_SLACK: f64 = 1e-9;
 
-/// A maximal Poisson-disk set: random points at least `radius` apart, so many that no further one fits.
+/// A maximal Poisson-disk set: random points at least `radius` apart, with room for no further one.
 ///
 /// `radius` is in units of the domain. Distances are taken around wrapped axes. The points come cell by cell, in rows,
 /// so neighbors in the plane are often neighbors in memory.
@@ -71,7 +71,7 @@ pub fn poisson_disk(domain: Domain, radius: f64, seed: Seed) -> Result<PointSet,
 ///
 /// # Errors
 ///
-/// As [`poisson_disk`]; [`PointsErrorKind::NoPoints`] for `n_points` of zero.
+/// Those of [`poisson_disk`]; [`PointsErrorKind::NoPoints`] for `n_points` of zero.
 ///
 /// # Examples
 ///
@@ -132,7 +132,7 @@ const BORDER_DENSITY: f64 = 0.232;
 ///
 /// # Errors
 ///
-/// As [`poisson_disk`]; [`PointsErrorKind::TooClose`] if two of the given points are closer than `radius`.
+/// Those of [`poisson_disk`]; [`PointsErrorKind::TooClose`] if two of the given points are closer than `radius`.
 ///
 /// # Examples
 ///
@@ -152,7 +152,7 @@ pub fn extend_poisson_disk(
     PoissonDisk::new(*given.domain(), radius)?.extend(given, seed)
 }
 
-/// What makes Poisson-disk sets of one radius in one domain, for any number of seeds.
+/// A maker of Poisson-disk sets of one radius in one domain, for any number of seeds.
 #[derive(Clone, Debug)]
 pub struct PoissonDisk {
     radius: f64,
@@ -165,7 +165,7 @@ impl PoissonDisk {
     ///
     /// # Errors
     ///
-    /// As [`poisson_disk`].
+    /// Those of [`poisson_disk`].
     pub fn new(domain: Domain, radius: f64) -> Result<Self, PointsError> {
         let grid = Grid::new(domain, radius, MAX_POISSON_DISK_POINTS)?;
         let coverage = Coverage::new(&grid, level());

@@ -52,7 +52,7 @@ impl NestedPointSet {
 ///
 /// # Errors
 ///
-/// As [`poisson_disk`](crate::poisson_disk) for each radius; [`PointsErrorKind::NotDescending`] if a radius is larger
+/// Those of [`poisson_disk`](crate::poisson_disk) for each radius; [`PointsErrorKind::NotDescending`] if a radius is larger
 /// than the one before.
 ///
 /// # Examples

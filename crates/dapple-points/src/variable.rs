@@ -38,7 +38,7 @@ const ROUNDS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 /// with more room.
 const RISE: f64 = 0.1;
 
-/// What a Poisson disk set with a varying radius is to be like.
+/// Options of Poisson-disk sets with a varying radius.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",

@@ -22,6 +22,7 @@
 mod error;
 mod error_macro;
 mod field;
+mod named;
 mod raster;
 mod resample;
 mod statistics;
@@ -40,8 +41,15 @@ pub use field::{
     PairOperation, Rotated, Warped, common_period, field_fn,
 };
 pub use glam;
+pub use named::Named;
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+pub use named::read_named;
 pub use raster::Raster;
 pub use resample::Texel;
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+pub use serde;
 pub use statistics::Statistics;
 pub use varying::{Ramp, Varying};
 pub use view::{RasterView, RasterViewMut};

@@ -1,20 +1,17 @@
 //! What lies past the edge.
 
-/// How an index past the end of an axis is brought back, for each axis on its own.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Wrap {
-    /// The picture repeats.
-    #[default]
-    Repeat,
-    /// The last pixel goes on forever.
-    Clamp,
-    /// The picture repeats, every second time mirrored, with the edge pixel twice.
-    Mirror,
+crate::named! {
+    /// How an index past the end of an axis is brought back, for each axis on its own.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Wrap {
+        /// The picture repeats.
+        #[default]
+        Repeat = "repeat",
+        /// The last pixel goes on forever.
+        Clamp = "clamp",
+        /// The picture repeats, every second time mirrored, with the edge pixel twice.
+        Mirror = "mirror",
+    }
 }
 
 impl Wrap {

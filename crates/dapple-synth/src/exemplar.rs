@@ -23,15 +23,16 @@ pub(crate) const MAX_LEVELS: usize = 16;
 /// The largest value of a pixel, times the root of its weight: no sum of squares can overflow.
 const MAX_VALUE: f32 = 1e12;
 
-/// The pixels past the edges of an exemplar, or of a texture in the plane.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Edges {
-    /// None: neighborhoods of an exemplar that reach past an edge are not compared.
-    #[default]
-    Cut,
-    /// Those of the opposite side: the image tiles.
-    Wrap,
+dapple_raster::named! {
+    /// What lies past the edges of an exemplar, or of a texture in the plane.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Edges {
+        /// Empty space: neighborhoods of an exemplar that reach past an edge are not compared.
+        #[default]
+        Cut = "cut",
+        /// The image again: it is a tile.
+        Wrap = "wrap",
+    }
 }
 
 /// An image whose neighborhoods are matched: pixels of one or several channels.

@@ -105,15 +105,16 @@ impl FromStr for Coherence {
     }
 }
 
-/// Which way the rows and columns of a neighborhood on a surface go.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Axes {
-    /// They turn as the field around the site does, so that features along the field are straight in a neighborhood.
-    #[default]
-    Followed,
-    /// Straight on in the directions P and O of the site, carried along, as the paper has it.
-    Carried,
+dapple_raster::named! {
+    /// Which way the rows and columns of a neighborhood on a surface go.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Axes {
+        /// They turn as the field around the site does, so that features along the field are straight in a neighborhood.
+        #[default]
+        Followed = "followed",
+        /// Straight on in the directions P and O of the site, carried along, as the paper has it.
+        Carried = "carried",
+    }
 }
 
 impl Default for Options {

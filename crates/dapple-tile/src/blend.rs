@@ -88,7 +88,7 @@ pub enum Mixing {
 }
 
 impl Blend {
-    /// Blends in this way.
+    /// A blend with these shares and this mixing.
     #[must_use]
     pub fn new(weighting: Weighting, mixing: Mixing) -> Self {
         Self { weighting, mixing }
@@ -128,12 +128,12 @@ pub fn blend(layers: &[Layer<'_>], how: &Blend) -> Result<Vec<Map>, TileError> {
     blend_layers(layers, None, how)
 }
 
-/// As [`blend`], with a blend tile of the size of the layers: a mask for [`Weighting::Mask`], and the height of layers that have
+/// The maps of a blend of layers along the features of a blend tile, which has their size: a mask for [`Weighting::Mask`], and the height of layers that have
 /// none for [`Weighting::Height`]. Others do not look at it.
 ///
 /// # Errors
 ///
-/// As [`blend`]; and [`Range`](TileErrorKind::Range) if a mask has a value that is not from 0 to 1.
+/// Those of [`blend`]; and [`Range`](TileErrorKind::Range) if a mask has a value that is not from 0 to 1.
 ///
 /// # Examples
 ///

@@ -90,7 +90,7 @@ const WHOLE: f32 = 0.05;
 const FLAT: f32 = 1e-10;
 
 impl BlendMap {
-    /// For features of so many pixels.
+    /// A blend map for features of this size in pixels.
     #[must_use]
     pub fn new(feature_size: f64) -> Self {
         Self {
@@ -100,13 +100,13 @@ impl BlendMap {
         }
     }
 
-    /// With another contrast, at least 0.
+    /// Sets the contrast, at least 0.
     #[must_use]
     pub fn with_contrast(self, contrast: f64) -> Self {
         Self { contrast, ..self }
     }
 
-    /// With something else past the edges, x first.
+    /// Sets what lies past the edges, x first.
     #[must_use]
     pub fn with_wrap(self, wrap: [Wrap; 2]) -> Self {
         Self { wrap, ..self }
@@ -116,7 +116,7 @@ impl BlendMap {
     ///
     /// # Errors
     ///
-    /// As [`apply`](Self::apply).
+    /// Those of [`apply`](Self::apply).
     pub fn apply_color(&self, texture: &Raster<LinearRgb>) -> Result<Raster<f32>, TileError> {
         self.apply(&texture.map(|color| color.luminance()))
     }

@@ -97,8 +97,8 @@ impl CornerTiles {
         })
     }
 
-    /// The same sources with cuts that may take another share of the shorter side, above 0 and at most 1. The more, the less
-    /// the pieces are squares.
+    /// Sets the share of the shorter side that cuts may take, above 0 and at most 1. The larger it is, the less the pieces
+    /// are squares.
     ///
     /// # Errors
     ///
@@ -110,8 +110,8 @@ impl CornerTiles {
         Ok(Self { cuts, ..self })
     }
 
-    /// The same tiles, with corners that repeat after so many tiles along each axis, x first: a map of whole periods repeats.
-    /// By default they do not.
+    /// Sets after how many tiles the corners repeat along each axis, x first: a map of whole periods repeats. By default they
+    /// do not repeat.
     ///
     /// # Errors
     ///

@@ -14,22 +14,19 @@
 use crate::TileError;
 use dapple_raster::Raster;
 
-/// How two sides are mixed where they lie over each other.
-///
-#[cfg_attr(doc, doc = include_str!("../docs/crossfade.md"))]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Crossfade {
-    /// By weights that keep the variance, with the mean of each plane put aside. Where both sides are far from the mean,
-    /// the mix can be further from it than either.
-    #[default]
-    KeepVariance,
-    /// By weights whose sum is one, which flattens what is mixed.
-    Linear,
+dapple_raster::named! {
+    /// How two sides are mixed where they lie over each other.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/crossfade.md"))]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum Crossfade {
+        /// By weights that keep the variance, with the mean of each plane put aside. Where both sides are far from the mean,
+        /// the mix can be further from it than either.
+        #[default]
+        KeepVariance = "keep_variance",
+        /// By weights whose sum is one, which flattens what is mixed.
+        Linear = "linear",
+    }
 }
 
 /// Two images of one size, and what their values vary around.
@@ -63,7 +60,7 @@ impl Crossfade {
     }
 }
 
-/// What the two deviations are multiplied with, for the weight of the second and the correlation of the two.
+/// The factors of the two deviations, for the weight of the second and the correlation of the two.
 fn shares(weight: f64, correlation: f64) -> [f64; 2] {
     let [v, w] = [1.0 - weight, weight];
     let length = (v * v + w * w + 2.0 * correlation * v * w).sqrt();

@@ -26,11 +26,11 @@ pub(crate) struct Band {
 /// Where a cut begins and ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ends {
-    /// Anywhere.
+    /// In any columns.
     Free,
     /// The last pixel is below the first one or beside it, as in rows that repeat.
     Closed,
-    /// In these columns of the first and the last row.
+    /// In these columns.
     At([u32; 2]),
 }
 
@@ -107,7 +107,7 @@ fn half_width(band: Band) -> f64 {
     HALF_WIDTH.min(f64::from(band.count) / 2.0)
 }
 
-/// What a cut through each of the pixels costs that leave room for its ramp.
+/// The cost of a cut through each of the pixels that leave room for its ramp.
 fn costs(differences: &Raster<f64>, half_width: f64) -> Result<Raster<f64>, TileError> {
     let inset = inset(half_width);
     let factors: Vec<f64> = (0..=2 * inset)
@@ -133,7 +133,7 @@ pub(crate) fn mix(a: f32, b: f32, weight: f64) -> f32 {
     }
 }
 
-/// The weight of what lies right of a cut, so many columns from it: 0 on the left, 1 on the right, ½ on it.
+/// The weight of the image right of a cut, by the distance from the cut in columns: 0 on the left, 1 on the right, ½ on it.
 pub(crate) fn weight(from_cut: f64, half_width: f64) -> f64 {
     if half_width > 0.0 {
         cubic_ramp((from_cut + half_width) / (2.0 * half_width))
@@ -147,7 +147,7 @@ pub(crate) fn inset(half_width: f64) -> u32 {
     (half_width.ceil() as u32).saturating_sub(1)
 }
 
-/// Adds what two planes differ by, in as many columns from `first` on as there are costs.
+/// Adds the differences of two planes to the costs, whose columns begin at `first`.
 pub(crate) fn add_differences(
     [a, b]: [&Raster<f32>; 2],
     first: usize,

@@ -21,7 +21,7 @@ pub(crate) fn open_path(costs: &Raster<f64>) -> Vec<u32> {
     Search::new(costs).cheapest(&left, &right, None).columns
 }
 
-/// The same for the cheapest closed path; of equally cheap ones, the one that begins in the smallest column.
+/// The columns of the cheapest closed path, row by row; of equally cheap ones, the one that begins in the smallest column.
 pub(crate) fn closed_path(costs: &Raster<f64>) -> Vec<u32> {
     let [left, right] = whole_band(costs);
     let mut search = Search::new(costs);
@@ -31,7 +31,7 @@ pub(crate) fn closed_path(costs: &Raster<f64>) -> Vec<u32> {
     best.columns
 }
 
-/// The same for the cheapest path from a column of the first row to one of the last.
+/// The columns of the cheapest path from a column of the first row to one of the last, row by row.
 ///
 /// The two are less than a row apart for each row of the grid.
 pub(crate) fn path_between(costs: &Raster<f64>, [begin, end]: [u32; 2]) -> Vec<u32> {

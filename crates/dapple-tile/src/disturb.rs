@@ -89,13 +89,13 @@ impl Disturbance {
         Ok(maps.swap_remove(0))
     }
 
-    /// The same for all maps of a material, whose copies are shifted and cut alike.
+    /// Covers maps with copies of the tiles of a material. All maps are shifted and cut alike.
     ///
     /// Normals are mixed as slopes, so that those of the frozen border come back within rounding.
     ///
     /// # Errors
     ///
-    /// As [`render`](Self::render); [`TileErrorKind::Count`] without maps, and [`TileErrorKind::Raster`] if they differ in
+    /// Those of [`render`](Self::render); [`TileErrorKind::Count`] without maps, and [`TileErrorKind::Raster`] if they differ in
     /// size.
     pub fn render_maps(
         &self,

@@ -27,7 +27,7 @@ dapple_raster::error! {
         } => "a margin of {margin} pixels is too wide for a side of {length}; at most {most} are possible";
         /// There is nothing to work on, or there are more or fewer things than needed.
         Count {
-            /// What is counted.
+            /// The name of what is counted.
             what: &'static str,
             /// How many there are.
             count: usize,

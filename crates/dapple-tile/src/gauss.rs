@@ -63,7 +63,7 @@ fn blur_row(row: &[f32], weights: &[f32], wrap: Wrap, blurred: &mut [f32]) {
     sum_up(at, weights, blurred);
 }
 
-/// Writes to `sums` the weighted sum of lines, of which `at` gives the one so many steps before or after the middle.
+/// Writes the weighted sum of lines to `sums`. `at` gives a line by its distance from the middle one, in steps.
 fn sum_up<'a>(at: impl Fn(i64) -> &'a [f32], weights: &[f32], sums: &mut [f32]) {
     for (block, sums) in sums.chunks_mut(BLOCK).enumerate() {
         let range = block * BLOCK..block * BLOCK + sums.len();

@@ -25,20 +25,17 @@ use crate::{Map, TileError, TileErrorKind};
 use dapple_hash::{CellHash, Seed};
 use dapple_raster::Raster;
 
-/// Which part of the first tile becomes the border of all.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum BorderSource {
-    /// Its border. The first tile has to repeat by itself, and stays as it is.
-    #[default]
-    Border,
-    /// The row and the column through its middle, whether it repeats or not. The first tile changes as all others do. The
-    /// width is less than half of a side, so that nothing is seen of where the borders of the first tile meet.
-    Middle,
+dapple_raster::named! {
+    /// Which part of the first tile becomes the border of all.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum BorderSource {
+        /// Its border. The first tile has to repeat by itself, and stays as it is.
+        #[default]
+        Border = "border",
+        /// The row and the column through its middle, whether it repeats or not. The first tile changes as all others do. The
+        /// width is less than half of a side, so that nothing is seen of where the borders of the first tile meet.
+        Middle = "middle",
+    }
 }
 
 /// Gives unlike tiles the same borders.
@@ -66,7 +63,7 @@ pub struct MatchBorders {
     /// How far from a border a tile changes, in pixels, from 1 to half of a side, rounded down, and to one pixel less
     /// for [`BorderSource::Middle`]. By default 16.
     pub width: u32,
-    /// What the borders become. By default the border of the first tile.
+    /// The pixels that all borders become. By default the border of the first tile.
     pub source: BorderSource,
 }
 
@@ -96,11 +93,11 @@ impl MatchBorders {
         Ok(matched.into_iter().flatten().collect())
     }
 
-    /// The same for several materials, whose maps are cut alike.
+    /// Gives the tiles of several materials the same borders. All maps of a material are cut along the same line.
     ///
     /// # Errors
     ///
-    /// As [`apply`](Self::apply); [`TileErrorKind::Count`] too for materials without maps, or with more or fewer than the
+    /// Those of [`apply`](Self::apply); [`TileErrorKind::Count`] too for materials without maps, or with more or fewer than the
     /// first, and [`TileErrorKind::KindMismatch`] for maps of other kinds.
     pub fn apply_maps(&self, tiles: &[Vec<Map>]) -> Result<Vec<Vec<Map>>, TileError> {
         let matched = self.matched(Map::planes_of_all(tiles)?)?;
@@ -117,7 +114,7 @@ impl MatchBorders {
     ///
     /// # Errors
     ///
-    /// As [`apply_maps`](Self::apply_maps); [`TileErrorKind::Raster`] too if `size` is empty or too large.
+    /// Those of [`apply_maps`](Self::apply_maps); [`TileErrorKind::Raster`] too if `size` is empty or too large.
     pub fn render(
         &self,
         tiles: &[Vec<Map>],

@@ -73,7 +73,7 @@ pub(crate) fn without_jumps(
 /// last ones.
 pub(crate) struct Smooth {
     size: [usize; 2],
-    /// What the jumps across x give, in bands whose lines are columns.
+    /// The share of the jumps across x, in bands whose lines are columns.
     across_x: Vec<Vec<Element>>,
     across_y: Option<Layer>,
 }

@@ -10,7 +10,7 @@ pub(crate) struct Piece {
     pub(crate) copy: i64,
     /// The first pixel, counted from the beginning of the copy.
     pub(crate) from: u32,
-    /// How many pixels.
+    /// The number of pixels.
     pub(crate) count: u32,
 }
 

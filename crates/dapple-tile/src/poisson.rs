@@ -16,19 +16,16 @@ use crate::TileError;
 use crate::periodic::{border, jumps, without_jumps};
 use dapple_raster::Raster;
 
-/// The gradient that is wanted across the wrap, where the source has none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum WrapGradient {
-    /// None: the last pixel continues to the first. The same image as [`Method::Periodic`](crate::Method::Periodic).
-    #[default]
-    Zero,
-    /// The mean of the gradients just inside of the two borders.
-    Extrapolate,
+dapple_raster::named! {
+    /// The gradient that is wanted across the wrap, where the source has none.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum WrapGradient {
+        /// None: the last pixel continues to the first. The same image as [`Method::Periodic`](crate::Method::Periodic).
+        #[default]
+        Zero = "zero",
+        /// The mean of the gradients just inside of the two borders.
+        Extrapolate = "extrapolate",
+    }
 }
 
 /// The tiles of all planes.

@@ -32,7 +32,7 @@ use crate::map::check_finite;
 use crate::{TileError, TileErrorKind};
 use dapple_raster::{Raster, Wrap};
 
-/// What is measured, and against what.
+/// Which seams are measured, and which boundaries they are compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -45,7 +45,7 @@ pub struct SeamOptions {
     /// How many pixels apart the boundaries are that are like the wrap, along each axis: divisors of the sides. By
     /// default 1, which is every boundary.
     ///
-    /// What is made on a lattice differs more across some boundaries than across others. Give `2^levels` for a tile of
+    /// A tile that is made on a lattice differs more across some boundaries than across others. Give `2^levels` for a tile of
     /// splines, and the pixels per cell for cellular noise.
     pub lattice: [u32; 2],
 }
@@ -80,7 +80,7 @@ impl Default for SeamOptions {
 pub struct SeamReport {
     /// Columns and rows of the tile.
     pub size: [u32; 2],
-    /// What was measured.
+    /// The measurements.
     pub options: SeamOptions,
     /// The steps across the wrap, for means of 1, 2, 4 and 8 pixels.
     pub seams: [Seam; 4],
@@ -97,7 +97,7 @@ pub struct SeamReport {
     pub kept: Option<DetailKept>,
 }
 
-/// What a tile has kept of its source. Their sizes may differ.
+/// The contrast and detail that a tile has kept of its source. Their sizes may differ.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DetailKept {
@@ -129,7 +129,7 @@ pub struct DetailKept {
 }
 
 impl SeamReport {
-    /// The largest ratio that is told: what is larger, or infinite, is told as this.
+    /// The largest ratio in a report: larger and infinite ratios are cut off to it.
     pub const MOST: f64 = 1e9;
 
     /// How well a tile repeats.
@@ -154,7 +154,7 @@ impl SeamReport {
     ///
     /// # Errors
     ///
-    /// As [`of`](Self::of), and [`NotFinite`](TileErrorKind::NotFinite) for pixels of the source.
+    /// Those of [`of`](Self::of), and [`NotFinite`](TileErrorKind::NotFinite) for pixels of the source.
     pub fn beside(
         source: &Raster<f32>,
         tile: &Raster<f32>,

@@ -67,7 +67,7 @@ pub enum Method {
     serde(default, deny_unknown_fields)
 )]
 pub struct Seamless {
-    /// How. By default [`Method::Periodic`].
+    /// The method. By default [`Method::Periodic`].
     pub method: Method,
     /// Along which axes, x first. By default both.
     pub axes: [bool; 2],

@@ -33,19 +33,16 @@ pub enum Basis {
     Sines,
 }
 
-/// What the pixels of the image are to the spline.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Pixels {
-    /// Its coefficients, as in the paper.
-    #[default]
-    Coefficients,
-    /// Its values at the pixel centers; coefficients come from a prefilter. To sines, pixels are always this.
-    Samples,
+dapple_raster::named! {
+    /// How the pixels of the image determine the spline.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum Pixels {
+        /// They are its coefficients, as in the paper.
+        #[default]
+        Coefficients = "coefficients",
+        /// They are its values at the pixel centers; coefficients come from a prefilter. To sines, pixels are always this.
+        Samples = "samples",
+    }
 }
 
 /// The blend tile of Du, Wang and Meng.
@@ -60,9 +57,9 @@ pub struct SplineProject {
     pub levels: u32,
     /// Where coarse coefficients lie. By default centered.
     pub phase: Phase,
-    /// What the tile is made of. By default quadratic B-splines.
+    /// The functions that the tile is made of. By default quadratic B-splines.
     pub basis: Basis,
-    /// What pixels are. By default coefficients.
+    /// How pixels determine the spline. By default as its coefficients.
     pub pixels: Pixels,
 }
 
@@ -127,7 +124,7 @@ impl SplineProject {
     ///
     /// # Errors
     ///
-    /// As [`coarse`](Self::coarse); and if the small tile has not the size that `size` has once halved.
+    /// Those of [`coarse`](Self::coarse); and if the small tile has not the size that `size` has once halved.
     pub fn refine(
         &self,
         coarse: &Raster<f32>,

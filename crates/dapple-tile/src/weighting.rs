@@ -32,7 +32,7 @@ pub enum Weighting {
     /// Each weight over the sum of all.
     #[default]
     Given,
-    /// What is higher shows: where a layer has no height, that of the blend tile is taken.
+    /// By height: the higher layer shows. A layer without a height has that of the blend tile.
     Height {
         /// The difference of heights over which layers mix, above 0, for heights from 0 to 1: 0.1 is crisp, 0.3 soft.
         /// With such heights and up to four layers, one that has less than 1/16 of the weights is out, for depths up to 1.
@@ -150,7 +150,7 @@ fn by_height(
     normalize(&shares.iter().collect::<Vec<_>>())
 }
 
-/// What is higher shows. A layer without weight is lower than any.
+/// Shares by height: the higher layer shows, and a layer without weight is lower than any.
 fn level(&weight: &f32, &height: &f32) -> f64 {
     let weight = f64::from(weight);
     f64::from(height) + weight - (0.25 / weight - 1.0).max(0.0)

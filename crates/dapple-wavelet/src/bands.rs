@@ -4,12 +4,12 @@ use crate::line::check_finite;
 use crate::{Border, SplineFilter, WaveletError};
 use dapple_raster::Raster;
 
-/// What a raster is made of: a detail for each level, finest first, and the coarse rest.
+/// The bands of a raster: a detail for each level, finest first, and the coarse rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bands {
     /// `(I − P)` of each level: what is lost when it is halved. The first has the size of the raster.
     pub details: Vec<Raster<f32>>,
-    /// What is left after the last level.
+    /// The raster of the last level.
     pub coarse: Raster<f32>,
 }
 
@@ -20,7 +20,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// As [`project`](Self::project).
+    /// Those of [`project`](Self::project).
     pub fn analyze(
         &self,
         raster: &Raster<f32>,
@@ -44,7 +44,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// As [`up`](Self::up): `Length` if a detail has not the size that its level needs.
+    /// Those of [`up`](Self::up): `Length` if a detail has not the size that its level needs.
     pub fn synthesize(
         &self,
         bands: &Bands,

@@ -33,7 +33,7 @@ impl Doubling {
     ///
     /// # Errors
     ///
-    /// As [`Halving::new`], and `Length` if `coarse_len` is not the coarse length.
+    /// Those of [`Halving::new`], and `Length` if `coarse_len` is not the coarse length.
     pub(crate) fn new(
         filter: SplineFilter,
         coarse_len: usize,

@@ -10,10 +10,10 @@ pub(crate) struct Line {
     ends: Ends,
 }
 
-/// What comes after the last value, and before the first.
+/// The values after the last one, and before the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Ends {
-    /// The other end.
+    /// Those of the other end of the line, which repeats.
     Repeat,
     /// The mirror image, at the start and at the end: with the end value twice, or once.
     Mirror { twice: [bool; 2] },
@@ -156,7 +156,7 @@ pub(crate) fn shortest(filter: SplineFilter, border: Border) -> usize {
 ///
 /// # Errors
 ///
-/// As [`Halving::new`], `NotDivisible` with the whole length and all levels; `Range` for too many levels.
+/// Those of [`Halving::new`], `NotDivisible` with the whole length and all levels; `Range` for too many levels.
 pub(crate) fn lengths(
     filter: SplineFilter,
     len: usize,
@@ -185,7 +185,7 @@ pub(crate) fn lengths(
     Ok(lengths)
 }
 
-/// As often as no raster can be halved: its sides are below 2^32.
+/// More levels than any raster has, whose sides are below 2^32.
 const MOST_LEVELS: u32 = 32;
 
 #[cfg(test)]

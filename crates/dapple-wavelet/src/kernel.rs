@@ -11,7 +11,7 @@
 
 use crate::{Degree, Fit, SplineFilter};
 
-/// What makes a value of a line out of another line: a short sum, and recursions over its results.
+/// The filter of a line: a short sum for each value, and recursions over the results.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     /// Where the first tap lies, from the place of the value.

@@ -30,7 +30,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// As [`coarse_len`](Self::coarse_len), and `NotFinite`.
+    /// Those of [`coarse_len`](Self::coarse_len), and `NotFinite`.
     ///
     /// # Examples
     ///
@@ -71,7 +71,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// As [`down_line`](Self::down_line), for each level; `Range` for more than 32 levels.
+    /// Those of [`down_line`](Self::down_line), for each level; `Range` for more than 32 levels.
     pub fn project_line(
         &self,
         fine: &[f64],

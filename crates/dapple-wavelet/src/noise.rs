@@ -73,7 +73,7 @@ pub type WaveletNoise2 = WaveletNoise<2>;
 /// Wavelet noise of space.
 pub type WaveletNoise3 = WaveletNoise<3>;
 
-/// The most bands.
+/// The largest number of bands.
 const MOST_BANDS: usize = 16;
 
 /// The largest weight. No sum of weighted values overflows.

@@ -171,7 +171,7 @@ pub(crate) fn binomials(degree: Degree) -> Vec<f64> {
     row.iter().map(|c| c / f64::from(1 << d)).collect()
 }
 
-/// What coarse coefficient `j` adds to fine coefficient `i` of a line that repeats.
+/// The weight of coarse coefficient `j` in fine coefficient `i` of a line that repeats.
 fn tap(filter: SplineFilter, period: usize, i: usize, j: usize) -> f64 {
     let (first, last) = spread(filter);
     let h = binomials(filter.degree);

@@ -15,7 +15,7 @@ use crate::{Border, SplineFilter, WaveletError};
 use dapple_raster::{Raster, simd};
 use fearless_simd::Level;
 
-/// What [`SplineFilter::down_into`] needs beside its result, kept from raster to raster: 2 bytes for each fine pixel of the
+/// Scratch memory of [`SplineFilter::down_into`], used again from raster to raster: 2 bytes for each fine pixel of the
 /// largest, and some more.
 #[derive(Clone, Debug, Default)]
 pub struct FilterMemory {
@@ -31,7 +31,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// As [`down_line`](Self::down_line).
+    /// Those of [`down_line`](Self::down_line).
     pub fn down(
         &self,
         fine: &Raster<f32>,
@@ -48,7 +48,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// As [`down`](Self::down), and `Raster` if `coarse` has another size than half of `fine`, as
+    /// Those of [`down`](Self::down), and `Raster` if `coarse` has another size than half of `fine`, as
     /// [`coarse_len`](Self::coarse_len) says.
     pub fn down_into(
         &self,
@@ -76,7 +76,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// As [`up_line`](Self::up_line).
+    /// Those of [`up_line`](Self::up_line).
     pub fn up(
         &self,
         coarse: &Raster<f32>,
@@ -98,7 +98,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// As [`up`](Self::up).
+    /// Those of [`up`](Self::up).
     pub fn up_into(
         &self,
         coarse: &Raster<f32>,
@@ -128,7 +128,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// As [`down`](Self::down), for each level: `NotFinite` also if a level has made infinite pixels of finite ones, which
+    /// Those of [`down`](Self::down), for each level: `NotFinite` also if a level has made infinite pixels of finite ones, which
     /// none does up to `f32::MAX / 15^levels`. `Range` for more than 32 levels.
     pub fn project(
         &self,

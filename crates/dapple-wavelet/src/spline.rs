@@ -6,25 +6,22 @@
 //!
 //! Reference: Carl de Boor, "A Practical Guide to Splines", Springer 1978.
 
-/// The degree of a B-spline.
-///
-#[cfg_attr(doc, doc = include_str!("../docs/degree.md"))]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Degree {
-    /// Steps: the Haar wavelet's own function.
-    Constant,
-    /// Tents.
-    Linear,
-    /// The paper's choice, and Cook and DeRose's.
-    #[default]
-    Quadratic,
-    /// The smoothest of the four.
-    Cubic,
+dapple_raster::named! {
+    /// The degree of a B-spline.
+    ///
+    #[cfg_attr(doc, doc = include_str!("../docs/degree.md"))]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Degree {
+        /// Steps: the Haar wavelet's own function.
+        Constant = "constant",
+        /// Tents.
+        Linear = "linear",
+        /// The paper's choice, and Cook and DeRose's.
+        #[default]
+        Quadratic = "quadratic",
+        /// The smoothest of the four.
+        Cubic = "cubic",
+    }
 }
 
 impl Degree {
@@ -84,78 +81,69 @@ impl Degree {
     }
 }
 
-/// Where the coarse coefficients lie over the fine ones.
-///
-/// Coefficient `j` of the coarse line is spread over the fine coefficients `2j + first ..= 2j + last`:
-///
-/// | degree | [`Centered`](Self::Centered) | [`CookDeRose`](Self::CookDeRose) |
-/// |---|---|---|
-/// | constant | 0 ..= 1 | −1 ..= 0 |
-/// | linear | −1 ..= 1 | −2 ..= 0 |
-/// | quadratic | −1 ..= 2 | −2 ..= 1 |
-/// | cubic | −2 ..= 2 | −3 ..= 1 |
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Phase {
-    /// For even degrees, a coarse pixel covers exactly the fine pixels `2j` and `2j + 1`, so pictures do not move; for odd
-    /// degrees it lies on pixel `2j`.
-    #[default]
-    Centered,
-    /// One fine pixel earlier, as in the listing of Cook and DeRose (2005): a half-size picture is shifted by one fine pixel.
-    CookDeRose,
-}
-
-/// What lies past the ends of a line.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Border {
-    /// The line repeats. To be halved, its length must be even.
-    #[default]
-    Periodic,
-    /// The line is mirrored: with the end pixel twice for even degrees, once for odd ones.
+dapple_raster::named! {
+    /// Where the coarse coefficients lie over the fine ones.
     ///
-    /// The halved line of a mirrored one is mirrored too, and of what would repeat, one copy is kept. A line of `n` has, once
-    /// halved, a length of
+    /// Coefficient `j` of the coarse line is spread over the fine coefficients `2j + first ..= 2j + last`:
     ///
-    /// | degree | [`Centered`](Phase::Centered) | [`CookDeRose`](Phase::CookDeRose) |
+    /// | degree | [`Centered`](Self::Centered) | [`CookDeRose`](Self::CookDeRose) |
     /// |---|---|---|
-    /// | even | ⌈n/2⌉ | ⌊n/2⌋ + 1 |
-    /// | odd | ⌈n/2⌉ | ⌊n/2⌋ |
-    ///
-    /// Any length from 2 on can be halved; in the phase of Cook and DeRose, for even degrees, any from 3 on, since 2 would
-    /// stay 2.
-    ///
-    /// Coefficient `j` of the result is coefficient `j` of the table of [`Phase`], but `j + 1` for an odd degree in the phase
-    /// of Cook and DeRose.
-    ///
-    /// Each level mirrors its own line afresh, by the rule above. One level is exactly that of the fine line mirrored for ever.
-    /// Several levels are so too where the phase is centered and every line that is halved, but the last, has an even
-    /// length for an even degree, or an odd one for an odd degree. Otherwise the mirrors of the fine line lie elsewhere
-    /// in a coarse one than this rule has them, and near the ends the result is another; but for steps, not always.
-    Mirror,
+    /// | constant | 0 ..= 1 | −1 ..= 0 |
+    /// | linear | −1 ..= 1 | −2 ..= 0 |
+    /// | quadratic | −1 ..= 2 | −2 ..= 1 |
+    /// | cubic | −2 ..= 2 | −3 ..= 1 |
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Phase {
+        /// For even degrees, a coarse pixel covers exactly the fine pixels `2j` and `2j + 1`, so pictures do not move; for odd
+        /// degrees it lies on pixel `2j`.
+        #[default]
+        Centered = "centered",
+        /// One fine pixel earlier, as in the listing of Cook and DeRose (2005): a half-size picture is shifted by one fine pixel.
+        CookDeRose = "cook_de_rose",
+    }
 }
 
-/// What "nearest" means when a line is halved.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Fit {
-    /// The least integral of the squared difference of the two functions: the paper's sense.
-    #[default]
-    Function,
-    /// The least sum of the squared differences of the coefficients (`(HᵀH)⁻¹Hᵀ`).
-    Coefficients,
+dapple_raster::named! {
+    /// What lies past the ends of a line.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Border {
+        /// The line repeats. To be halved, its length must be even.
+        #[default]
+        Periodic = "periodic",
+        /// The line is mirrored: with the end pixel twice for even degrees, once for odd ones.
+        ///
+        /// The halved line of a mirrored one is mirrored too, and of what would repeat, one copy is kept. A line of `n` has, once
+        /// halved, a length of
+        ///
+        /// | degree | [`Centered`](Phase::Centered) | [`CookDeRose`](Phase::CookDeRose) |
+        /// |---|---|---|
+        /// | even | ⌈n/2⌉ | ⌊n/2⌋ + 1 |
+        /// | odd | ⌈n/2⌉ | ⌊n/2⌋ |
+        ///
+        /// Any length from 2 on can be halved; in the phase of Cook and DeRose, for even degrees, any from 3 on, since 2 would
+        /// stay 2.
+        ///
+        /// Coefficient `j` of the result is coefficient `j` of the table of [`Phase`], but `j + 1` for an odd degree in the phase
+        /// of Cook and DeRose.
+        ///
+        /// Each level mirrors its own line afresh, by the rule above. One level is exactly that of the fine line mirrored for ever.
+        /// Several levels are so too where the phase is centered and every line that is halved, but the last, has an even
+        /// length for an even degree, or an odd one for an odd degree. Otherwise the mirrors of the fine line lie elsewhere
+        /// in a coarse one than this rule has them, and near the ends the result is another; but for steps, not always.
+        Mirror = "mirror",
+    }
+}
+
+dapple_raster::named! {
+    /// The distance that is least when a line is halved.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Fit {
+        /// The least integral of the squared difference of the two functions: the paper's sense.
+        #[default]
+        Function = "function",
+        /// The least sum of the squared differences of the coefficients (`(HᵀH)⁻¹Hᵀ`).
+        Coefficients = "coefficients",
+    }
 }
 
 /// A filter pair: `h` that doubles a line and `a` that halves it.
@@ -171,7 +159,7 @@ pub struct SplineFilter {
     pub degree: Degree,
     /// Where coarse coefficients lie. By default centered.
     pub phase: Phase,
-    /// What is nearest. By default the function.
+    /// The distance that is least. By default that of the functions.
     pub fit: Fit,
 }
 

@@ -74,7 +74,7 @@ impl SplineFilter {
     ///
     /// # Errors
     ///
-    /// As [`down_volume`](Self::down_volume), for each level: `NotFinite` also if a level has made infinite values of finite
+    /// Those of [`down_volume`](Self::down_volume), for each level: `NotFinite` also if a level has made infinite values of finite
     /// ones, which none does up to `f32::MAX / 56^levels`. `Range` for more than 32 levels.
     pub fn project_volume(
         &self,

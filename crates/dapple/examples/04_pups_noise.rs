@@ -6,7 +6,7 @@
 
 mod out;
 
-use dapple::color::{NormalOptions, Palette, normal_map};
+use dapple::color::{HeightPlane, Palette, normal_map};
 use dapple::hash::Seed;
 use dapple::image::{Depth, write_color_png, write_normal_png};
 use dapple::points::Domain;
@@ -32,13 +32,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     out::wrote(&path);
 
     // Heights of 1 are a tenth of the tile high. The map repeats because the height does.
-    let options = NormalOptions {
+    let plane = HeightPlane {
         strength: 0.1,
-        wrap: [Wrap::Repeat; 2],
-        ..NormalOptions::for_window(&window)
+        ..HeightPlane::for_window(&window)
     };
     let path = out::path("04_pups_noise_normal.png")?;
-    write_normal_png(&path, &normal_map(&height, &options)?, Depth::Eight)?;
+    write_normal_png(&path, &normal_map(&height, &plane.into())?, Depth::Eight)?;
     out::wrote(&path);
     Ok(())
 }

@@ -11,7 +11,7 @@
 mod out;
 mod upload;
 
-use dapple::color::{NormalOptions, Palette, normal_map};
+use dapple::color::{HeightPlane, Palette, normal_map};
 use dapple::hash::Seed;
 use dapple::image::{Transfer, write_png};
 use dapple::pups::{CellsOptions, cells};
@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let window = Window::new(domain.origin, domain.size, [256, 256])?;
     let values = cells(&options, Seed(7))?.to_raster(&window)?;
     let upload = Upload::color(&Palette::Ember.ramp().apply(&values))?;
-    let normals = normal_map(&values, &NormalOptions::for_window(&window))?;
+    let normals = normal_map(&values, &HeightPlane::for_window(&window).into())?;
     for upload in [&upload, &Upload::normal(&normals)?] {
         tell(upload);
     }

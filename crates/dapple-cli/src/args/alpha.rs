@@ -1,4 +1,4 @@
-//! What becomes of the alpha of images that are partly transparent.
+//! The option for alpha: keep it, drop it, or lay the image over a color.
 
 use super::ramp::color;
 use dapple::recipe::ImageAlpha;
@@ -8,17 +8,17 @@ use std::str::FromStr;
 /// The option of subcommands that make images of images.
 #[derive(clap::Args, Clone, Copy, Debug, Serialize)]
 pub(crate) struct AlphaArgs {
-    /// What becomes of transparency: `keep` treats it like another channel, `drop` shows the colors without it, and
+    /// How transparency is handled: `keep` treats it like another channel, `drop` shows the colors without it, and
     /// `over:COLOR` lays the image over a color, such as `over:#888`.
     #[arg(long, value_name = "keep|drop|over:COLOR", default_value = "keep")]
     pub(crate) alpha: Alpha,
 }
 
-/// What becomes of alpha.
+/// How alpha is handled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase", untagged)]
 pub(crate) enum Alpha {
-    /// It goes the way of the colors.
+    /// It is processed like the colors.
     #[serde(serialize_with = "keep")]
     Keep,
     /// The result is opaque.
@@ -40,15 +40,17 @@ impl FromStr for Alpha {
             Some(("over", background)) => match color(background) {
                 Some(color) => without(ImageAlpha::Over(color)),
                 None => Err(format!(
-                    "{background:?} is no color; one is such as #ff8000, black or white"
+                    "{background:?} is not a color: give one such as #ff8000, black or white"
                 )),
             },
-            _ => Err(format!("{text:?} is none of keep, drop and over:COLOR")),
+            _ => Err(format!(
+                "{text:?} is unknown: give keep, drop or over:COLOR"
+            )),
         }
     }
 }
 
-/// What becomes of the alpha of an image that is used without it.
+/// Reads how the alpha of an image is handled that is used without it.
 ///
 /// # Errors
 ///

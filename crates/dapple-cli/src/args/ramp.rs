@@ -1,6 +1,7 @@
 //! Color ramps on the command line: the name of a palette, or colors.
 
 use dapple::color::{ColorRamp, LinearRgb, Palette};
+use dapple::raster::Named;
 use serde::{Serialize, Serializer};
 use std::str::FromStr;
 
@@ -18,8 +19,7 @@ impl FromStr for RampArg {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let is_palette = |palette: &&Palette| name(**palette).eq_ignore_ascii_case(text);
-        let colors = match Palette::ALL.iter().find(is_palette) {
+        let colors = match Palette::from_name(&text.to_ascii_lowercase()) {
             Some(palette) => palette.colors(),
             None => {
                 let colors = text
@@ -43,11 +43,6 @@ impl Serialize for RampArg {
     }
 }
 
-/// The name of a palette in small letters.
-fn name(palette: Palette) -> String {
-    format!("{palette:?}").to_ascii_lowercase()
-}
-
 /// A color in hexadecimal, or black or white.
 pub(super) fn color(text: &str) -> Option<LinearRgb> {
     match text.trim() {
@@ -59,9 +54,8 @@ pub(super) fn color(text: &str) -> Option<LinearRgb> {
 
 /// The error message for a text that is neither a color nor a palette.
 fn unknown(text: &str) -> String {
-    let palettes: Vec<_> = Palette::ALL.iter().map(|&palette| name(palette)).collect();
-    let (text, palettes) = (text.trim(), palettes.join(", "));
-    format!("{text:?} is no color such as #ff8000, and no palette: {palettes}")
+    let (text, palettes) = (text.trim(), Palette::NAMES.join(", "));
+    format!("{text:?} is neither a color such as #ff8000 nor a palette: {palettes}")
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! A part of an image on the command line: `x,y,w,h`, in pixels from the top left corner.
 
+use super::Numbers;
 use serde::Serialize;
 use std::str::FromStr;
 
@@ -13,7 +14,7 @@ pub(crate) struct Region {
 }
 
 impl Region {
-    /// The same for a bake.
+    /// This region as an option of a bake.
     pub(crate) fn of_recipe(self) -> dapple::recipe::Region {
         dapple::recipe::Region {
             first: self.first,
@@ -26,15 +27,13 @@ impl FromStr for Region {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Result<Vec<u32>, _> =
-            text.split(',').map(|part| part.trim().parse()).collect();
-        match numbers.as_deref() {
-            Ok(&[x, y, w, h]) if w > 0 && h > 0 => Ok(Self {
+        match text.parse() {
+            Ok(Numbers([x, y, w, h])) if w > 0 && h > 0 => Ok(Self {
                 first: [x, y],
                 size: [w, h],
             }),
             _ => Err(format!(
-                "{text:?} is no region; one is x,y,w,h in whole pixels, such as 0,0,256,128"
+                "{text:?} is not a region: give x,y,w,h in whole pixels, such as 0,0,256,128"
             )),
         }
     }

@@ -21,7 +21,7 @@ impl FromStr for Size {
     fn from_str(text: &str) -> Result<Self, String> {
         let side = |text: &str| {
             let side = text.parse().map_err(|_| {
-                format!("{text:?} is no number of pixels; a size is such as 1024 or 1024x512")
+                format!("{text:?} is not a number of pixels: give a size such as 1024 or 1024x512")
             })?;
             if (1..=SIDE_MAX).contains(&side) {
                 Ok(side)
@@ -39,7 +39,7 @@ impl FromStr for Extent {
     fn from_str(text: &str) -> Result<Self, String> {
         let side = |text: &str| {
             let side = text.parse().map_err(|_| {
-                format!("{text:?} is no number; an extent is such as 1, 0.5 or 2x1.5")
+                format!("{text:?} is not a number: give an extent such as 1, 0.5 or 2x1.5")
             })?;
             if side > 0.0 && f64::is_finite(side) {
                 Ok(side)

@@ -74,7 +74,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PROGRAM", value_parser = Preset::parser(), conflicts_with_all = ["maps", "format"])]
     preset: Option<&'static Preset>,
 
-    /// Another seed than that of the recipe.
+    /// The seed, instead of that of the recipe.
     #[arg(long, value_name = "N", value_parser = seed)]
     seed: Option<u64>,
 
@@ -82,21 +82,20 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
 
-    /// Where green points in normal maps: up (opengl: Blender, Unity, Godot, glTF) or down (directx: Unreal). By default as
-    /// the preset or the recipe has it, which is up unless it says otherwise.
-    #[arg(long, value_name = "WAY", value_parser = Word::<NormalY>::of(&["opengl", "directx"]))]
+    /// Where green points in normal maps. By default as the preset or the recipe says, or else up (opengl).
+    #[arg(long, value_name = "WAY", value_parser = Word::<NormalY>::all())]
     normal_y: Option<NormalY>,
 
     /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6, instead of what the recipe says.
     #[arg(long, value_name = "UNITS")]
     relief: Option<f64>,
 
-    /// Keep only some rows in memory, however large the tile is. Refused where a node sees the whole tile, and needed past
+    /// Keep only a band of rows in memory, for large tiles. Refused where a node sees the whole tile, and needed past
     /// 32768 × 32768 pixels.
     #[arg(long)]
     banded: bool,
 
-    /// Go on with the others if one of several recipes cannot be baked.
+    /// Go on with the other recipes if one cannot be baked.
     #[arg(long)]
     keep_going: bool,
 
@@ -104,12 +103,12 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Output")]
     sheet: bool,
 
-    /// Write a picture of the material in light, too, as `NAME_preview.png`: on a plane of 2 x 2 tiles or on a sphere.
-    #[arg(long, value_enum, value_name = "THING", num_args = 0..=1, require_equals = true, default_missing_value = "plane", help_heading = "Output")]
+    /// Write a lit preview of the material, too, as `NAME_preview.png`: on a plane of 2 x 2 tiles or on a sphere.
+    #[arg(long, value_name = "THING", value_parser = Word::<Thing>::all(), num_args = 0..=1, require_equals = true, default_missing_value = "plane", help_heading = "Output")]
     preview: Option<Thing>,
 
     /// The format; by default PNG with 16 bits, or by the ending of the output: EXR, a NumPy array, or raw heights.
-    #[arg(long, value_enum, value_name = "FORMAT", help_heading = "Output")]
+    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 
     #[command(flatten)]
@@ -123,11 +122,11 @@ struct Work {
     folder: PathBuf,
 }
 
-/// Runs it.
+/// Bakes the recipes.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, recipes and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.check_document()?;
     let names = recipes::expanded(&args.recipes)?;
@@ -135,7 +134,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut batch = Batch::new(names.len(), args.keep_going, context);
     let mut works = Vec::new();
     for name in &names {
-        // Whatever is in the way of any is said before the work begins.
+        // All recipes are read and all files claimed before the work begins.
         let work = Work::read(name, args).and_then(|work| {
             claim(
                 args,
@@ -248,7 +247,7 @@ impl Args {
         args
     }
 
-    /// The outputs of so many recipes, which need a folder if there are several.
+    /// The outputs of a number of recipes, which need a folder if there are several.
     fn files_for(&self, n_recipes: usize) -> Result<OutputArgs> {
         let mut files = self.files.clone();
         if n_recipes == 1 || files.output.is_none() {
@@ -287,7 +286,7 @@ impl Args {
         }
     }
 
-    /// What a plan refuses, as wrong usage if it is the relief that was typed.
+    /// The refusal of a plan, as wrong usage if it is about the relief that was typed.
     fn blame(&self, error: RecipeError) -> Error {
         let is_typed = matches!(error.kind(), RecipeErrorKind::Range { value, .. } if self.relief == Some(*value));
         match is_typed {

@@ -5,7 +5,6 @@ pub(super) mod layer;
 mod mixing;
 
 use crate::args::{AlphaArgs, ImageArgs, Size};
-use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind};
 use crate::job::{Context, Job};
@@ -81,11 +80,11 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// Runs it.
+/// Blends the layers.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, images and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend", &args.image.files);
     let outputs = claim(args, &mut job)?;
@@ -158,13 +157,7 @@ fn claim(args: &Args, job: &mut Job<'_>) -> Result<Vec<OutputIdx>> {
         names.push(layer::HEIGHT);
     }
     let targets = files.targets("blend", &names, args.image.ending())?;
-    let mut outputs = Vec::new();
-    for target in &targets.files {
-        Format::choose(args.image.format, target, Format::Png16)?;
-        outputs.push(job.claim(target)?);
-    }
-    job.claim_sidecar(&targets.main)?;
-    Ok(outputs)
+    job.claim_images(&targets, args.image.format)
 }
 
 /// The blend tile, in the size of the blend.
@@ -180,7 +173,7 @@ fn tile(args: &Args, reader: &mut Reader) -> Result<Option<Raster<f32>>> {
     Ok(Some(ranks.with_context(|| input::name(path))?))
 }
 
-/// Adds what to do about what is often refused.
+/// Adds a hint to frequent errors.
 fn advise(error: TileError) -> Error {
     let hint = match error.kind() {
         TileErrorKind::Raster(_) => "--size WxH repeats what is smaller and cuts what is larger",

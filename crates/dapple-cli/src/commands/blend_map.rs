@@ -1,11 +1,11 @@
 //! `dapple blend-map`: a blend tile from the features of a texture.
 
 use crate::args::{Axes, ImageArgs, Region, image_alpha};
-use crate::encode::Format;
 use crate::error::{Exit, Hint};
 use crate::input::{self, ALPHA_HINT, Kind};
 use crate::job::{Context, Job};
 use crate::progress::Progress;
+use crate::words::Word;
 use anyhow::{Result, anyhow};
 use dapple::raster::Wrap;
 use dapple::recipe::ImageAlpha;
@@ -36,7 +36,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
 
-    /// What becomes of transparency, which is refused otherwise: `drop` shows the colors without it, and `over:COLOR` lays the
+    /// How transparency is handled, which is refused by default: `drop` shows the colors without it, and `over:COLOR` lays the
     /// image over a color, such as `over:#888`.
     #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha)]
     alpha: Option<ImageAlpha>,
@@ -50,7 +50,7 @@ pub(crate) struct Args {
     contrast: f64,
 
     /// Along which axes the texture repeats, and its map with it. Along others it is mirrored at its edges.
-    #[arg(long, value_enum, default_value_t = Axes::Both)]
+    #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
     wrap: Axes,
 
     /// Leave the values as they are; else each becomes its rank, from 0 to 1.
@@ -62,20 +62,16 @@ pub(crate) struct Args {
     output: ImageArgs,
 }
 
-/// Runs it.
+/// Makes the blend tile.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, images and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let mut job = Job::new(context, "blend-map", &args.output.files);
-    let target = args
-        .output
-        .files
-        .target("blend-map", args.output.ending())?;
-    Format::choose(args.output.format, &target, Format::Png16)?;
-    let output = job.claim(&target)?;
-    job.claim_sidecar(&target)?;
+    let (files, ending) = (&args.output.files, args.output.ending());
+    let targets = files.targets("blend-map", &[""], ending)?;
+    let outputs = job.claim_images(&targets, args.output.format)?;
     let kind = Kind::ByChannels;
     let loaded = input::map(&args.image, kind, args.region, args.alpha, ALPHA_HINT)?;
     let wrap = |repeats| if repeats { Wrap::Repeat } else { Wrap::Mirror };
@@ -96,7 +92,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         rank_equalize(&map)?
     };
     drop(progress);
-    job.write_image(output, Map::Value(map), true, &args.output)?;
+    job.write_image(outputs[0], Map::Value(map), true, &args.output)?;
     job.finish(args, Value::Null)?;
     Ok(Exit::Done)
 }

@@ -1,4 +1,4 @@
-//! `dapple completions`: what a shell needs to complete the command line.
+//! `dapple completions`: shell completions.
 
 use crate::cli::Cli;
 use crate::error::Exit;
@@ -15,7 +15,7 @@ Examples:
 For bash, put `source <(dapple completions bash)` into ~/.bashrc; for zsh, write the
 script as `_dapple` into a folder of $fpath.";
 
-/// Print what makes a shell complete this command.
+/// Generate shell completions.
 #[derive(clap::Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -24,11 +24,11 @@ pub(crate) struct Args {
     shell: Shell,
 }
 
-/// Runs it.
+/// Prints the script.
 ///
 /// # Errors
 ///
-/// If nobody listens.
+/// If standard output cannot be written.
 pub(crate) fn run(args: &Args) -> Result<Exit> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "dapple", &mut script);

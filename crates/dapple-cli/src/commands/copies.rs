@@ -5,7 +5,6 @@ mod method;
 use super::blend::alpha;
 use super::blend::layer::{HEIGHT, LayerArg, Material, Reader};
 use crate::args::{AlphaArgs, ImageArgs, Size, seed};
-use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job};
 use crate::output::OutputIdx;
@@ -76,11 +75,11 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// Runs it.
+/// Covers a map with copies.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, images and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let method = args.method.method(args.images.len(), args.tiles)?;
     let names = names(args)?;
@@ -128,7 +127,7 @@ fn names(args: &Args) -> Result<Vec<&str>> {
     for tile in &args.images {
         if tile.has_weight() {
             let message = format!(
-                "{} has a weight, which means nothing to a tile",
+                "{} has a weight, which a tile does not take",
                 tile.path().display()
             );
             return Err(usage(message).hint("give it to a layer of `dapple blend`"));
@@ -169,13 +168,7 @@ fn claim(
         .image
         .files
         .targets("copies", &parts, args.image.ending())?;
-    let mut outputs = Vec::new();
-    for target in &targets.files {
-        Format::choose(args.image.format, target, Format::Png16)?;
-        outputs.push(job.claim(target)?);
-    }
-    job.claim_sidecar(&targets.main)?;
-    Ok(outputs)
+    job.claim_images(&targets, args.image.format)
 }
 
 /// The maps of all tiles, the height and then alpha the last of them; whether there is alpha, and whether an image has more than
@@ -194,7 +187,7 @@ fn read(args: &Args) -> Result<(Vec<Vec<Map>>, bool, bool)> {
     Ok((maps.collect(), has_alpha, is_deep))
 }
 
-/// Adds what to do about what is refused.
+/// Adds a hint to frequent errors.
 fn advise(error: TileError) -> Error {
     let hint = match error.kind() {
         TileErrorKind::Margin { .. } => {

@@ -1,4 +1,4 @@
-//! `dapple info`: what is in an image or a mesh, in numbers.
+//! `dapple info`: images and meshes in numbers.
 
 mod channels;
 mod mesh;
@@ -8,9 +8,9 @@ use crate::error::{Exit, Hint};
 use crate::input;
 use crate::job::{Context, Job};
 use crate::output::Target;
+use crate::words::Word;
 use anyhow::{Context as _, Result};
 use channels::{Channel, channels, format};
-use clap::ValueEnum;
 use dapple::mesh_io::MeshFormat;
 use dapple::tile::{ChannelReport, SeamOptions, SeamReports};
 use serde::Serialize;
@@ -29,7 +29,7 @@ A seam ratio near 1 says that the step across the wrap is like the steps inside,
 means of 1, 2, 4 and 8 pixels. An image does not pass if, in any of its channels, the seam
 stands out by 2.5 standard deviations or more among the boundaries inside.";
 
-/// Tell what is in images and meshes: size, range, histogram, how well they repeat, what is wrong.
+/// Describe images and meshes: size, range, histogram, how well they repeat, faults.
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -44,7 +44,7 @@ pub(crate) struct Args {
     region: Option<Region>,
 
     /// Along which axes images are to repeat; `none` leaves out the seam report.
-    #[arg(long, value_enum, value_name = "AXES", default_value_t = Axes::Both)]
+    #[arg(long, value_name = "AXES", value_parser = Word::<Axes>::all(), default_value_t = Axes::Both)]
     wrap: Axes,
 
     /// Compare the seam only with every n-th boundary of pixels.
@@ -56,7 +56,7 @@ pub(crate) struct Args {
     check: bool,
 
     /// The format of the findings: text for people, or JSON for programs; by default by the ending of the output.
-    #[arg(long, value_enum, value_name = "FORMAT", help_heading = "Output")]
+    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 
     #[command(flatten)]
@@ -64,27 +64,28 @@ pub(crate) struct Args {
     output: OutputArgs,
 }
 
-/// How findings are told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum Format {
-    /// For people.
-    Text,
-    /// For programs.
-    Json,
+dapple::raster::named! {
+    /// The format of findings.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum Format {
+        /// For people.
+        Text = "text",
+        /// For programs.
+        Json = "json",
+    }
 }
 
-/// What is found in a file.
+/// The findings about a file.
 pub(super) struct Findings {
     /// For people.
     text: String,
     /// For programs.
     json: Value,
-    /// Whether `--check` is content.
+    /// Whether `--check` passes.
     is_good: bool,
 }
 
-/// Runs it.
+/// Describes the files.
 ///
 /// # Errors
 ///
@@ -124,7 +125,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// Where the findings go: standard output, unless something else is said.
+    /// The output of the findings: standard output by default.
     fn target(&self) -> Result<Target> {
         let ending = match self.format {
             Some(Format::Text) => "txt",

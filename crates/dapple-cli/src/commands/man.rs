@@ -20,16 +20,16 @@ Examples:
 #[derive(clap::Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// The folder for all pages, `dapple.1`, `dapple-tile.1` and so on; it is made if it is not there.
+    /// The folder for all pages, `dapple.1`, `dapple-tile.1` and so on; created if missing.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 
-    /// Replace pages that are there.
+    /// Replace existing pages.
     #[arg(long)]
     force: bool,
 }
 
-/// Runs it.
+/// Prints or writes the pages.
 ///
 /// # Errors
 ///

@@ -32,11 +32,11 @@ pub(crate) struct Args {
     )]
     cells: f64,
 
-    /// How many octaves, each twice as fine as the one before, from 1 to 16.
+    /// The number of octaves, each twice as fine as the one before, from 1 to 16.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16), help_heading = "Texture")]
     octaves: u32,
 
-    /// How high an octave is beside the one before, above 0 and at most 1.
+    /// The amplitude of an octave relative to the one before, above 0 and at most 1.
     #[arg(
         long,
         alias = "persistence",

@@ -9,9 +9,10 @@ use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, Job};
 use crate::output::Target;
 use crate::progress::Progress;
+use crate::words::Word;
 use anyhow::Result;
-use clap::ValueEnum;
 use dapple::points::PointSet;
+use dapple::raster::Named;
 use scatter::{ScatterArgs, Scattered};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -29,7 +30,7 @@ Examples:
   dapple points white --count 100 --seed 7 --format json
 
 Kinds:
-  poisson   random points at least a radius apart, so many that no further one fits
+  poisson   random points at least a radius apart, with room for no further one
   variable  the same with a radius that varies: denser where --density is higher
   nested    poisson in levels, each of which holds the one before
   jittered  one point in each cell of a grid
@@ -45,12 +46,12 @@ pub(crate) struct Args {
     #[command(flatten)]
     scatter: ScatterArgs,
 
-    /// Print what is known of the points: distances, empty circle, spectrum.
+    /// Print measurements of the points: distances, empty circle, spectrum.
     #[arg(long, help_heading = "Output")]
     report: bool,
 
     /// csv, json or png (a picture); by default by the ending of the output, and csv on standard output.
-    #[arg(long, value_enum, value_name = "FORMAT", help_heading = "Output")]
+    #[arg(long, value_name = "FORMAT", value_parser = Word::<Format>::all(), help_heading = "Output")]
     format: Option<Format>,
 
     /// How large the picture is, in pixels: one number is its longer side.
@@ -76,34 +77,24 @@ pub(crate) struct Args {
     output: OutputArgs,
 }
 
-/// What is written of points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum Format {
-    Csv,
-    Json,
-    Png,
-}
-
-impl Format {
-    /// The ending of such files.
-    fn ending(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Json => "json",
-            Self::Png => "png",
-        }
+dapple::raster::named! {
+    /// The format of the points.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum Format {
+        Csv = "csv",
+        Json = "json",
+        Png = "png",
     }
 }
 
-/// Runs it.
+/// Scatters the points.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, images and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let target = match &args.output.output {
-        Some(_) => (args.output).target("points", args.format.map_or("csv", Format::ending))?,
+        Some(_) => (args.output).target("points", args.format.map_or("csv", Format::name))?,
         None => Target::Stdout,
     };
     let format = format(args, &target)?;

@@ -94,23 +94,25 @@ impl FromStr for MapArg {
                 name: name.to_owned(),
                 path: PathBuf::from(path),
             }),
-            _ => Err(format!("{text:?} is no map; one is such as normal=FILE")),
+            _ => Err(format!(
+                "{text:?} is not a map: give NAME=FILE, such as normal=FILE"
+            )),
         }
     }
 }
 
-/// What goes into the synthesis: the example, and the maps that follow it.
+/// The input of the synthesis: the example, and the maps that follow it.
 struct Input {
     base: Loaded,
     maps: Vec<(String, Loaded)>,
     exemplar: Exemplar,
 }
 
-/// Runs it.
+/// Synthesizes a texture.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, images, meshes and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.check_used()?;
     match &args.surface.mesh {
@@ -120,13 +122,13 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 }
 
 impl Args {
-    /// Refuses options of the other ground, which would have no effect.
+    /// Refuses options that have no effect with or without a mesh.
     fn check_used(&self) -> Result<()> {
         let surface = self.surface.given();
         match (&self.surface.mesh, self.plane.given(), surface) {
-            (Some(_), Some(option), _) => Err(usage(format!("--{option} means nothing on a mesh"))),
+            (Some(_), Some(option), _) => Err(usage(format!("--{option} has no effect on a mesh"))),
             (None, _, Some(option)) => {
-                let error = usage(format!("--{option} means nothing without a mesh"));
+                let error = usage(format!("--{option} has no effect without a mesh"));
                 Err(error.hint("add --mesh FILE"))
             }
             _ => Ok(()),
@@ -147,7 +149,7 @@ impl Args {
                 .hint("the maps of an example have its size")?;
             maps.push((name.clone(), map));
         }
-        let edges = self.matching.edges();
+        let edges = self.matching.edges;
         let exemplar = match &base.map {
             Map::Color(colors) => Exemplar::new(colors, edges),
             Map::Value(values) => Exemplar::from_planes(&[(values, 1.0)], edges),
@@ -211,7 +213,7 @@ fn shown(progress: &Progress) -> impl FnMut(Steps) -> ControlFlow<()> + '_ {
 /// The length of the progress bar.
 const STEPS: u32 = 1000;
 
-/// Adds what to do about what is often refused.
+/// Adds a hint to frequent errors.
 fn advise(error: SynthError) -> Error {
     let hint = match error.kind() {
         SynthErrorKind::Exemplar { .. } => {

@@ -4,7 +4,7 @@ mod method;
 
 use crate::args::{AlphaArgs, Axes, ImageArgs, Region, Size};
 use crate::commands::info::seams_json;
-use crate::encode::Format;
+use crate::encode::{Format, map_raster};
 use crate::error::{Exit, Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::job::{Context, Job};
@@ -100,11 +100,11 @@ struct Source {
     outputs: Option<[Option<OutputIdx>; 2]>,
 }
 
-/// Runs it.
+/// Makes the images repeat.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options, images and files that are refused.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     args.method.check_used()?;
     let mut job = Job::new(context, "tile", &args.image.files);
@@ -158,7 +158,7 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
     let normals = args.normal.iter().map(|path| (path, Kind::Normals));
     let inputs: Vec<_> = images.chain(normals).collect();
     if inputs.is_empty() {
-        return Err(usage("there is no image").hint("name one, or several that belong together"));
+        return Err(usage("missing image").hint("name one, or several that belong together"));
     }
     let paths: Vec<&Path> = inputs.iter().map(|(path, _)| path.as_path()).collect();
     let mut outputs = claim(&paths, args, job)?.into_iter();
@@ -344,11 +344,7 @@ fn reports(
 
 /// Two copies of a map beside and below each other.
 fn doubled(map: &Map) -> Result<Map> {
-    Ok(match map {
-        Map::Value(raster) => Map::Value(twice(raster)?),
-        Map::Color(raster) => Map::Color(twice(raster)?),
-        Map::Normal(raster) => Map::Normal(twice(raster)?),
-    })
+    Ok(map_raster!(map, raster => twice(raster)?))
 }
 
 /// Two copies of a raster beside and below each other.

@@ -16,7 +16,7 @@ Examples:
   dapple watch my-rock.toml -o rock/ --size 2048 --preview
 
 Each save is baked small first, so that something can be seen at once, and then as large as
---size says. What is wrong with a recipe is told, and the files stay as they were. Ctrl-C ends it.";
+--size says. Errors of a recipe are printed, and the files stay as they were. Ctrl-C ends it.";
 
 /// The longer side of the first bake after a save, in pixels.
 const SMALL: u32 = 256;
@@ -44,7 +44,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         // Where nobody waits for it, the process is about to end.
         let _ = sender.send(event);
     });
-    let mut watcher = watcher.context("there is no way to hear of changes of files")?;
+    let mut watcher = watcher.context("changes of files cannot be watched")?;
     let sizes = args.bake.sizes(SMALL);
     let mut may_replace = args.bake.may_replace();
     loop {
@@ -67,7 +67,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
         if !has_changed {
             wait(&changes, &names)?;
         }
-        // What was written in several steps is read once.
+        // A file that is written in several steps is read once.
         while changes.recv_timeout(QUIET).is_ok() {}
         if !context.quiet {
             eprintln_if_possible(&format!("{} has changed", recipe.display()));
@@ -102,7 +102,7 @@ fn wait(changes: &Receiver<notify::Result<Event>>, names: &[OsString]) -> Result
     let mut events = changes.iter();
     match events.find(|event| is_of(event, names)) {
         Some(_) => Ok(()),
-        None => Err(anyhow!("changes of files are not told any more")),
+        None => Err(anyhow!("changes of files are no longer reported")),
     }
 }
 

@@ -59,11 +59,11 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// Runs it.
+/// Draws the noise.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options out of range, and files that cannot be written.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let weights = args.weights();
     let variance: f64 = weights
@@ -112,7 +112,7 @@ fn check_cells(cells: [f64; 2], repeats: [bool; 2], size: Size) -> Result<()> {
     Err(usage(message).hint(other_cells(cells, size)))
 }
 
-/// What would repeat instead of these numbers of cells.
+/// The hint with numbers of cells that repeat.
 fn other_cells(cells: [f64; 2], size: Size) -> String {
     // Along the shorter side, multiples of this give whole even numbers along both.
     let [width, height] = size.0;

@@ -25,9 +25,9 @@ Examples:
 Values are distances in cells. In PNG the range that 998 of 1000 places have becomes black to
 white, measured over the texture and not over the picture; --range says otherwise.";
 
-/// What `--value` takes.
+/// The help of `--value`.
 const VALUE: &str = "\
-What is shown: f1, f2, f3, f4, f2_minus_f1, f1_plus_f2, f3_minus_f1, f3_minus_f2, f4_minus_f1, f4_minus_f3, \
+The value that is drawn: f1, f2, f3, f4, f2_minus_f1, f1_plus_f2, f3_minus_f1, f3_minus_f2, f4_minus_f1, f4_minus_f3, \
 2f3_minus_f2_minus_f1, cell_value (a random gray for each cell), or edge_distance";
 
 /// Draw Worley's cellular basis: distances to the nearest of scattered feature points.
@@ -89,7 +89,7 @@ pub(crate) struct Args {
     )]
     jitter: Option<f64>,
 
-    /// Sum so many octaves, from 1 to 32.
+    /// The number of octaves that are summed, from 1 to 32.
     #[arg(long, value_name = "N", help_heading = "Texture")]
     octaves: Option<u32>,
 
@@ -103,7 +103,7 @@ pub(crate) struct Args {
     )]
     lacunarity: f64,
 
-    /// Whether each octave has its own feature points, or all have the same, as in Worley's paper.
+    /// Whether octaves have feature points of their own, or share them as in Worley's paper.
     #[arg(
         long,
         value_name = "SEEDS",
@@ -114,7 +114,7 @@ pub(crate) struct Args {
     )]
     octave_seeds: OctaveSeeds,
 
-    /// How high an octave is beside the one before, from -1 to 1.
+    /// The amplitude of an octave relative to the one before, from -1 to 1.
     #[arg(
         long,
         visible_alias = "persistence",
@@ -126,11 +126,11 @@ pub(crate) struct Args {
     )]
     gain: f64,
 
-    /// Draw a loop of so many pictures, as a slice through cells of four dimensions.
+    /// The number of pictures of a loop, which is a slice through cells of four dimensions.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Loop")]
     frames: Option<u32>,
 
-    /// How many cells a loop goes: more is faster.
+    /// The number of cells that a loop passes: more is faster.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..), requires = "frames", help_heading = "Loop")]
     loop_cells: u32,
 
@@ -145,11 +145,11 @@ pub(crate) struct Args {
 /// The metrics without an exponent: the straight line, along the axes, and the longer of the two.
 const METRICS: [&str; 3] = ["euclidean", "manhattan", "chebyshev"];
 
-/// Runs it.
+/// Draws the cells.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options out of range, and files that cannot be written.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let node = args.node()?;
     let extent = match args.period {

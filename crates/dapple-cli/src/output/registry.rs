@@ -1,7 +1,7 @@
-//! What this process would leave behind if it ended now: temporary files and new folders.
+//! The temporary files and new folders of this process, which an interrupt removes.
 //!
-//! The handler of Ctrl-C takes all of it away. Whatever makes such a file, or puts it in its place, holds the registry
-//! meanwhile, so that an interrupt comes before or after it.
+//! The handler of Ctrl-C removes all of them. Creating and renaming such a file holds the lock of the registry, so that an
+//! interrupt comes before or after it.
 
 #![expect(
     clippy::disallowed_methods,
@@ -16,7 +16,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 static PATHS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// The registry, for oneself.
+/// The locked registry.
 pub(super) type Held = MutexGuard<'static, Vec<PathBuf>>;
 
 /// Waits for the registry.
@@ -25,7 +25,7 @@ pub(super) fn hold() -> Held {
     PATHS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes a folder that goes again if it is not forgotten.
+/// Creates a folder that is removed on an interrupt until it is forgotten.
 pub(super) fn make_folder(folder: &Path) -> io::Result<()> {
     let mut held = hold();
     fs::create_dir(folder)?;
@@ -38,7 +38,7 @@ pub(super) fn forget(held: &mut Held, path: &Path) {
     held.retain(|other| other != path);
 }
 
-/// Takes everything away that is on the list, and ends the process.
+/// Removes everything on the list, and ends the process.
 pub(crate) fn exit_without_rubbish(exit: Exit) -> ! {
     let held = hold();
     for path in held.iter().rev() {

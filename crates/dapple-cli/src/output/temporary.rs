@@ -51,7 +51,7 @@ impl Temporary {
             return Ok(());
         }
         if let Err(refused) = self.0.persist_noclobber(path) {
-            // Not every file system can rename only to a new name. What is left then is a look before the rename.
+            // Not every file system can rename without replacing. There, the name is checked before the rename.
             if refused.error.kind() == io::ErrorKind::AlreadyExists {
                 return Err(refused.error);
             }
@@ -63,15 +63,15 @@ impl Temporary {
         Ok(())
     }
 
-    /// Takes it away.
+    /// Removes it.
     pub(super) fn remove(self, held: &mut Held) {
         registry::forget(held, self.0.path());
     }
 }
 
-/// Takes away what processes that are no more have left in the folder of `path`.
+/// Removes the temporary files that ended processes have left in the folder of `path`.
 pub(super) fn remove_left_behind(path: &Path) {
-    // What cannot be read here is of no harm, and will be said where it is written.
+    // A folder that cannot be read is reported where the file is written.
     let Ok(entries) = fs::read_dir(folder(path)) else {
         return;
     };

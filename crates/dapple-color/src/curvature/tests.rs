@@ -1,7 +1,8 @@
 //! Curvature: surfaces whose curvature is known, resolution, crops, threads, bad input.
 
 use super::{CurvatureOptions, curvature, curvature_of_part, curvature_to_gray};
-use crate::ColorErrorKind;
+use crate::HeightPlane;
+use crate::plane::checks;
 use dapple_raster::glam::DVec2;
 use dapple_raster::{Raster, Window, Wrap};
 use proptest::prelude::*;
@@ -15,8 +16,10 @@ fn curvature_of(side: u32, radius: f64, height: impl Fn(DVec2) -> f64 + Sync) ->
     let height = Raster::from_window(&Window::unit([side, side]).unwrap(), |at| height(at) as f32);
     let options = CurvatureOptions {
         radius,
-        wrap: [Wrap::Clamp; 2],
-        ..options()
+        plane: HeightPlane {
+            wrap: [Wrap::Clamp; 2],
+            ..HeightPlane::default()
+        },
     };
     curvature(&height.unwrap(), &options).unwrap()
 }
@@ -104,9 +107,11 @@ fn bowls_are_negative_and_strength_turns_the_sign() {
     assert!((bowl + 2.5).abs() < 0.01, "a bowl has {bowl}");
     let ball = Raster::from_window(&Window::unit([128, 128]).unwrap(), |at| ball(at) as f32);
     let dent = CurvatureOptions {
-        strength: -1.0,
         radius: 0.01,
-        ..options()
+        plane: HeightPlane {
+            strength: -1.0,
+            ..HeightPlane::default()
+        },
     };
     assert_eq!(
         middle(curvature(&ball.unwrap(), &dent).unwrap()),
@@ -165,7 +170,7 @@ fn pixels_need_not_be_square() {
     let ball = Raster::from_window(&window, |at| ball(at) as f32).unwrap();
     let options = CurvatureOptions {
         radius: 0.01,
-        ..CurvatureOptions::for_window(&window)
+        ..HeightPlane::for_window(&window).into()
     };
     assert_eq!(
         options.halo([256, 256]),
@@ -190,9 +195,11 @@ fn crops_with_the_halo_have_the_same_bits() {
         (DVec2::new(97.0, 83.0), 2.5),
     ] {
         let whole = CurvatureOptions {
-            extent,
             radius,
-            ..options()
+            plane: HeightPlane {
+                extent,
+                ..HeightPlane::default()
+            },
         };
         let [x, y] = whole.halo(size);
         let crop_size = [part[0] + 2 * x, part[1] + 2 * y];
@@ -200,7 +207,10 @@ fn crops_with_the_halo_have_the_same_bits() {
             .crop([first[0] - x, first[1] - y], crop_size)
             .unwrap();
         let cropped = CurvatureOptions {
-            wrap: [Wrap::Clamp; 2],
+            plane: HeightPlane {
+                wrap: [Wrap::Clamp; 2],
+                ..whole.plane
+            },
             ..whole
         };
         let bent = curvature(&height, &whole)
@@ -250,73 +260,31 @@ fn bad_options_are_refused() {
         let refused = curvature(&hills([4, 4]), &options).unwrap_err();
         refused.kind().clone()
     };
-    for bad in [f64::NAN, f64::INFINITY] {
-        let strength = kind(CurvatureOptions {
-            strength: bad,
-            ..options()
-        });
-        assert!(
-            matches!(strength, ColorErrorKind::NotFinite { .. }),
-            "{strength:?}"
-        );
-        let radius = kind(CurvatureOptions {
-            radius: bad,
-            ..options()
-        });
-        assert!(
-            matches!(radius, ColorErrorKind::NotFinite { .. }),
-            "{radius:?}"
-        );
-    }
-    for radius in [-0.1, 4097.0, f64::MAX] {
-        let refused = kind(CurvatureOptions {
+    checks::bad_planes_are_refused(|plane| kind(plane.into()));
+    checks::bad_radii_are_refused(|radius| {
+        kind(CurvatureOptions {
             radius,
             ..options()
-        });
-        assert!(
-            matches!(refused, ColorErrorKind::Radius { .. }),
-            "{refused:?}"
-        );
-    }
-    let refused = kind(CurvatureOptions {
-        extent: DVec2::ZERO,
-        ..options()
+        })
     });
-    assert!(
-        matches!(refused, ColorErrorKind::Extent { .. }),
-        "{refused:?}"
-    );
 }
 
 #[test]
 fn threads_do_not_change_a_bit() {
     let height = hills([67, 45]);
-    let bits = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let bent = pool
-            .build()
-            .unwrap()
-            .install(|| curvature(&height, &options()));
-        bent.unwrap().map(|bent| bent.to_bits())
-    };
-    let one = bits(1);
-    for threads in [2, 7] {
-        assert_eq!(bits(threads), one, "{threads} threads");
-    }
+    checks::threads_do_not_change_a_bit(|| {
+        let bent = curvature(&height, &options()).unwrap();
+        bent.map(|bent| bent.to_bits())
+    });
 }
 
 #[cfg(feature = "serde")]
 #[test]
 fn options_are_data_and_what_is_not_known_is_refused() {
-    let options = CurvatureOptions {
+    checks::options_are_data(&CurvatureOptions {
         radius: 0.25,
         ..options()
-    };
-    let text = serde_json::to_string(&options).unwrap();
-    let back = serde_json::from_str::<CurvatureOptions>(&text).unwrap();
-    assert_eq!(back, options, "{text}");
-    let error = serde_json::from_str::<CurvatureOptions>(r#"{"radios": 0.25}"#).unwrap_err();
-    assert!(error.to_string().contains("radios"), "{error}");
+    });
 }
 
 #[test]
@@ -344,7 +312,7 @@ proptest! {
         radius in any::<f64>(),
     ) {
         let height = Raster::from_vec([7, 5], heights).unwrap();
-        let wild = CurvatureOptions { strength, extent: extent.into(), radius, ..options() };
+        let wild = CurvatureOptions { radius, plane: HeightPlane { strength, extent: extent.into(), ..HeightPlane::default() } };
         for options in [wild, options()] {
             prop_assert!(options.halo([7, 5])[0] >= 1);
             if let Ok(bent) = curvature(&height, &options) {

@@ -1,7 +1,8 @@
 //! Normal maps: directions, resolution, wrapping, codes, threads.
 
 use super::{Normal, NormalOptions, NormalY, normal_map, normal_map_from_gradient};
-use crate::{Code, ColorErrorKind};
+use crate::plane::checks;
+use crate::{Code, HeightPlane};
 use dapple_raster::glam::DVec2;
 use dapple_raster::{Raster, Window, Wrap};
 use proptest::prelude::*;
@@ -58,10 +59,11 @@ fn a_plane_has_the_normal_of_its_slope() {
     // Height 3 x - 4 y over an extent of 2 × 0.5; away from the edges central differences are exact.
     let window = Window::new(DVec2::ZERO, DVec2::new(2.0, 0.5), [32, 16]).unwrap();
     let plane = Raster::from_window(&window, |at| (3.0 * at.x - 4.0 * at.y) as f32).unwrap();
-    let options = NormalOptions {
+    let options = HeightPlane {
         strength: 0.5,
-        ..NormalOptions::for_window(&window)
-    };
+        ..HeightPlane::for_window(&window)
+    }
+    .into();
     let normal = normal_map(&plane, &options).unwrap().row(7)[9];
     let length = (1.5_f64 * 1.5 + 2.0 * 2.0 + 1.0).sqrt();
     let expected = [-1.5, -2.0, 1.0].map(|part| (part / length) as f32);
@@ -97,11 +99,12 @@ fn the_normals_of_a_tile_are_those_of_the_tiling() {
     let normals = normal_map(&tile, &options()).unwrap();
     let tiled = normal_map(
         &tile.tile([3, 3]).unwrap(),
-        &NormalOptions {
+        &HeightPlane {
             extent: DVec2::splat(3.0),
             wrap: [Wrap::Clamp; 2],
-            ..options()
-        },
+            ..HeightPlane::default()
+        }
+        .into(),
     );
     assert_eq!(
         tiled.unwrap().crop([9, 6], [9, 6]).unwrap(),
@@ -114,9 +117,16 @@ fn the_normals_of_a_tile_are_those_of_the_tiling() {
 fn wrapping_is_per_axis() {
     let ramp = Raster::from_fn([8, 8], |x, y| (x + y) as f32).unwrap();
     let normal = |wrap| {
-        normal_map(&ramp, &NormalOptions { wrap, ..options() })
-            .unwrap()
-            .row(0)[0]
+        normal_map(
+            &ramp,
+            &HeightPlane {
+                wrap,
+                ..HeightPlane::default()
+            }
+            .into(),
+        )
+        .unwrap()
+        .row(0)[0]
     };
     // Around the edge the ramp falls from 7 to 0; clamped, it rises from 0 to 1 over two pixels.
     let repeated = normal([Wrap::Repeat; 2]);
@@ -129,9 +139,11 @@ fn wrapping_is_per_axis() {
 fn exact_slopes_give_the_same_as_options_normal() {
     let slopes = Raster::from_fn([5, 4], |x, y| [x as f32 - 2.0, y as f32 * 0.5]).unwrap();
     let options = NormalOptions {
-        strength: -3.0,
         y: NormalY::DirectX,
-        ..options()
+        plane: HeightPlane {
+            strength: -3.0,
+            ..HeightPlane::default()
+        },
     };
     let normals = normal_map_from_gradient(&slopes, &options).unwrap();
     let oracle = slopes.map(|&[x, y]| {
@@ -147,37 +159,11 @@ fn exact_slopes_give_the_same_as_options_normal() {
 }
 
 #[test]
-fn bad_options_are_refused() {
-    let kind = |options: NormalOptions| {
-        normal_map(&hills([4, 4]), &options)
-            .unwrap_err()
-            .kind()
-            .clone()
-    };
-    for strength in [f64::NAN, f64::INFINITY] {
-        let refused = kind(NormalOptions {
-            strength,
-            ..options()
-        });
-        assert!(
-            matches!(refused, ColorErrorKind::NotFinite { .. }),
-            "{refused:?}"
-        );
-    }
-    for extent in [
-        DVec2::ZERO,
-        DVec2::new(1.0, -1.0),
-        DVec2::new(f64::NAN, 1.0),
-    ] {
-        let refused = kind(NormalOptions {
-            extent,
-            ..options()
-        });
-        assert!(
-            matches!(refused, ColorErrorKind::Extent { .. }),
-            "{refused:?}"
-        );
-    }
+fn bad_planes_are_refused() {
+    checks::bad_planes_are_refused(|plane| {
+        let refused = normal_map(&hills([4, 4]), &plane.into()).unwrap_err();
+        refused.kind().clone()
+    });
 }
 
 #[test]
@@ -193,18 +179,10 @@ fn heights_that_are_not_finite_have_flat_neighbors() {
 #[test]
 fn threads_do_not_change_a_bit() {
     let height = hills([67, 45]);
-    let bits = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let normals = pool
-            .build()
-            .unwrap()
-            .install(|| normal_map(&height, &options()).unwrap());
+    checks::threads_do_not_change_a_bit(|| {
+        let normals = normal_map(&height, &options()).unwrap();
         normals.map(|normal| normal.to_array().map(f32::to_bits))
-    };
-    let one = bits(1);
-    for threads in [2, 7] {
-        assert_eq!(bits(threads), one, "{threads} threads");
-    }
+    });
 }
 
 #[test]
@@ -222,7 +200,8 @@ proptest! {
         slope in [-1e6_f32..1e6, -1e6_f32..1e6],
         strength in -100.0_f64..100.0,
     ) {
-        let normal = NormalOptions { strength, ..options() }.normal(DVec2::new(slope[0].into(), slope[1].into()));
+        let normal = NormalOptions::from(HeightPlane { strength, ..HeightPlane::default() })
+            .normal(DVec2::new(slope[0].into(), slope[1].into()));
         let [x, y, z] = normal.to_array().map(f64::from);
         // Each part is rounded to `f32` once, by at most 6e-8.
         prop_assert!((x * x + y * y + z * z - 1.0).abs() < 4e-7);

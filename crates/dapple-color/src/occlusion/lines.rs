@@ -62,7 +62,7 @@ impl Heights {
         let margin = reach(rays)[0].max(1);
         let span = size[0].next_multiple_of(LANES as u32);
         let mut padded = Raster::filled([span.saturating_add(2 * margin), size[1]], 0.0)?;
-        let wrap_x = options.wrap[0];
+        let wrap_x = options.plane.wrap[0];
         plane::fill_rows(&mut padded, |row, values| {
             let source = height.row(row);
             let first = -i64::from(margin);
@@ -72,17 +72,17 @@ impl Heights {
                 *value = if height.is_finite() { height } else { f32::NAN };
             }
         });
-        let slope = options.strength / (2.0 * plane::pixel(options.extent, whole));
+        let slope = options.plane.strength / (2.0 * options.plane.pixel(whole));
         Ok(Self {
             padded,
-            wrap_y: options.wrap[1],
+            wrap_y: options.plane.wrap[1],
             margin: margin as i32,
             span: span as usize,
             scale: [slope.x as f32, slope.y as f32],
         })
     }
 
-    /// What lies so many columns and rows from a row of pixels.
+    /// The heights at an offset in columns and rows from a row of pixels.
     fn line(&self, row: u32, [x, y]: [i32; 2]) -> &[f32] {
         let row = i64::from(row) + i64::from(y);
         let row = plane::index(self.wrap_y, row, self.padded.height());

@@ -37,7 +37,7 @@ const STEPS_TO_DOUBLE: u32 = 8;
 /// Places across a ray are multiples of this part of a pixel: the same for every window, whatever its extent rounds to.
 const PARTS: f64 = (1 << 20) as f64;
 
-/// What is seen in one azimuth.
+/// The places that are looked at in one azimuth.
 #[derive(Clone, Debug)]
 pub(super) struct Ray {
     /// The unit vector of the plane.
@@ -51,7 +51,7 @@ pub(super) struct Ray {
 pub(super) struct Sample {
     /// Columns and rows from the pixel at the start of the ray.
     pub(super) near: [i32; 2],
-    /// The same, for the other pixel.
+    /// Columns and rows from the start of the ray to the other of the two pixels.
     pub(super) far: [i32; 2],
     /// How far it is from `near` to `far`, from 0 to below 1.
     pub(super) part: f32,
@@ -118,7 +118,7 @@ fn samples(options: &OcclusionOptions, direction: DVec2, pixel: DVec2) -> Vec<Sa
     steps(last).into_iter().map(sample).collect()
 }
 
-/// What is left after this part of the radius.
+/// The effect of a height at this part of the radius, from 1 to 0.
 fn weight(part: f64, fade: f64) -> f32 {
     if part <= 1.0 - fade {
         1.0

@@ -1,7 +1,8 @@
 //! Ambient occlusion: crops, turns, resolution, fading, levels, threads, bad input.
 
 use super::{OcclusionOptions, ambient_occlusion, ambient_occlusion_of_part, occlusion_at};
-use crate::ColorErrorKind;
+use crate::plane::checks;
+use crate::{ColorErrorKind, HeightPlane};
 use dapple_raster::glam::DVec2;
 use dapple_raster::simd::for_every_level;
 use dapple_raster::{Raster, Window, Wrap};
@@ -16,11 +17,13 @@ fn options() -> OcclusionOptions {
 /// The options for pixels of 1 × 1 without repeats, so that lengths are in pixels.
 fn in_pixels(size: [u32; 2], radius: f64) -> OcclusionOptions {
     OcclusionOptions {
-        extent: DVec2::new(size[0].into(), size[1].into()),
-        wrap: [Wrap::Clamp; 2],
         radius,
         fade: 0.0,
-        ..options()
+        plane: HeightPlane {
+            extent: DVec2::new(size[0].into(), size[1].into()),
+            wrap: [Wrap::Clamp; 2],
+            ..HeightPlane::default()
+        },
     }
 }
 
@@ -45,8 +48,11 @@ fn crops_with_the_halo_have_the_same_bits() {
         (DVec2::new(97.0, 83.0), 0.5),
     ] {
         let whole = OcclusionOptions {
-            extent,
             radius,
+            plane: HeightPlane {
+                extent,
+                ..HeightPlane::default()
+            },
             ..options()
         };
         let [x, y] = whole.halo(size);
@@ -55,7 +61,10 @@ fn crops_with_the_halo_have_the_same_bits() {
             .crop([first[0] - x, first[1] - y], crop_size)
             .unwrap();
         let cropped = OcclusionOptions {
-            wrap: [Wrap::Clamp; 2],
+            plane: HeightPlane {
+                wrap: [Wrap::Clamp; 2],
+                ..whole.plane
+            },
             ..whole
         };
         let seen = ambient_occlusion(&height, &whole)
@@ -79,7 +88,10 @@ fn the_halo_is_the_radius_in_pixels() {
     let halo = |radius, extent| {
         OcclusionOptions {
             radius,
-            extent,
+            plane: HeightPlane {
+                extent,
+                ..HeightPlane::default()
+            },
             ..options()
         }
         .halo([100, 50])
@@ -104,13 +116,19 @@ fn a_quarter_turn_turns_the_map() {
     let turned = Raster::from_fn([31, 24], |x, y| height.row(30 - x)[y as usize]).unwrap();
     let extent = DVec2::new(1.0, 1.6);
     let options = OcclusionOptions {
-        extent,
         radius: 0.4,
+        plane: HeightPlane {
+            extent,
+            ..HeightPlane::default()
+        },
         ..options()
     };
     let seen = ambient_occlusion(&height, &options).unwrap();
     let options = OcclusionOptions {
-        extent: DVec2::new(extent.y, extent.x),
+        plane: HeightPlane {
+            extent: DVec2::new(extent.y, extent.x),
+            ..options.plane
+        },
         ..options
     };
     let seen_turned = ambient_occlusion(&turned, &options).unwrap();
@@ -161,8 +179,11 @@ fn occlusion_does_not_change_with_resolution() {
         let hill = |at: DVec2| (wave((3.0 * at.x).fract()) * wave((2.0 * at.y).fract())) as f32;
         let height = Raster::from_window(&Window::unit([side, side]).unwrap(), hill).unwrap();
         let options = OcclusionOptions {
-            strength: 0.3,
             radius: 0.125,
+            plane: HeightPlane {
+                strength: 0.3,
+                ..HeightPlane::default()
+            },
             ..options()
         };
         ambient_occlusion(&height, &options).unwrap()
@@ -207,52 +228,17 @@ fn bad_options_are_refused() {
         let refused = ambient_occlusion(&rubble([4, 4]), &options).unwrap_err();
         refused.kind().clone()
     };
-    for bad in [f64::NAN, f64::INFINITY] {
-        let strength = kind(OcclusionOptions {
-            strength: bad,
-            ..options()
-        });
-        assert!(
-            matches!(strength, ColorErrorKind::NotFinite { .. }),
-            "{strength:?}"
-        );
-        let radius = kind(OcclusionOptions {
-            radius: bad,
-            ..options()
-        });
-        assert!(
-            matches!(radius, ColorErrorKind::NotFinite { .. }),
-            "{radius:?}"
-        );
-    }
-    for radius in [-0.1, 4097.0, f64::MAX] {
-        let refused = kind(OcclusionOptions {
+    checks::bad_planes_are_refused(|plane| kind(plane.into()));
+    checks::bad_radii_are_refused(|radius| {
+        kind(OcclusionOptions {
             radius,
             ..options()
-        });
-        assert!(
-            matches!(refused, ColorErrorKind::Radius { .. }),
-            "{refused:?}"
-        );
-    }
+        })
+    });
     for fade in [-0.1, 1.1, f64::NAN] {
         let refused = kind(OcclusionOptions { fade, ..options() });
         assert!(
             matches!(refused, ColorErrorKind::Fade { .. }),
-            "{refused:?}"
-        );
-    }
-    for extent in [
-        DVec2::ZERO,
-        DVec2::new(1.0, -1.0),
-        DVec2::new(f64::NAN, 1.0),
-    ] {
-        let refused = kind(OcclusionOptions {
-            extent,
-            ..options()
-        });
-        assert!(
-            matches!(refused, ColorErrorKind::Extent { .. }),
             "{refused:?}"
         );
     }
@@ -271,35 +257,26 @@ fn levels_and_threads_do_not_change_a_bit() {
         let seen = occlusion_at(level, &height, height.size(), &options).unwrap();
         assert_eq!(bits(seen), expected, "{level:?}");
     });
-    for threads in [1, 2, 7] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let seen = pool
-            .build()
-            .unwrap()
-            .install(|| ambient_occlusion(&height, &options));
-        assert_eq!(bits(seen.unwrap()), expected, "{threads} threads");
-    }
+    checks::threads_do_not_change_a_bit(|| bits(ambient_occlusion(&height, &options).unwrap()));
 }
 
 #[cfg(feature = "serde")]
 #[test]
 fn options_are_data_and_what_is_not_known_is_refused() {
-    let options = OcclusionOptions {
+    checks::options_are_data(&OcclusionOptions {
         radius: 0.25,
         ..options()
-    };
-    let text = serde_json::to_string(&options).unwrap();
-    let back = serde_json::from_str::<OcclusionOptions>(&text).unwrap();
-    assert_eq!(back, options, "{text}");
-    let error = serde_json::from_str::<OcclusionOptions>(r#"{"radios": 0.25}"#).unwrap_err();
-    assert!(error.to_string().contains("radios"), "{error}");
+    });
 }
 
 #[test]
 fn value_stability_ambient_occlusion() {
     let options = OcclusionOptions {
-        strength: 0.2,
         radius: 0.5,
+        plane: HeightPlane {
+            strength: 0.2,
+            ..HeightPlane::default()
+        },
         ..options()
     };
     let seen = ambient_occlusion(&rubble([20, 20]), &options).unwrap();
@@ -321,7 +298,7 @@ proptest! {
         (radius, fade) in (any::<f64>(), 0.0..=1.0),
     ) {
         let height = Raster::from_vec([7, 5], heights).unwrap();
-        let wild = OcclusionOptions { strength, extent: extent.into(), radius, fade, ..options() };
+        let wild = OcclusionOptions { radius, fade, plane: HeightPlane { strength, extent: extent.into(), ..HeightPlane::default() } };
         let tame = OcclusionOptions { radius: 0.5, ..options() };
         for options in [wild, tame] {
             prop_assert!(options.halo([7, 5])[0] >= 1);

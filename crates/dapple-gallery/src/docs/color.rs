@@ -4,7 +4,7 @@ use super::picture::{BANNER, COLORS, GRAYS, banner_of, colored, rounded, shaded}
 use super::{Documented, Strip};
 use crate::Panel;
 use dapple_color::{
-    ColorRamp, LinearRgb, Normal, NormalOptions, NormalY, Outside, Palette, normal_map,
+    ColorRamp, HeightPlane, LinearRgb, Normal, NormalOptions, NormalY, Outside, Palette, normal_map,
 };
 use dapple_color::{ColorStop, Interpolation};
 use dapple_raster::{Field, Raster, Window, Wrap};
@@ -165,7 +165,10 @@ fn painted(label: &str, palette: Palette, height: &Raster<f32>) -> Panel {
 
 fn normals(label: &str, height: &Raster<f32>, options: &NormalOptions) -> anyhow::Result<Panel> {
     let options = NormalOptions {
-        wrap: [Wrap::Repeat; 2],
+        plane: HeightPlane {
+            wrap: [Wrap::Repeat; 2],
+            ..options.plane
+        },
         ..*options
     };
     let normals = normal_map(height, &options)?;

@@ -16,7 +16,7 @@ mod polygonize;
 
 use super::fractal::FractalNoise;
 use crate::{Panel, Paper};
-use dapple_color::{ColorRamp, LinearRgb, NormalOptions, NormalY, normal_map};
+use dapple_color::{ColorRamp, HeightPlane, LinearRgb, NormalOptions, NormalY, normal_map};
 use dapple_preview::{Scene, Supersampling};
 use dapple_pups::hash::Seed;
 use dapple_raster::{Raster, Window, Wrap};
@@ -63,10 +63,12 @@ fn slice(texture: Cellular<3>, cells: f64, size: [u32; 2]) -> anyhow::Result<Ras
 fn relief(height: &Raster<f32>, ramp: &ColorRamp, depth: f64) -> anyhow::Result<Raster<LinearRgb>> {
     let [width, rows] = height.size().map(f64::from);
     let options = NormalOptions {
-        strength: depth,
-        extent: DVec2::new(1.0, rows / width),
-        wrap: [Wrap::Mirror; 2],
         y: NormalY::OpenGl,
+        plane: HeightPlane {
+            strength: depth,
+            extent: DVec2::new(1.0, rows / width),
+            wrap: [Wrap::Mirror; 2],
+        },
     };
     let normals = normal_map(height, &options)?;
     let toward = DVec3::new(-0.5, 0.6, 0.75).normalize();

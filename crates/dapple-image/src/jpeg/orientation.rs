@@ -23,7 +23,7 @@ impl Default for Orientation {
 }
 
 impl Orientation {
-    /// What the bytes say, which begin with the TIFF header.
+    /// The orientation in bytes that begin with the TIFF header.
     pub(super) fn from_exif(exif: &[u8]) -> Self {
         match find(exif) {
             Some(number @ 1..=8) => Self(number),

@@ -3,7 +3,7 @@
 use super::Transfer;
 use dapple_raster::Raster;
 
-/// What a PNG file holds.
+/// The content of a PNG file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PngImage {
     /// The pixels.

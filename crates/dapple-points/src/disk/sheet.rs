@@ -111,7 +111,7 @@ impl Sheet {
         [points.to_bitmask(), above.to_bitmask()]
     }
 
-    /// What the place of `cell` is in conflict with.
+    /// The conflict of a point in `cell`.
     #[inline(always)]
     pub(crate) fn rivals<S: Simd>(&self, simd: S, grid: &Grid, cell: Cell) -> Rivals {
         let middle = grid.index(cell);
@@ -131,7 +131,7 @@ impl Sheet {
     }
 }
 
-/// What a proposal is in conflict with.
+/// The conflict of a proposed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rivals {
     /// A point, and perhaps proposals.

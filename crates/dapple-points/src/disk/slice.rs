@@ -20,7 +20,7 @@ pub(crate) struct Proposal {
     pub(crate) verdict: Verdict,
 }
 
-/// What is known about a proposal.
+/// The state of a proposed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
     Accepted,

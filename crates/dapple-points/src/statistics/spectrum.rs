@@ -206,7 +206,7 @@ fn unit_frequency(sets: &[PointSet]) -> Result<f64, PointsError> {
     Ok((n_points / sets.len() as f64 / first.domain().area()).sqrt())
 }
 
-/// What a ring adds up.
+/// The sums of a ring.
 #[derive(Clone, Copy, Debug, Default)]
 struct RingSums {
     count: u32,

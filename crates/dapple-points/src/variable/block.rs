@@ -44,13 +44,13 @@ pub(super) struct Local {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Neighbor {
     pub(super) block: u32,
-    /// What brings its points to where they are near.
+    /// The shift that brings its points near the block.
     pub(super) shift: DVec2,
     /// How many of its points are known here.
     pub(super) seen: usize,
 }
 
-/// What all blocks share.
+/// The domain, radius and rule that all blocks share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setting<'a> {
     pub(super) field: RadiusField<'a>,
@@ -66,9 +66,9 @@ pub(super) struct Block {
     pub(super) neighbors: Vec<Neighbor>,
     /// The points that this block has placed.
     pub(super) samples: Vec<Sample>,
-    /// Those, and the ones around.
+    /// The points of this block and of those around it.
     pub(super) locals: Vec<Local>,
-    /// The first thing that went wrong.
+    /// The first error.
     pub(super) error: Option<PointsError>,
     /// The columns and rows of the cells without a point, in random order.
     pub(super) open: Vec<[u16; 2]>,
@@ -87,7 +87,7 @@ pub(super) struct Block {
     slots: Vec<u32>,
     /// Points without a cell of their own.
     aside: Vec<u32>,
-    /// A buffer.
+    /// Scratch memory.
     found: Vec<u32>,
 }
 

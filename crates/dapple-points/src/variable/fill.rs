@@ -44,7 +44,7 @@ struct Part {
     center: DVec2,
     /// The radius is at least this.
     least: f64,
-    /// How much more it may be.
+    /// The most by which the radius may exceed `least`.
     slack: f64,
 }
 

@@ -94,7 +94,7 @@ pub fn gentle_radius_for_count(
     })
 }
 
-/// The most places.
+/// The largest number of places.
 const PLACES_MAX: u64 = 1 << 26;
 
 /// Places of a domain, in columns and rows.

@@ -27,7 +27,7 @@ const MOST_RATIO: f64 = 1.5;
 /// By how much a slope between lattice places may exceed the slopes along them.
 const SLOPE_MARGIN: f64 = 1.5;
 
-/// What rounding may add to the diagonal of a cell, with much to spare.
+/// The most that rounding may add to the diagonal of a cell, with room to spare.
 const ROUNDING: f64 = 1e-9;
 
 /// A rectangle with its radii, relative to the origin of the domain.
@@ -57,7 +57,7 @@ impl Leaf {
     }
 }
 
-/// What is known about the radius in a rectangle.
+/// The range and slope of the radius in a rectangle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Radii {
     /// The radius is at least this, as far as the slope between the places read is no larger than along them.
@@ -135,7 +135,7 @@ impl RadiusField<'_> {
         Ok((leaf, n_points))
     }
 
-    /// What the radius does in a rectangle, and about how many points that makes.
+    /// The range of the radius in a rectangle, and about how many points lie there.
     fn survey(&self, min: DVec2, size: DVec2) -> Result<(Radii, Lattice, f64), PointsError> {
         if let Varying::Constant(_) = self.radius {
             let radius = self.at(self.domain.origin + min)?;

@@ -1,25 +1,22 @@
 //! How far apart two points must be whose radii differ.
 
-/// How far apart two points must be whose radii differ.
-///
-/// The rules are symmetric, so that it does not matter which of the two points was there first. The names of the
-/// rules follow Mitchell, Rand, Ebeida and Bajaj, "Variable Radii Poisson-Disk Sampling", CCCG 2012.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-#[non_exhaustive]
-pub enum DiskRule {
-    /// The mean of the two radii; the default. The density follows the radius best: it stays within 5 % of
-    /// 0.697 / radius² on slopes up to 0.35.
-    #[default]
-    Average,
-    /// The larger of the two: no disc of either point holds the other. Steep slopes get up to 15 % fewer points.
-    Larger,
-    /// The smaller of the two. Steep slopes get up to 20 % more points.
-    Smaller,
+dapple_raster::named! {
+    /// How far apart two points must be whose radii differ.
+    ///
+    /// The rules are symmetric, so that it does not matter which of the two points was there first. The names of the
+    /// rules follow Mitchell, Rand, Ebeida and Bajaj, "Variable Radii Poisson-Disk Sampling", CCCG 2012.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
+    pub enum DiskRule {
+        /// The mean of the two radii; the default. The density follows the radius best: it stays within 5 % of
+        /// 0.697 / radius² on slopes up to 0.35.
+        #[default]
+        Average = "average",
+        /// The larger of the two: no disc of either point holds the other. Steep slopes get up to 15 % fewer points.
+        Larger = "larger",
+        /// The smaller of the two. Steep slopes get up to 20 % more points.
+        Smaller = "smaller",
+    }
 }
 
 impl DiskRule {

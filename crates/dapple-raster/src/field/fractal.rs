@@ -33,22 +33,19 @@ pub struct Fractal<F> {
     shape: FractalShape,
 }
 
-/// What becomes of the values of an octave before they are summed; all three are made for values about 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-#[non_exhaustive]
-pub enum FractalShape {
-    /// The values as they are: fractional Brownian motion.
-    #[default]
-    Sum,
-    /// `1 - |value|`: ridges where values go through 0.
-    Ridged,
-    /// `|value|`: creases there, and round hills between them; Perlin called it turbulence.
-    Billow,
+crate::named! {
+    /// What becomes of the values of an octave before they are summed; all three are made for values about 0.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
+    pub enum FractalShape {
+        /// The values as they are: fractional Brownian motion.
+        #[default]
+        Sum = "sum",
+        /// `1 - |value|`: ridges where values go through 0.
+        Ridged = "ridged",
+        /// `|value|`: creases there, and round hills between them; Perlin called it turbulence.
+        Billow = "billow",
+    }
 }
 
 impl FractalShape {

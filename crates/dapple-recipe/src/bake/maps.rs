@@ -3,7 +3,7 @@
 use super::heights::Margined;
 use crate::{Plan, RecipeError, Values, Whole};
 use dapple_color::{
-    CurvatureOptions, LinearRgb, Normal, NormalOptions, OcclusionOptions,
+    CurvatureOptions, HeightPlane, LinearRgb, Normal, NormalOptions, OcclusionOptions,
     ambient_occlusion_of_part, curvature_of_part, curvature_to_gray, normal_map_of_part,
 };
 use dapple_raster::{Raster, Window, Wrap};
@@ -139,7 +139,16 @@ impl MapRows {
     }
 }
 
-/// A plan's choices for ambient occlusion. What lies past the margin does not matter.
+/// How the heights of a plan lie in the plane. What lies past the margin does not matter.
+fn height_plane(plan: &Plan) -> HeightPlane {
+    HeightPlane {
+        strength: plan.material().relief,
+        extent: plan.extent(),
+        wrap: [Wrap::Clamp; 2],
+    }
+}
+
+/// A plan's choices for ambient occlusion.
 pub(super) fn occlusion_options(plan: &Plan) -> Result<OcclusionOptions, RecipeError> {
     let material = plan.material();
     let radius = material
@@ -153,10 +162,8 @@ pub(super) fn occlusion_options(plan: &Plan) -> Result<OcclusionOptions, RecipeE
         "above 0 and at most the extent",
     )?;
     Ok(OcclusionOptions {
-        strength: material.relief,
-        extent: plan.extent(),
-        wrap: [Wrap::Clamp; 2],
         radius,
+        plane: height_plane(plan),
         ..OcclusionOptions::default()
     })
 }
@@ -175,10 +182,8 @@ pub(super) fn curvature_options(plan: &Plan) -> Result<CurvatureOptions, RecipeE
         "above 0 and at most the extent",
     )?;
     Ok(CurvatureOptions {
-        strength: material.relief,
-        extent: plan.extent(),
-        wrap: [Wrap::Clamp; 2],
         radius,
+        plane: height_plane(plan),
     })
 }
 
@@ -280,10 +285,8 @@ impl Around<'_> {
     fn normal(&self) -> Result<Raster<Normal>, RecipeError> {
         let material = self.plan.material();
         let options = NormalOptions {
-            strength: material.relief,
-            extent: self.plan.extent(),
-            wrap: [Wrap::Clamp; 2],
             y: material.normal_y,
+            plane: height_plane(self.plan),
         };
         let normals = normal_map_of_part(self.margined()?, self.tile, &options)?;
         Ok(normals.crop(self.heights.halo, self.size)?)

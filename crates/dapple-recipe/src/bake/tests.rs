@@ -456,7 +456,7 @@ fn a_ramp_mixes_in_the_space_that_it_names_and_else_in_oklab() {
 
 #[test]
 fn normals_wrap_where_the_recipe_does() {
-    use dapple_color::{NormalOptions, normal_map};
+    use dapple_color::{HeightPlane, normal_map};
     // A coordinate does not repeat.
     let plan = plan(&ALL_NODES.replace("along = [0.25, 0.0]", "along = [0.0, 0.0]"));
     let size = [64, 48];
@@ -470,13 +470,12 @@ fn normals_wrap_where_the_recipe_does() {
     let [(_, MapRows::Gray(height)), (_, MapRows::Normal(normals))] = &band.maps[..] else {
         panic!("two maps");
     };
-    let options = NormalOptions {
+    let plane = HeightPlane {
         strength: 0.1,
         extent: plan.extent(),
         wrap: [Wrap::Repeat; 2],
-        ..NormalOptions::default()
     };
-    let expected = normal_map(height, &options).unwrap();
+    let expected = normal_map(height, &plane.into()).unwrap();
     let inside = [1, 1];
     let part = [62, 46];
     assert_eq!(

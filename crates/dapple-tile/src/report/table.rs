@@ -6,7 +6,7 @@ use core::fmt;
 /// How wide a cell is: `1.02 ± 0.05`, or a ratio as large as they come.
 const CELL: usize = 16;
 
-/// What stands where nothing was measured.
+/// The entry of a quantity that was not measured.
 const NOTHING: &str = "-";
 
 impl fmt::Display for SeamReport {

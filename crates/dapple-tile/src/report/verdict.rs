@@ -23,7 +23,7 @@ const CLIPPED: f64 = 0.004;
 /// The width of the means in which a seam must have been measured at least, in pixels.
 const LEAST_WIDTH: u32 = 4;
 
-/// What is wrong with a tile.
+/// A fault of a tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Fault {
@@ -38,7 +38,7 @@ pub enum Fault {
     Soft,
     /// Contrast was lost at all scales, as where two pictures lie over each other.
     Ghosts,
-    /// What lies at the seam is unlike anything in the source.
+    /// The pixels at the seam are unlike any in the source.
     Strange,
     /// Samples were cut off at 0 or 1.
     Clipped {
@@ -66,7 +66,7 @@ impl fmt::Display for Fault {
 }
 
 impl SeamReport {
-    /// All that is wrong with the tile; nothing if it [passes](Self::passes).
+    /// The faults of the tile; none if it [passes](Self::passes).
     ///
     /// Without a source only steps are looked for. A wrap that shows less than the boundaries inside is no fault.
     #[must_use]

@@ -95,7 +95,7 @@ impl Place {
         (self.cell + (1_u64 << 52) as f64).to_bits() as u32 as usize
     }
 
-    /// What the coefficients of the cell before, of the cell and of the cell after weigh: a quadratic B-spline.
+    /// The weights of the coefficients of the cell before, of the cell and of the cell after: a quadratic B-spline.
     #[inline(always)]
     pub(super) fn weights(self) -> [f32; 3] {
         let after = self.fraction as f32;

@@ -13,7 +13,7 @@ pub(super) struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    /// So many recipes, none of which has failed yet.
+    /// A run over this number of recipes, none of which has failed yet.
     pub(super) fn new(n_recipes: usize, keep_going: bool, context: &'a Context) -> Self {
         Self {
             n_recipes,
@@ -23,7 +23,7 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// What a recipe gave, or nothing after an error that was told and does not end the others.
+    /// The result of a recipe, or `None` after an error that was printed and does not end the run.
     ///
     /// # Errors
     ///
@@ -43,7 +43,7 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Says how many were baked.
+    /// Prints how many were baked, and returns the exit code.
     pub(super) fn exit(&self) -> Exit {
         if self.n_recipes > 1 && !self.context.quiet {
             let n_baked = self.n_recipes - self.n_failed;

@@ -100,7 +100,7 @@ fn image(layers: Layers, asked: Option<Format>, target: &Target) -> Result<Image
     Ok(Image { layers, format })
 }
 
-/// Claims the picture in light, which is a PNG where the maps are no images.
+/// Claims the lit preview, which is a PNG where the maps are not images.
 fn claim_preview(args: &Args, target: Target, job: &mut Job<'_>) -> Result<(OutputIdx, Format)> {
     let target = match target.ending().as_str() {
         "png" | "exr" => target,

@@ -40,7 +40,7 @@ pub(super) fn glb(recipe: &Recipe, images: Vec<Vec<u8>>) -> Result<Vec<u8>> {
     Ok(gltf::write(&model)?)
 }
 
-/// What a map is in a document of MaterialX.
+/// The image and input of a map in a document of MaterialX.
 struct Wire {
     kind: MapKind,
     /// The name of its image.
@@ -163,7 +163,7 @@ fn image_node(wire: &Wire, file: &str) -> String {
     text
 }
 
-/// The height, moved by so many meters for a 1.
+/// The displacement by the height, with the meters of a height of 1.
 fn displacement(relief: f64) -> String {
     format!(
         r#"  <displacement name="displacement" type="displacementshader">

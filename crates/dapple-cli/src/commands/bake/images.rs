@@ -10,7 +10,7 @@ use dapple::color::NormalY;
 use dapple::recipe::MapKind;
 use std::path::Path;
 
-/// The maps if none are asked for.
+/// The default maps.
 const USUAL: [MapKind; 5] = [
     MapKind::Height,
     MapKind::Normal,
@@ -37,7 +37,7 @@ impl Args {
         self.document() == Some(Document::Glb)
     }
 
-    /// Refuses what a document cannot be.
+    /// Refuses options that a document does not have.
     ///
     /// # Errors
     ///

@@ -1,10 +1,10 @@
-//! What programs take: which images, what their channels hold, and how they are written.
+//! Presets of programs: which images they take, the content of their channels, and their formats.
 //!
 //! References: each program's own documentation, beside its row in [`PRESETS`].
 
 use crate::encode::Format;
 use crate::layers::{Channel, Image, Layers};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use crate::words::Word;
 use dapple::color::NormalY;
 use dapple::recipe::MapKind;
 use serde::{Serialize, Serializer};
@@ -14,9 +14,9 @@ use std::fmt::Write as _;
 #[derive(Debug, PartialEq)]
 pub(super) struct Preset {
     pub(super) name: &'static str,
-    /// What takes them, for the help.
+    /// The help.
     about: &'static str,
-    /// What the names of its files begin with in a folder.
+    /// The prefix of the names of its files in a folder.
     pub(super) prefix: &'static str,
     pub(super) normal_y: NormalY,
     pub(super) images: &'static [PresetImage],
@@ -26,7 +26,7 @@ pub(super) struct Preset {
 /// An image of a preset.
 #[derive(Debug, PartialEq)]
 pub(super) struct PresetImage {
-    /// What its name has after that of the material: `NAME_PART.png`.
+    /// The part of its name after that of the material: `NAME_PART.png`.
     pub(super) part: &'static str,
     pub(super) image: Image,
 }
@@ -91,6 +91,16 @@ const GLTF: &[PresetImage] = &[
     eight("normal", Layers::Map(MapKind::Normal)),
 ];
 
+/// Images alone, without a prefix, with green up in normal maps.
+const PLAIN: Preset = Preset {
+    name: "",
+    about: "",
+    prefix: "",
+    normal_y: NormalY::OpenGl,
+    images: &[],
+    document: None,
+};
+
 /// All presets, in the order of the help.
 pub(super) static PRESETS: [Preset; 7] = [
     // Unity Manual, "Assign a channel-packed texture to a URP material" and "Lit Shader"; High Definition RP, "Mask and
@@ -98,8 +108,6 @@ pub(super) static PRESETS: [Preset; 7] = [
     Preset {
         name: "unity",
         about: "Unity: the mask map of HDRP and URP, and metallic with smoothness of the built-in pipeline",
-        prefix: "",
-        normal_y: NormalY::OpenGl,
         images: &[
             eight("BaseMap", Layers::Map(MapKind::Albedo)),
             eight("Normal", Layers::Map(MapKind::Normal)),
@@ -108,7 +116,7 @@ pub(super) static PRESETS: [Preset; 7] = [
             eight("Occlusion", Layers::Map(MapKind::Occlusion)),
             sixteen("Height", Layers::Map(MapKind::Height)),
         ],
-        document: None,
+        ..PLAIN
     },
     // Unreal Engine documentation, "Normal Maps" (green points down), "Recommended Asset Naming Conventions" (`T_`).
     Preset {
@@ -122,47 +130,40 @@ pub(super) static PRESETS: [Preset; 7] = [
             eight("ORM", Layers::Map(MapKind::Orm)),
             sixteen("Height", Layers::Map(MapKind::Height)),
         ],
-        document: None,
+        ..PLAIN
     },
     // Godot documentation, "Standard Material 3D and ORM Material 3D"; "Importing images" (OpenGL normals).
     Preset {
         name: "godot",
         about: "Godot: an ORMMaterial3D",
-        prefix: "",
-        normal_y: NormalY::OpenGl,
         images: &[
             eight("albedo", Layers::Map(MapKind::Albedo)),
             eight("normal", Layers::Map(MapKind::Normal)),
             eight("orm", Layers::Map(MapKind::Orm)),
             sixteen("height", Layers::Map(MapKind::Height)),
         ],
-        document: None,
+        ..PLAIN
     },
     // Khronos Group, "glTF 2.0 Specification", 3.9 "Materials".
     Preset {
         name: "gltf",
         about: "The textures of a glTF material",
-        prefix: "",
-        normal_y: NormalY::OpenGl,
         images: GLTF,
-        document: None,
+        ..PLAIN
     },
-    // The same, in one file; 4.4 "Binary glTF".
+    // "glTF 2.0 Specification", 4.4 "Binary glTF".
     Preset {
         name: "glb",
         about: "A plane of glTF with these textures in one file; also -o NAME.glb",
-        prefix: "",
-        normal_y: NormalY::OpenGl,
         images: GLTF,
         document: Some(Document::Glb),
+        ..PLAIN
     },
     // Blender Manual, "Principled BSDF", "Normal Map Node", and "Node Wrangler", whose Principled Texture Setup finds
     // images by these parts of their names.
     Preset {
         name: "blender",
         about: "Blender: an image for each input, by names that Node Wrangler finds",
-        prefix: "",
-        normal_y: NormalY::OpenGl,
         images: &[
             eight("basecolor", Layers::Map(MapKind::Albedo)),
             sixteen("roughness", Layers::Map(MapKind::Roughness)),
@@ -171,14 +172,12 @@ pub(super) static PRESETS: [Preset; 7] = [
             sixteen("height", Layers::Map(MapKind::Height)),
             sixteen("ao", Layers::Map(MapKind::Occlusion)),
         ],
-        document: None,
+        ..PLAIN
     },
     // "MaterialX Specification" and "MaterialX Standard Nodes", 1.38: `standard_surface`, `normalmap`, `displacement`.
     Preset {
         name: "materialx",
         about: "A MaterialX standard_surface, NAME.mtlx, and its images; also -o NAME.mtlx",
-        prefix: "",
-        normal_y: NormalY::OpenGl,
         images: &[
             eight("basecolor", Layers::Map(MapKind::Albedo)),
             sixteen("roughness", Layers::Map(MapKind::Roughness)),
@@ -187,20 +186,16 @@ pub(super) static PRESETS: [Preset; 7] = [
             sixteen("height", Layers::Map(MapKind::Height)),
         ],
         document: Some(Document::Mtlx),
+        ..PLAIN
     },
 ];
 
 impl Preset {
     /// Reads a preset by its name.
-    pub(super) fn parser() -> impl TypedValueParser<Value = &'static Self> {
-        let values = PRESETS.iter();
-        let values = values.map(|preset| PossibleValue::new(preset.name).help(preset.about));
-        PossibleValuesParser::new(values).try_map(|name| {
-            let is_named = |preset: &&Self| preset.name.eq_ignore_ascii_case(&name);
-            PRESETS
-                .iter()
-                .find(is_named)
-                .ok_or("there is no such preset")
+    pub(super) fn parser() -> Word<&'static Self> {
+        let presets = PRESETS.iter();
+        presets.fold(Word::none(), |words, preset| {
+            words.or(preset.name, preset.about, preset)
         })
     }
 

@@ -19,7 +19,7 @@ pub(super) fn expanded(names: &[String]) -> Result<Vec<String>> {
             continue;
         }
         let pattern = Pattern::new(name)
-            .context(format!("{name} is no pattern"))
+            .context(format!("{name} is not a pattern"))
             .wrong_value()?;
         let n_before = all.len();
         for path in glob(name)? {

@@ -1,6 +1,7 @@
 //! A layer on the command line: `grass.png,weight=mask.png,height=grass_height.png,normal=grass_normal.png`.
 
 use crate::args::{Alpha, Size};
+use crate::encode::map_raster;
 use crate::error::{Hint, usage};
 use crate::input::{self, Kind, Loaded};
 use crate::words::{slip, with_underscores};
@@ -18,7 +19,7 @@ const BASE: &str = "base";
 /// The name of the map that is a layer's height.
 pub(in crate::commands) const HEIGHT: &str = "height";
 
-/// What the user wrote of a layer.
+/// A layer as it is typed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(in crate::commands) struct LayerArg {
     path: PathBuf,
@@ -163,11 +164,11 @@ impl LayerArg {
 pub(in crate::commands) struct Reader {
     /// The size that they are repeated or cut to.
     size: Option<Size>,
-    /// What becomes of their alpha.
+    /// How their alpha is handled.
     alpha: Alpha,
     /// The first that was read, and its size.
     first: Option<(PathBuf, [u32; 2])>,
-    /// What to do about images of unlike sizes.
+    /// The hint for images of unlike sizes.
     hint: &'static str,
 }
 
@@ -204,7 +205,7 @@ impl Reader {
     ///
     /// # Errors
     ///
-    /// As [`read`](Self::read); and if it is partly transparent, and that was not to be dropped or laid over a color.
+    /// Those of [`read`](Self::read); and if it is partly transparent and alpha is kept.
     pub(in crate::commands) fn read_opaque(&mut self, path: &Path, kind: Kind) -> Result<Loaded> {
         let loaded = self.read(path, kind)?;
         if loaded.alpha.is_some() {
@@ -327,11 +328,7 @@ fn weight(text: &str) -> Result<Weight, String> {
 /// A map in another size: repeated, or cut.
 fn repeated(map: &Map, size: Size) -> Result<Map> {
     let context = "the images cannot be repeated";
-    Ok(match map {
-        Map::Value(raster) => Map::Value(repeat(raster, size.0).context(context)?),
-        Map::Color(raster) => Map::Color(repeat(raster, size.0).context(context)?),
-        Map::Normal(raster) => Map::Normal(repeat(raster, size.0).context(context)?),
-    })
+    Ok(map_raster!(map, raster => repeat(raster, size.0).context(context)?))
 }
 
 #[cfg(test)]

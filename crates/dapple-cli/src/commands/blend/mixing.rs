@@ -2,33 +2,34 @@
 
 use crate::args::Axes;
 use crate::error::{Hint, usage};
+use crate::words::Word;
 use anyhow::Result;
-use clap::ValueEnum;
 use dapple::tile::{Blend, Mixing, Pyramid, Weighting};
 use dapple::wavelet::Border;
 use serde::Serialize;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum WeightingName {
-    /// As they are.
-    Given,
-    /// What is higher shows.
-    Height,
-    /// The tile is cut at thresholds.
-    Mask,
+dapple::raster::named! {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum WeightingName {
+        /// As they are.
+        Given = "given",
+        /// The higher layer shows.
+        Height = "height",
+        /// The tile is cut at thresholds.
+        Mask = "mask",
+    }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum MixingName {
-    /// The weighted mean.
-    Linear,
-    /// The contrast is kept; values may leave their range.
-    #[value(alias = "keep_variance")]
-    KeepVariance,
-    /// In bands, with sharper transitions where details are finer.
-    Pyramid,
+dapple::raster::named! {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum MixingName {
+        /// The weighted mean.
+        Linear = "linear",
+        /// The contrast is kept; values may leave their range.
+        KeepVariance = "keep-variance",
+        /// In bands, with sharper transitions where details are finer.
+        Pyramid = "pyramid",
+    }
 }
 
 /// The options of weighting and mixing.
@@ -36,7 +37,7 @@ enum MixingName {
 #[command(next_help_heading = "Weighting and mixing")]
 pub(super) struct MixingArgs {
     /// How weights are used; see below for what is the default.
-    #[arg(long, value_enum, value_name = "HOW")]
+    #[arg(long, value_name = "HOW", value_parser = Word::<WeightingName>::all())]
     weighting: Option<WeightingName>,
 
     /// height: the difference of heights over which layers mix, above 0: 0.1 is crisp, 0.3 soft; by default 0.2.
@@ -49,7 +50,7 @@ pub(super) struct MixingArgs {
     gain: Option<f64>,
 
     /// How layers are mixed.
-    #[arg(long, value_enum, default_value_t = MixingName::Linear)]
+    #[arg(long, value_parser = Word::<MixingName>::all(), default_value_t = MixingName::Linear)]
     mixing: MixingName,
 
     /// pyramid: the number of bands, at most 30; by default 4.
@@ -61,7 +62,7 @@ pub(super) struct MixingArgs {
     sharpness: Option<f64>,
 
     /// pyramid: along which axes the images and their blend repeat; by default none, and past the edges lies the mirror image.
-    #[arg(long, value_enum, value_name = "AXES")]
+    #[arg(long, value_name = "AXES", value_parser = Word::<Axes>::all())]
     wrap: Option<Axes>,
 }
 
@@ -70,7 +71,7 @@ impl MixingArgs {
     ///
     /// # Errors
     ///
-    /// If an option was given that means nothing here.
+    /// If an option was given that has no effect.
     pub(super) fn blend(&self, has_tile: bool, has_heights: bool) -> Result<Blend> {
         let weighting = self.weighting.unwrap_or(match (has_tile, has_heights) {
             (true, _) => WeightingName::Mask,
@@ -110,7 +111,7 @@ impl MixingArgs {
             ("wrap", self.wrap.is_some(), is_pyramid, "--mixing pyramid"),
         ] {
             if is_given && !is_used {
-                let message = format!("--{option} means nothing to this blend");
+                let message = format!("--{option} has no effect on this blend");
                 return Err(usage(message).hint(format!("add {hint}")));
             }
         }

@@ -3,7 +3,6 @@
 use crate::error::{Hint, usage};
 use crate::words::Word;
 use anyhow::Result;
-use clap::ValueEnum;
 use dapple::hash::Seed;
 use dapple::tile::{BorderSource, CornerTiles, Disturbance, Map, MatchBorders, TileError};
 use serde::Serialize;
@@ -11,21 +10,22 @@ use serde::Serialize;
 /// The most tiles of corners.
 const CORNERS_MAX: usize = 4;
 
-/// How copies become unlike.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum Name {
-    Disturb,
-    Corners,
-    Borders,
+dapple::raster::named! {
+    /// How copies become unlike.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum Name {
+        Disturb = "disturb",
+        Corners = "corners",
+        Borders = "borders",
+    }
 }
 
 /// The method and its options.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Method")]
 pub(super) struct MethodArgs {
-    /// How; by default after the number of tiles.
-    #[arg(long, value_enum)]
+    /// The method; by default by the number of tiles.
+    #[arg(long, value_parser = Word::<Name>::all())]
     method: Option<Name>,
 
     /// disturb: how many pixels along the borders of a tile stay as they are; by default 4, or an eighth of the shorter side if
@@ -45,7 +45,7 @@ pub(super) struct MethodArgs {
 
     /// borders: what all borders become: the border of the first tile, or its middle, if it does not repeat; by default the
     /// border.
-    #[arg(long, value_name = "WHICH", value_parser = Word::<BorderSource>::of(&["border", "middle"]))]
+    #[arg(long, value_name = "WHICH", value_parser = Word::<BorderSource>::all())]
     source: Option<BorderSource>,
 
     /// corners: the share of the shorter side that cuts may take, above 0 and at most 1; the more, the less the pieces are squares;
@@ -71,11 +71,11 @@ pub(super) enum Method {
 }
 
 impl MethodArgs {
-    /// The method for so many tiles, which are or are not what is to be written.
+    /// The method for a number of tiles, for a map or for the tiles themselves.
     ///
     /// # Errors
     ///
-    /// If it is none for so many, or an option of another method was given.
+    /// If the method does not take this number of tiles, or an option of another method was given.
     pub(super) fn method(&self, count: usize, writes_tiles: bool) -> Result<Method> {
         let name = self.method.unwrap_or(match count {
             1 => Name::Disturb,
@@ -89,7 +89,7 @@ impl MethodArgs {
             ))
             .hint("take --method corners or borders")),
             Name::Disturb if writes_tiles => Err(usage(
-                "--tiles means nothing to disturb, whose copies are all different",
+                "--tiles has no effect on disturb, whose copies are all different",
             )
             .hint("add --size WxH, or more tiles")),
             Name::Corners if !(2..=CORNERS_MAX).contains(&count) => Err(usage(format!(
@@ -120,10 +120,8 @@ impl MethodArgs {
             ("share", self.share.is_some(), Name::Corners),
         ] {
             if is_given && method != used_by {
-                let name = used_by.to_possible_value();
-                let name = name.map_or_else(String::new, |value| value.get_name().to_owned());
-                let message = format!("--{option} means nothing to this method");
-                return Err(usage(message).hint(format!("add --method {name}")));
+                let message = format!("--{option} has no effect on this method");
+                return Err(usage(message).hint(format!("add --method {used_by}")));
             }
         }
         Ok(())
@@ -131,7 +129,7 @@ impl MethodArgs {
 }
 
 impl Method {
-    /// The names of the tiles of a set made of so many.
+    /// The names of the tiles of a set that is made of `count` tiles.
     pub(super) fn tile_names(self, count: usize) -> Vec<String> {
         let Self::Corners { .. } = self else {
             return (1..=count).map(|tile| tile.to_string()).collect();
@@ -155,7 +153,7 @@ impl Tiles<'_> {
     ///
     /// # Errors
     ///
-    /// What the method refuses.
+    /// A refusal of the method.
     pub(super) fn render(&self, seed: Seed, size: [u32; 2]) -> Result<Vec<Map>, TileError> {
         match self.method {
             Method::Disturb { frozen, margin } => {
@@ -189,7 +187,7 @@ impl Tiles<'_> {
     ///
     /// # Errors
     ///
-    /// What the method refuses.
+    /// A refusal of the method.
     pub(super) fn tiles(&self) -> Result<Vec<Vec<Map>>, TileError> {
         match self.method {
             Method::Corners { share } => self.corners(share)?.all(),

@@ -30,7 +30,7 @@ impl Channel {
         self.values.statistics().n_not_finite
     }
 
-    /// Its statistics for programs. What is not finite becomes null.
+    /// Its statistics for programs. Numbers that are not finite become null.
     pub(super) fn to_json(&self) -> Value {
         let statistics = self.values.statistics();
         json!({
@@ -66,7 +66,7 @@ impl Channel {
         let counts = self.histogram();
         let most = counts.iter().copied().max().unwrap_or(0).max(1);
         let bar = |&count: &usize| {
-            // What is there at all is seen.
+            // A count above 0 has a bar.
             let height = (count * (BARS.len() - 1)).div_ceil(most);
             BARS[height]
         };
@@ -125,7 +125,7 @@ pub(super) fn channels(image: &Image) -> Result<Vec<Channel>> {
     })
 }
 
-/// What kind of image it is, in words.
+/// The format, in words.
 pub(super) fn format(image: &Image) -> String {
     let (name, bits) = (image.format(), image.bits());
     match image {

@@ -1,4 +1,4 @@
-//! What is in a mesh, and what is wrong with it.
+//! The content of a mesh, and its faults.
 
 use super::Findings;
 use crate::input;
@@ -8,7 +8,7 @@ use dapple::points::glam::DVec3;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// What is in the mesh.
+/// The findings about a mesh.
 ///
 /// # Errors
 ///
@@ -92,7 +92,7 @@ fn bounds(model: &Model) -> Option<[DVec3; 2]> {
     Some(rest.iter().fold([first; 2], grow))
 }
 
-/// What it has besides positions.
+/// The names of what it has besides positions.
 fn columns(model: &Model) -> Vec<&'static str> {
     let material = &model.material;
     let all = [

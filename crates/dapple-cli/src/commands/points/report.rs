@@ -1,4 +1,4 @@
-//! What is known of a point set, as text and as JSON.
+//! Measurements of a point set, as text and as JSON.
 
 use super::scatter::Scattered;
 use anyhow::Result;
@@ -9,7 +9,7 @@ use std::fmt;
 /// Below this frequency, in units of sqrt(N / area), a set without clumps has hardly any power.
 const LOW: f64 = 0.5;
 
-/// What was measured.
+/// The measurements.
 pub(super) struct Report {
     n_points: usize,
     lengths: Vec<usize>,

@@ -1,11 +1,10 @@
 //! The kinds of point sets, and the options that each of them takes.
 
-use crate::args::{Axes, Extent, Size, image_alpha, seed};
+use crate::args::{Axes, Extent, Numbers, Size, image_alpha, seed};
 use crate::error::{Hint, usage};
 use crate::input::{self, ALPHA_HINT, Kind as ImageKind};
 use crate::words::Word;
 use anyhow::{Context as _, Error, Result};
-use clap::ValueEnum;
 use dapple::hash::Seed;
 use dapple::points::glam::DVec2;
 use dapple::points::raster::{Ramp, Varying, Wrap};
@@ -21,34 +20,35 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::Arc;
 
-/// How many points there are if nobody says it.
+/// The default number of points.
 const COUNT: u32 = 1000;
 /// The most columns and rows at which the density of an image is read.
 const PLACES_MAX: u32 = 2048;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum Kind {
-    Poisson,
-    Variable,
-    Nested,
-    Jittered,
-    White,
+dapple::raster::named! {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum Kind {
+        Poisson = "poisson",
+        Variable = "variable",
+        Nested = "nested",
+        Jittered = "jittered",
+        White = "white",
+    }
 }
 
-/// What points there are to be.
+/// The kind of point set and its options.
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Points")]
 pub(super) struct ScatterArgs {
     /// The kind of points; see below.
-    #[arg(value_enum, default_value_t = Kind::Poisson, hide_possible_values = true, help_heading = None::<&str>)]
+    #[arg(value_parser = Word::<Kind>::all(), default_value_t = Kind::Poisson, hide_possible_values = true, help_heading = None::<&str>)]
     kind: Kind,
 
     /// Where the randomness comes from: any whole number from 0 to 2^64 - 1.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     pub(super) seed: u64,
 
-    /// About how many points, at least 1; 1000 if nothing else says it.
+    /// About how many points, at least 1; by default 1000.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     count: Option<u32>,
 
@@ -74,7 +74,7 @@ pub(super) struct ScatterArgs {
     #[arg(long, value_name = "IMAGE|A:B")]
     density: Option<Density>,
 
-    /// variable: what becomes of the transparency of the image, which is refused otherwise: `drop` takes the colors without it,
+    /// variable: how the transparency of the image is handled, which is refused by default: `drop` takes the colors without it,
     /// and `over:COLOR` lays the image over a color, such as `over:black`.
     #[arg(long, value_name = "drop|over:COLOR", value_parser = image_alpha, requires = "density")]
     alpha: Option<ImageAlpha>,
@@ -84,7 +84,7 @@ pub(super) struct ScatterArgs {
     invert: bool,
 
     /// variable: how far apart points of different radius are; by default the mean of their radii.
-    #[arg(long, value_name = "RULE", value_parser = Word::<DiskRule>::of(&["average", "larger", "smaller"]))]
+    #[arg(long, value_name = "RULE", value_parser = Word::<DiskRule>::all())]
     rule: Option<DiskRule>,
 
     /// jittered: columns and rows of the grid; by default square cells for the count.
@@ -107,14 +107,14 @@ pub(super) struct ScatterArgs {
         allow_hyphen_values = true,
         help_heading = "Domain"
     )]
-    origin: Position,
+    origin: Numbers<f64, 2>,
 
     /// Along which axes the domain wraps: the points then repeat without a seam.
-    #[arg(long, value_enum, default_value_t = Axes::Both, help_heading = "Domain")]
+    #[arg(long, value_parser = Word::<Axes>::all(), default_value_t = Axes::Both, help_heading = "Domain")]
     wrap: Axes,
 }
 
-/// Points, and what is known of them.
+/// Points, with their levels and radius.
 #[derive(Debug)]
 pub(super) struct Scattered {
     pub(super) points: PointSet,
@@ -136,7 +136,7 @@ impl ScatterArgs {
     ///
     /// # Errors
     ///
-    /// If an option was given that the kind does not have, and whatever the kind refuses.
+    /// If an option was given that the kind does not have, or has a bad value.
     pub(super) fn scatter(&self) -> Result<Scattered> {
         self.check_used()?;
         let Extent([width, height]) = self.domain;
@@ -254,10 +254,8 @@ impl ScatterArgs {
         ];
         for (option, is_given, kind) in given {
             if is_given && kind != self.kind {
-                let name = kind.to_possible_value();
-                let name = name.map_or(String::new(), |name| name.get_name().to_owned());
-                let message = format!("--{option} means nothing to points of this kind");
-                return Err(usage(message).hint(format!("it is for dapple points {name}")));
+                let message = format!("--{option} has no effect on points of this kind");
+                return Err(usage(message).hint(format!("it is for dapple points {kind}")));
             }
         }
         Ok(())
@@ -289,25 +287,6 @@ impl FromStr for Density {
     }
 }
 
-/// Two finite numbers, `x,y`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct Position([f64; 2]);
-
-impl FromStr for Position {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let parts: Vec<_> = text
-            .split(',')
-            .map(|part| part.trim().parse::<f64>())
-            .collect();
-        match parts.as_slice() {
-            [Ok(x), Ok(y)] if x.is_finite() && y.is_finite() => Ok(Self([*x, *y])),
-            _ => Err(format!("{text:?} is no position; one is x,y")),
-        }
-    }
-}
-
 fn flat(points: PointSet, radius: Option<f64>) -> Scattered {
     Scattered {
         lengths: vec![points.len()],
@@ -323,7 +302,7 @@ fn square_cells(domain: Domain, count: u32) -> [u32; 2] {
     [along(domain.size.x), along(domain.size.y)]
 }
 
-/// Adds what to do about what is often refused.
+/// Adds a hint to frequent errors.
 fn advise(error: PointsError) -> Error {
     let hint = match error.kind() {
         PointsErrorKind::PeriodTooShort { .. } => {

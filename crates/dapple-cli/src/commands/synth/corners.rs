@@ -1,4 +1,4 @@
-//! What the corners of faces have in a mesh file, and still have after repair: texture coordinates and normals.
+//! Columns of the corners of faces in a mesh file, carried over its repair: texture coordinates and normals.
 
 use crate::error::Hint;
 use anyhow::{Result, anyhow};
@@ -22,7 +22,7 @@ pub(super) fn own_uvs(
     })
 }
 
-/// What the corners of the faces that repair has left had before; nothing for a corner that was elsewhere.
+/// The column of the corners of repaired faces as it was before; `None` for a corner that was elsewhere.
 fn before_repair<'a, T: Copy>(
     surface: &'a Surface,
     model: &'a Model,

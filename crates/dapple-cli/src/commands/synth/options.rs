@@ -2,42 +2,23 @@
 
 use crate::args::{Axes, Size, seed};
 use crate::input::mesh_endings;
-use clap::ValueEnum;
+use crate::words::Word;
 use dapple::hash::Seed;
 use dapple::synth::{Axes as FieldAxes, Coherence, Edges, HierarchyOptions, Options};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// What lies past the edges of the example.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum EdgesName {
-    /// Nothing.
-    Cut,
-    /// The same again: it is a tile.
-    Wrap,
-}
-
-/// Which way neighborhoods go on away from their site.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum AxesName {
-    /// As the field does.
-    Followed,
-    /// Straight on, as the paper has it.
-    Carried,
-}
-
-/// How a mesh is laid out in a texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum AtlasName {
-    /// Right triangles whose sizes follow the areas of the faces.
-    Area,
-    /// Right triangles of one size, as in the paper.
-    Uniform,
-    /// The mesh's own texture coordinates.
-    Uv,
+dapple::raster::named! {
+    /// How a mesh is laid out in a texture.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(super) enum AtlasName {
+        /// Right triangles whose sizes follow the areas of the faces.
+        Area = "area",
+        /// Right triangles of one size, as in the paper.
+        Uniform = "uniform",
+        /// The mesh's own texture coordinates.
+        Uv = "uv",
+    }
 }
 
 /// Without a mesh.
@@ -49,7 +30,7 @@ pub(super) struct PlaneArgs {
     pub(super) size: Option<Size>,
 
     /// Which sides of the texture fit together: both makes a tile; by default none.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = Word::<Axes>::all())]
     pub(super) wrap: Option<Axes>,
 }
 
@@ -58,7 +39,7 @@ pub(super) struct PlaneArgs {
 #[command(next_help_heading = "On a mesh")]
 pub(super) struct SurfaceArgs {
     #[arg(long, value_name = "FILE", help = format!(
-        "The mesh to cover ({}). What is wrong with it is repaired",
+        "The mesh to cover ({}). Faults of it are repaired",
         mesh_endings()
     ))]
     pub(super) mesh: Option<PathBuf>,
@@ -67,7 +48,7 @@ pub(super) struct SurfaceArgs {
     #[arg(long, value_name = "FILE")]
     pub(super) directions: Option<PathBuf>,
 
-    /// How many points of the surface get a color: as it were the pixels on the mesh, 1 to 2^28; by default 65536.
+    /// The number of points of the surface that get a color, like pixels on the mesh: 1 to 2^28; by default 65536.
     #[arg(long, value_name = "N")]
     sites: Option<usize>,
 
@@ -76,7 +57,7 @@ pub(super) struct SurfaceArgs {
     texture_size: Option<u32>,
 
     /// How faces are laid out in the texture; by default by area.
-    #[arg(long, value_enum, value_name = "HOW")]
+    #[arg(long, value_name = "HOW", value_parser = Word::<AtlasName>::all())]
     atlas: Option<AtlasName>,
 
     /// Pixels around each piece of the texture that continue it, 1 to 1024: 2^k for k mipmap levels. By default up to a
@@ -90,8 +71,8 @@ pub(super) struct SurfaceArgs {
     crease: Option<f64>,
 
     /// Which way neighborhoods go on over the surface; by default followed.
-    #[arg(long, value_enum, value_name = "HOW")]
-    axes: Option<AxesName>,
+    #[arg(long, value_name = "HOW", value_parser = Word::<FieldAxes>::all())]
+    axes: Option<FieldAxes>,
 }
 
 /// How pixels of the example are found.
@@ -103,8 +84,8 @@ pub(super) struct MatchArgs {
     seed: u64,
 
     /// What lies past the edges of the example.
-    #[arg(long, value_enum, default_value_t = EdgesName::Cut)]
-    edges: EdgesName,
+    #[arg(long, value_parser = Word::<Edges>::all(), default_value_t = Edges::Cut)]
+    pub(super) edges: Edges,
 
     /// How many levels there are, each with a quarter of the points of the finer one, 1 to 16: more for larger features.
     #[arg(long, value_name = "N", default_value_t = 3)]
@@ -128,7 +109,7 @@ pub(super) struct MatchArgs {
 fn angle(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(angle) if (0.0..=180.0).contains(&angle) => Ok(angle),
-        _ => Err(format!("{text:?} is no angle from 0 to 180 degrees")),
+        _ => Err(format!("{text:?} is not an angle from 0 to 180 degrees")),
     }
 }
 
@@ -197,14 +178,6 @@ impl SurfaceArgs {
 }
 
 impl MatchArgs {
-    /// What lies past the edges of the example.
-    pub(super) fn edges(&self) -> Edges {
-        match self.edges {
-            EdgesName::Cut => Edges::Cut,
-            EdgesName::Wrap => Edges::Wrap,
-        }
-    }
-
     /// The options of the library.
     pub(super) fn options(&self, surface: &SurfaceArgs) -> Options {
         let default = if self.paper {
@@ -219,11 +192,7 @@ impl MatchArgs {
             schedule: None,
             coherence: self.coherence.unwrap_or(default.coherence),
             evenness: self.evenness.unwrap_or(default.evenness),
-            axes: match surface.axes {
-                Some(AxesName::Followed) => FieldAxes::Followed,
-                Some(AxesName::Carried) => FieldAxes::Carried,
-                None => default.axes,
-            },
+            axes: surface.axes.unwrap_or(default.axes),
             center: default.center,
         }
     }

@@ -1,7 +1,7 @@
 //! Synthesis of an image.
 
 use super::{Args, Input, STEPS, advise, shown};
-use crate::encode::Format;
+use crate::encode::{Format, map_raster};
 use crate::error::Exit;
 use crate::job::{Context, Job};
 use crate::progress::Progress;
@@ -10,7 +10,7 @@ use dapple::synth::{PlaneTexture, synthesize_plane_with};
 use dapple::tile::Map;
 use serde_json::Value;
 
-/// The size of a texture that nobody gave one.
+/// The default size of a texture.
 const SIZE: [u32; 2] = [512; 2];
 
 /// Makes the image, and the maps that follow it.
@@ -47,11 +47,7 @@ pub(super) fn run(args: &Args, context: &Context) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// What a map of the example becomes.
+/// A map of the example, transferred to the texture.
 fn follow(texture: &PlaneTexture, example: &Map) -> Result<Map> {
-    Ok(match example {
-        Map::Value(raster) => Map::Value(texture.transfer(raster)?),
-        Map::Color(raster) => Map::Color(texture.transfer(raster)?),
-        Map::Normal(raster) => Map::Normal(texture.transfer(raster)?),
-    })
+    Ok(map_raster!(example, raster => texture.transfer(raster)?))
 }

@@ -22,7 +22,7 @@ use dapple::tile::Map;
 use serde_json::json;
 use std::path::Path;
 
-/// What is written of a textured mesh.
+/// The kind of output of a textured mesh.
 #[derive(Clone, Copy, Debug)]
 enum Product {
     /// The mesh with its texture.
@@ -223,7 +223,7 @@ fn claim(args: &Args, mesh: &Path, job: &mut Job<'_>) -> Result<Claimed> {
     let main = job.claim(&target)?;
     let mut beside = Vec::new();
     if let (Product::Model(format), Some(path)) = (product, target.path()) {
-        // What the writer will name is known before: its files have the stem of the model.
+        // The names of the files of the writer are known before: they have the stem of the model.
         for name in names_beside(format, path, args)? {
             let output = job.claim(&Target::Path(path.with_file_name(&name)))?;
             beside.push((name, output));

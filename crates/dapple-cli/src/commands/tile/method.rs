@@ -3,46 +3,41 @@
 use crate::error::{Hint, usage};
 use crate::words::Word;
 use anyhow::Result;
-use clap::ValueEnum;
+use dapple::raster::Named;
 use dapple::tile::{
     Basis, Crossfade, Feather, Method, Pixels, SoftCut, SplineProject, WrapGradient,
 };
 use dapple::wavelet::{Degree, Phase};
 use serde::Serialize;
 
-/// How an image is made to repeat.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum Name {
-    Auto,
-    Periodic,
-    Poisson,
-    #[value(alias = "soft_cut")]
-    SoftCut,
-    Spline,
-    #[value(alias = "periodic_spline")]
-    PeriodicSpline,
-    Feather,
-    Mirror,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum BasisName {
-    Constant,
-    Linear,
-    Quadratic,
-    Cubic,
-    Sines,
+dapple::raster::named! {
+    /// How an image is made to repeat.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum Name {
+        Auto = "auto",
+        Periodic = "periodic",
+        Poisson = "poisson",
+        SoftCut = "soft-cut",
+        Spline = "spline",
+        PeriodicSpline = "periodic-spline",
+        Feather = "feather",
+        Mirror = "mirror",
+    }
 }
 
 /// A method with its options.
 pub(super) struct Candidate {
-    /// What it is called on the command line.
+    /// Its name on the command line.
     pub(super) name: String,
     pub(super) method: Method,
     /// How many pixels apart the boundaries of a tile are that are like its wrap.
     pub(super) lattice: [u32; 2],
+}
+
+/// Reads the functions that a tile is made of.
+fn basis() -> Word<Basis> {
+    let splines = Word::<Degree>::all().map(Basis::Spline);
+    splines.or("sines", "Sines and cosines", Basis::Sines)
 }
 
 /// The margin where none is given: that of the library, if the image has room for it.
@@ -55,8 +50,8 @@ fn default_margin(size: [u32; 2]) -> u32 {
 #[derive(clap::Args, Clone, Debug, Serialize)]
 #[command(next_help_heading = "Method")]
 pub(super) struct MethodArgs {
-    /// How.
-    #[arg(long, value_enum, default_value_t = Name::SoftCut)]
+    /// The method.
+    #[arg(long, value_parser = Word::<Name>::all(), default_value_t = Name::SoftCut)]
     method: Name,
 
     /// soft-cut, feather: how wide the two sides lie over each other, in pixels, from 1 to half of the side. By default 32
@@ -70,27 +65,27 @@ pub(super) struct MethodArgs {
     half_width: Option<f32>,
 
     /// soft-cut, feather with a margin: how the sides are mixed; by default the variance is kept.
-    #[arg(long, value_name = "HOW", value_parser = Word::<Crossfade>::of(&["keep-variance", "linear"]))]
+    #[arg(long, value_name = "HOW", value_parser = Word::<Crossfade>::all())]
     crossfade: Option<Crossfade>,
 
     /// poisson: the gradient across the wrap; by default zero.
-    #[arg(long, value_name = "WHICH", value_parser = Word::<WrapGradient>::of(&["zero", "extrapolate"]))]
+    #[arg(long, value_name = "WHICH", value_parser = Word::<WrapGradient>::all())]
     wrap_gradient: Option<WrapGradient>,
 
     /// spline, periodic-spline: how often the image is halved and doubled, from 0 to 32; by default 1.
     #[arg(long, value_name = "N")]
     levels: Option<u32>,
 
-    /// spline, periodic-spline: what the tile is made of; by default quadratic splines.
-    #[arg(long, value_enum, value_name = "WHAT")]
-    basis: Option<BasisName>,
+    /// spline, periodic-spline: the functions that the tile is made of; by default quadratic splines.
+    #[arg(long, value_name = "WHAT", value_parser = basis())]
+    basis: Option<Basis>,
 
     /// spline, periodic-spline: where coarse coefficients lie; by default centered.
-    #[arg(long, value_name = "WHERE", value_parser = Word::<Phase>::of(&["centered", "cook-de-rose"]))]
+    #[arg(long, value_name = "WHERE", value_parser = Word::<Phase>::all())]
     phase: Option<Phase>,
 
-    /// spline, periodic-spline: what pixels are to the spline; by default its coefficients, as in the paper.
-    #[arg(long, value_name = "WHAT", value_parser = Word::<Pixels>::of(&["coefficients", "samples"]))]
+    /// spline, periodic-spline: how pixels determine the spline; by default as its coefficients, as in the paper.
+    #[arg(long, value_name = "WHAT", value_parser = Word::<Pixels>::all())]
     pixels: Option<Pixels>,
 }
 
@@ -100,7 +95,7 @@ impl MethodArgs {
         if !self.is_auto() {
             return vec![self.candidate(self.method, size)];
         }
-        let names = Name::value_variants().iter().copied();
+        let names = Name::ALL.iter().copied();
         // Poisson with zero is the periodic part.
         let named = names.filter(|name| !matches!(name, Name::Auto | Name::Poisson));
         let named = named.map(|name| self.candidate(name, size));
@@ -151,9 +146,8 @@ impl MethodArgs {
             }
             _ => 1,
         };
-        let possible = name.to_possible_value();
         Candidate {
-            name: possible.map_or_else(String::new, |value| value.get_name().to_owned()),
+            name: name.to_string(),
             method,
             lattice: [lattice; 2],
         }
@@ -179,13 +173,7 @@ impl MethodArgs {
         SplineProject {
             levels: self.levels.unwrap_or(default.levels),
             phase: self.phase.unwrap_or_default(),
-            basis: match self.basis {
-                Some(BasisName::Constant) => Basis::Spline(Degree::Constant),
-                Some(BasisName::Linear) => Basis::Spline(Degree::Linear),
-                Some(BasisName::Quadratic) | None => Basis::Spline(Degree::Quadratic),
-                Some(BasisName::Cubic) => Basis::Spline(Degree::Cubic),
-                Some(BasisName::Sines) => Basis::Sines,
-            },
+            basis: self.basis.unwrap_or(default.basis),
             pixels: self.pixels.unwrap_or_default(),
         }
     }
@@ -210,15 +198,13 @@ impl MethodArgs {
         ];
         for (option, is_given, methods) in given {
             if is_given && !methods.contains(&self.method) {
-                let name = |method: &Name| method.to_possible_value();
-                let names: Vec<_> = methods.iter().filter_map(name).collect();
-                let names: Vec<_> = names.iter().map(|name| name.get_name()).collect();
-                let message = format!("--{option} means nothing to this method");
+                let names: Vec<_> = methods.iter().map(|method| method.name()).collect();
+                let message = format!("--{option} has no effect on this method");
                 return Err(usage(message).hint(format!("add --method {}", names.join(" or "))));
             }
         }
         if self.method == Feather && self.crossfade.is_some() && self.margin.is_none() {
-            return Err(usage("--crossfade means nothing without a margin").hint("add --margin PX"));
+            return Err(usage("--crossfade has no effect without a margin").hint("add --margin PX"));
         }
         Ok(())
     }

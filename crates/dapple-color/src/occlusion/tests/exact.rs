@@ -14,11 +14,13 @@ fn occlusion_is_that_of_the_oracle() {
         (2.0, DVec2::new(0.7, 3.0), [clamp, mirror], 1.0, 1.0),
     ] {
         let options = OcclusionOptions {
-            strength,
-            extent,
-            wrap,
             radius,
             fade,
+            plane: HeightPlane {
+                strength,
+                extent,
+                wrap,
+            },
         };
         assert_is_oracle(&rubble([37, 22]), &options);
     }
@@ -62,8 +64,11 @@ fn a_tilted_plane_hides_nothing_of_its_sky() {
         let plane = Raster::from_window(&window, |at| slope.dot(at) as f32).unwrap();
         let options = OcclusionOptions {
             radius: 0.15,
-            wrap: [Wrap::Clamp; 2],
-            ..OcclusionOptions::for_window(&window)
+            plane: HeightPlane {
+                wrap: [Wrap::Clamp; 2],
+                ..HeightPlane::for_window(&window)
+            },
+            ..OcclusionOptions::default()
         };
         let seen = ambient_occlusion(&plane, &options).unwrap();
         // Away from the edges, where the plane ends. Heights up to 90 are rounded by up to 4e-6, over the 8e-3 to the
@@ -127,7 +132,7 @@ fn the_inside_of_a_bowl_sees_half_of_the_sky() {
     assert!((mean - 0.5).abs() < 0.025, "the mean is {mean}");
 }
 
-/// What the pixel sees, in `f64` and by the plainest means: every ray is walked on its own.
+/// The part of the sky that a pixel sees, in `f64`: every ray is walked on its own.
 fn oracle(height: &Raster<f32>, options: &OcclusionOptions, at: [i64; 2]) -> f64 {
     let pixel = options.extent / DVec2::new(height.width().into(), height.height().into());
     let z = |x: i64, y: i64| options.strength * f64::from(*height.at(x, y, options.wrap));

@@ -15,7 +15,7 @@ use super::stone::stone;
 use super::{stone_px, tile_side};
 use crate::figure::source;
 use crate::{Figure, Panel};
-use dapple_color::{LinearRgb, Normal, NormalOptions, normal_map};
+use dapple_color::{HeightPlane, LinearRgb, Normal, normal_map};
 use dapple_pups::hash::Seed;
 use dapple_raster::{Raster, Window};
 use dapple_tile::{
@@ -56,11 +56,11 @@ fn render(size: u32) -> anyhow::Result<Vec<Panel>> {
     let window = Window::unit([size; 2])?;
     let noise = FractalNoise::new(0.45, Seed(12))?;
     let land = Raster::from_window(&window, |at| noise.at(at))?;
-    let options = NormalOptions {
+    let plane = HeightPlane {
         strength: 0.3,
-        ..NormalOptions::default()
+        ..HeightPlane::default()
     };
-    let normals = normal_map(&land, &options)?;
+    let normals = normal_map(&land, &plane.into())?;
     let shares = shares(&land, &normals.map(|normal| normal.z))?;
     let ground = Ground::new(size)?;
     [

@@ -5,7 +5,7 @@
 //! large as the picture; if not, the picture is cut out of a torus half as large again.
 
 use super::super::fractal::FractalNoise;
-use dapple_color::{LinearRgb, NormalOptions, NormalY, normal_map};
+use dapple_color::{HeightPlane, LinearRgb, NormalOptions, NormalY, normal_map};
 use dapple_points::Domain;
 use dapple_points::hash::{CellHash, Seed, unit_f64};
 use dapple_raster::{Raster, RasterError, Window};
@@ -145,9 +145,11 @@ impl Patch {
     /// The material, with light on a relief that is `depth` parts deep.
     pub(super) fn finish(&self, spots: &Raster<Spot>, depth: f64) -> anyhow::Result<Material> {
         let options = NormalOptions {
-            strength: depth,
             y: NormalY::OpenGl,
-            ..NormalOptions::for_window(&self.window)
+            plane: HeightPlane {
+                strength: depth,
+                ..HeightPlane::for_window(&self.window)
+            },
         };
         let height = spots.map(|spot| spot.height);
         let normals = normal_map(&height, &options)?;

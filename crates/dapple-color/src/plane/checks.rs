@@ -1,0 +1,70 @@
+//! What the tests of all maps from heights check.
+
+use crate::{ColorErrorKind, HeightPlane};
+use dapple_raster::Raster;
+use dapple_raster::glam::DVec2;
+
+/// Checks that a strength that is not finite and an extent that is none are refused.
+pub(crate) fn bad_planes_are_refused(refusal: impl Fn(HeightPlane) -> ColorErrorKind) {
+    for strength in [f64::NAN, f64::INFINITY] {
+        let refused = refusal(HeightPlane {
+            strength,
+            ..HeightPlane::default()
+        });
+        let is_strength = matches!(refused, ColorErrorKind::NotFinite { .. });
+        assert!(is_strength, "{refused:?}");
+    }
+    for extent in [[0.0, 0.0], [1.0, -1.0], [f64::NAN, 1.0]].map(DVec2::from) {
+        let refused = refusal(HeightPlane {
+            extent,
+            ..HeightPlane::default()
+        });
+        let is_extent = matches!(refused, ColorErrorKind::Extent { .. });
+        assert!(is_extent, "{refused:?}");
+    }
+}
+
+/// Checks that a radius that is not finite, negative, or of more than 2^14 of 4 × 4 pixels is refused.
+pub(crate) fn bad_radii_are_refused(refusal: impl Fn(f64) -> ColorErrorKind) {
+    for radius in [f64::NAN, f64::INFINITY] {
+        let refused = refusal(radius);
+        let is_radius = matches!(refused, ColorErrorKind::NotFinite { .. });
+        assert!(is_radius, "{refused:?}");
+    }
+    for radius in [-0.1, 4097.0, f64::MAX] {
+        let refused = refusal(radius);
+        let is_radius = matches!(refused, ColorErrorKind::Radius { .. });
+        assert!(is_radius, "{refused:?}");
+    }
+}
+
+/// Checks that a map has the same bits on one, two and seven threads.
+pub(crate) fn threads_do_not_change_a_bit<T>(bits: impl Fn() -> Raster<T> + Sync)
+where
+    T: PartialEq + core::fmt::Debug + Send,
+{
+    let on_threads = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build().unwrap().install(&bits)
+    };
+    let one = on_threads(1);
+    for threads in [2, 7] {
+        assert_eq!(on_threads(threads), one, "{threads} threads");
+    }
+}
+
+/// Checks that options come back from JSON, and that a name that is none of theirs is refused.
+#[cfg(feature = "serde")]
+pub(crate) fn options_are_data<T>(options: &T)
+where
+    T: PartialEq + core::fmt::Debug + serde::Serialize + serde::de::DeserializeOwned,
+{
+    let text = serde_json::to_string(options).unwrap();
+    assert_eq!(
+        &serde_json::from_str::<T>(&text).unwrap(),
+        options,
+        "{text}"
+    );
+    let error = serde_json::from_str::<T>(r#"{"radios": 0.25}"#).unwrap_err();
+    assert!(error.to_string().contains("radios"), "{error}");
+}

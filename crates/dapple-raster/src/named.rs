@@ -1,0 +1,225 @@
+//! Kinds of values that have names: one table for recipes, the command line and documentation.
+
+/// A kind of which every value has a name, made by [`named!`](crate::named).
+pub trait Named: Copy + PartialEq + 'static {
+    /// All values, in the order of their definition.
+    const ALL: &'static [Self];
+
+    /// Their names, in the same order.
+    const NAMES: &'static [&'static str];
+
+    /// The name: in small letters, words joined by `_`.
+    fn name(self) -> &'static str;
+
+    /// Other names that are read as well.
+    fn aliases(self) -> &'static [&'static str];
+
+    /// The documentation of the value.
+    fn documentation(self) -> &'static str;
+
+    /// The value of this name or alias; `None` if there is no such value.
+    #[must_use]
+    fn from_name(name: &str) -> Option<Self> {
+        let is_named = |value: &Self| value.name() == name || value.aliases().contains(&name);
+        Self::ALL.iter().copied().find(is_named)
+    }
+}
+
+/// Defines an enum whose values have names: implements [`Named`], `Display`, and serde behind the feature `serde` of this
+/// crate.
+///
+/// A name stands behind each value, and other names that are read as well behind a bar. Each value has a documentation,
+/// whose first sentence is the help on the command line.
+///
+/// ```
+/// use dapple_raster::Named;
+///
+/// dapple_raster::named! {
+///     /// What a cake is made in.
+///     #[derive(Clone, Copy, Debug, Default, PartialEq)]
+///     pub enum Tin {
+///         /// A ring with a hole. It bakes evenly.
+///         #[default]
+///         BundtPan = "bundt_pan" | "gugelhupf",
+///         /// A flat sheet.
+///         Sheet = "sheet",
+///     }
+/// }
+///
+/// assert_eq!(Tin::ALL, [Tin::BundtPan, Tin::Sheet]);
+/// assert_eq!(Tin::from_name("gugelhupf"), Some(Tin::BundtPan));
+/// assert_eq!(Tin::default().to_string(), "bundt_pan");
+/// ```
+#[doc(hidden)]
+#[macro_export]
+macro_rules! named {
+    (
+        $(#[$meta:meta])*
+        $visibility:vis enum $kind:ident {
+            $(
+                $(#[doc = $doc:literal])*
+                $(#[cfg_attr $attribute:tt])*
+                // The inner option is never there: a repetition has to hold a variable.
+                $(#[default $($default:ident)?])?
+                $value:ident = $name:literal $(| $alias:literal)*
+            ),* $(,)?
+        }
+    ) => {
+        $(#[$meta])*
+        $visibility enum $kind {
+            $(
+                $(#[doc = $doc])*
+                $(#[cfg_attr $attribute])*
+                $(#[default $($default)?])?
+                $value,
+            )*
+        }
+
+        impl $crate::Named for $kind {
+            const ALL: &'static [Self] = &[$(Self::$value),*];
+            const NAMES: &'static [&'static str] = &[$($name),*];
+
+            fn name(self) -> &'static str {
+                match self {
+                    $(Self::$value => $name,)*
+                }
+            }
+
+            fn aliases(self) -> &'static [&'static str] {
+                match self {
+                    $(Self::$value => &[$($alias),*],)*
+                }
+            }
+
+            fn documentation(self) -> &'static str {
+                match self {
+                    $(Self::$value => concat!($($doc, "\n"),*),)*
+                }
+            }
+        }
+
+        impl ::core::fmt::Display for $kind {
+            fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+                f.pad($crate::Named::name(*self))
+            }
+        }
+
+        $crate::named_serde! { $kind }
+    };
+}
+
+/// Implements serde for a kind of values with names: a value is its name.
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! named_serde {
+    ($kind:ident) => {
+        impl $crate::serde::Serialize for $kind {
+            fn serialize<S: $crate::serde::Serializer>(
+                &self,
+                serializer: S,
+            ) -> ::core::result::Result<S::Ok, S::Error> {
+                serializer.serialize_str($crate::Named::name(*self))
+            }
+        }
+
+        impl<'de> $crate::serde::Deserialize<'de> for $kind {
+            fn deserialize<D: $crate::serde::Deserializer<'de>>(
+                deserializer: D,
+            ) -> ::core::result::Result<Self, D::Error> {
+                $crate::read_named(deserializer)
+            }
+        }
+    };
+}
+
+/// Without serde there is nothing to implement.
+#[cfg(not(feature = "serde"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! named_serde {
+    ($kind:ident) => {};
+}
+
+/// Reads a value by its name.
+///
+/// # Errors
+///
+/// If there is no value of this name, with all names.
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+pub fn read_named<'de, T: Named, D: serde::Deserializer<'de>>(
+    deserializer: D,
+) -> Result<T, D::Error> {
+    deserializer.deserialize_str(Name(core::marker::PhantomData))
+}
+
+/// Reads the name of a value.
+#[cfg(feature = "serde")]
+struct Name<T>(core::marker::PhantomData<T>);
+
+#[cfg(feature = "serde")]
+impl<T: Named> serde::de::Visitor<'_> for Name<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "one of {}", T::NAMES.join(", "))
+    }
+
+    fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<T, E> {
+        T::from_name(name).ok_or_else(|| E::unknown_variant(name, T::NAMES))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Named;
+
+    crate::named! {
+        /// A shape.
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        enum Shape {
+            /// Round all over. It rolls.
+            Ball = "ball" | "sphere",
+            /// Six squares,
+            /// all alike.
+            #[default]
+            SixSides = "six_sides",
+        }
+    }
+
+    #[test]
+    fn names_lead_to_their_values_and_back() {
+        for (&shape, &name) in Shape::ALL.iter().zip(Shape::NAMES) {
+            assert_eq!((shape.name(), shape.to_string()), (name, name.to_owned()));
+            assert_eq!(Shape::from_name(name), Some(shape));
+        }
+        assert_eq!(Shape::from_name("sphere"), Some(Shape::Ball));
+        assert_eq!(Shape::from_name("Ball"), None, "names are exact");
+        assert_eq!(Shape::default(), Shape::SixSides);
+        assert_eq!(
+            Shape::default().documentation(),
+            " Six squares,\n all alike.\n"
+        );
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn serde_reads_and_writes_names() {
+        assert_eq!(
+            serde_json::to_string(&Shape::SixSides).unwrap(),
+            "\"six_sides\""
+        );
+        let read = serde_json::from_str::<Shape>;
+        assert_eq!(read("\"sphere\"").unwrap(), Shape::Ball);
+        let error = read("\"cone\"").unwrap_err().to_string();
+        let expected = "unknown variant `cone`, expected `ball` or `six_sides`";
+        assert!(error.starts_with(expected), "{error}");
+        assert!(
+            read("3")
+                .unwrap_err()
+                .to_string()
+                .contains("one of ball, six_sides")
+        );
+    }
+}
