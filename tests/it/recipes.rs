@@ -119,7 +119,8 @@ fn fur_has_no_bands_across_its_height() {
         let recipe = Recipe::builtin(name).expect("a recipe");
         let plan = Plan::new(&recipe, &Images::new(), 0.0).expect("a plan");
         let window = plan.window([256; 2]).expect("a window");
-        let height = plan.height().to_raster(&window).expect("a height");
+        let height = plan.height().expect("a height");
+        let height = height.to_raster(&window).expect("its values");
         let means = Raster::from_fn([1, 256], |_, row| {
             height.row(row).iter().sum::<f32>() / 256.0
         });

@@ -1,5 +1,6 @@
 //! Why a texture was refused.
 
+use crate::Range;
 use dapple_graph::GraphError;
 use dapple_points::PointsError;
 use dapple_raster::RasterError;
@@ -36,6 +37,11 @@ dapple_raster::error! {
         } => "axis {axis} of the domain must wrap around, but does not";
         /// The spacing of points has to be the same everywhere, and is not.
         SpacingVaries => "the spacing of nested points must be the same everywhere";
+        /// Two options exclude each other, or one needs another.
+        Conflict {
+            /// The rule, as a sentence without a full stop.
+            rule: &'static str,
+        } => "{rule}";
     }
     from {
         /// The points could not be made.
@@ -48,6 +54,11 @@ dapple_raster::error! {
 }
 
 impl PupsError {
+    /// Refuses a number outside of a range.
+    pub(crate) fn check_in(range: Range, what: &'static str, value: f64) -> Result<(), Self> {
+        Self::check(range.holds(value), what, value, range.text)
+    }
+
     /// Refuses a column of another length.
     pub(crate) fn check_count(what: &'static str, count: usize, needed: usize) -> Result<(), Self> {
         if count == needed {

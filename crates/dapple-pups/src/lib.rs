@@ -16,6 +16,7 @@
 
 mod error;
 mod options;
+mod range;
 mod weight;
 
 mod net;
@@ -56,13 +57,15 @@ pub use error::{PupsError, PupsErrorKind};
 pub use glam;
 pub use options::{Orientation, PupsOptions};
 pub use pups::Pups;
+pub use range::Range;
 pub use recipes::{
-    CellsOptions, CellularNoiseOptions, ColorNoiseOptions, CowOptions, Folding, IteratedOptions,
+    Cells, CellsOptions, CellularNoiseOptions, ColorNoiseOptions, ControlPoint, ControlPoints,
+    CowOptions, CowProgressionOptions, Folding, GiraffeProgressionOptions, IteratedOptions,
     IterationPoints, LabelRampOptions, LabelTexture, Layers, NetOptions, NoiseOptions, Octave,
-    OctaveSource, OctavesOptions, ProgressionOptions, ReferenceOptions, SpaceGiraffeOptions,
-    Spacing, Spots, VectorLabelTexture, cells, cellular_noise, color_noise, cow, cow_progression,
-    giraffe_progression, iterated_reference, label_ramp, noise, octaves, reference_texture,
-    space_giraffe, turbulence,
+    OctaveSource, OctavesOptions, ProgressionOptions, PupsField, PupsRecipe, ReferenceOptions,
+    SpaceGiraffeOptions, Spacing, Spots, TurbulenceOptions, VectorLabelTexture, cells,
+    cellular_noise, color_noise, control_points, cow, cow_progression, giraffe_progression,
+    iterated_reference, label_ramp, noise, octaves, reference_texture, space_giraffe, turbulence,
 };
 pub use texture::{Texture, VectorTexture};
 pub use weight::AxialWeight;

@@ -1,6 +1,6 @@
 //! What a texture is made with, beside its points.
 
-use crate::{AxialWeight, PupsError};
+use crate::{AxialWeight, PupsError, Range, range};
 use glam::DVec3;
 
 /// How the weights of control points are computed.
@@ -82,6 +82,13 @@ impl Orientation {
     }
 }
 
+/// Lengths of axes as multiples of their edges. From one half down, supports would not cover the plane.
+pub(crate) const AXIS_SCALE: Range = range!(above 0.5 to 16);
+/// ε of equation 4.
+pub(crate) const STRENGTH: Range = range!(from 0 below 1);
+/// Dips of an axial weight.
+pub(crate) const DIPS: Range = range!(from 1 to 16);
+
 impl PupsOptions {
     /// Refuses options that break a limit, for a texture of `n_points` control points.
     ///
@@ -91,20 +98,9 @@ impl PupsOptions {
     /// strength are outside of their ranges, or a vector has no length; [`Count`](crate::PupsErrorKind::Count) if the
     /// number of vectors is neither 1 nor that of the points.
     pub fn check(&self, n_points: usize) -> Result<(), PupsError> {
-        let scale = self.axis_scale;
-        PupsError::check(
-            scale > 0.5 && scale <= 16.0,
-            "axis scale",
-            scale,
-            "above 0.5 and at most 16",
-        )?;
+        PupsError::check_in(AXIS_SCALE, "axis scale", self.axis_scale)?;
         if let AxialWeight::Oscillating { dips, depth } = self.weight {
-            PupsError::check(
-                (1..=16).contains(&dips),
-                "number of dips",
-                f64::from(dips),
-                "1 to 16",
-            )?;
+            PupsError::check_in(DIPS, "number of dips", dips.into())?;
             let holds = (0.0..=0.99).contains(&depth);
             PupsError::check(
                 holds,
@@ -117,12 +113,7 @@ impl PupsOptions {
             return Ok(());
         };
         let strength = orientation.strength;
-        PupsError::check(
-            (0.0..1.0).contains(&strength),
-            "strength of the orientations",
-            strength,
-            "at least 0 and below 1",
-        )?;
+        PupsError::check_in(STRENGTH, "strength of the orientations", strength)?;
         let count = orientation.vectors.len();
         if count != 1 {
             PupsError::check_count("orientations", count, n_points)?;

@@ -7,6 +7,9 @@
 //! texture. By default each has the paper's parameters, on the paper's torus `[-1, 1]²`, and repeats with its period.
 //! Each can progress: the spacing of the points and the probability of a label may depend on the position. A
 //! progression from left to right belongs on a domain that does not wrap in x.
+//!
+//! To add a recipe, write a file that implements [`PupsRecipe`] for its options, and a line in the table of
+//! [`recipes!`](crate::recipes).
 
 mod label_texture;
 mod layers;
@@ -16,6 +19,7 @@ mod spacing;
 mod cells;
 mod cellular_noise;
 mod color_noise;
+mod control_points;
 mod cow;
 mod iterated;
 mod noise;
@@ -28,6 +32,7 @@ mod space_giraffe;
 pub use cells::{CellsOptions, cells};
 pub use cellular_noise::{CellularNoiseOptions, cellular_noise};
 pub use color_noise::{ColorNoiseOptions, color_noise};
+pub use control_points::{Cells, ControlPoint, ControlPoints, control_points};
 pub use cow::{CowOptions, cow};
 pub use iterated::{IteratedOptions, IterationPoints, iterated_reference};
 pub use label_texture::{LabelTexture, VectorLabelTexture};
@@ -35,13 +40,105 @@ pub use layers::Layers;
 pub use net_options::NetOptions;
 pub use noise::{NoiseOptions, noise};
 pub use octave::{Folding, Octave};
-pub use octaves::{OctaveSource, OctavesOptions, octaves, turbulence};
+pub use octaves::{OctaveSource, OctavesOptions, TurbulenceOptions, octaves, turbulence};
 pub use progression::{
-    LabelRampOptions, ProgressionOptions, cow_progression, giraffe_progression, label_ramp,
+    CowProgressionOptions, GiraffeProgressionOptions, LabelRampOptions, ProgressionOptions,
+    cow_progression, giraffe_progression, label_ramp,
 };
 pub use reference::{ReferenceOptions, reference_texture};
 pub use space_giraffe::{SpaceGiraffeOptions, Spots, space_giraffe};
 pub use spacing::Spacing;
+
+use crate::{PupsError, VectorTexture};
+use dapple_hash::Seed;
+use dapple_points::Domain;
+use dapple_raster::Field;
+use std::sync::Arc;
+
+/// The options of a texture, as far as all textures are alike. `Image` is what a texture follows: nothing, or a
+/// [`ReferenceImage`](crate::ReferenceImage).
+pub trait PupsRecipe<Image = ()>: Clone + Default {
+    /// Whether the texture has a color at each position, not a number.
+    const IS_COLOR: bool = false;
+
+    /// Where the control points lie. A default that does not wrap along an axis is that of a texture that changes along
+    /// it, and belongs on such domains.
+    fn domain_mut(&mut self) -> &mut Domain;
+
+    /// About how many control points the texture has, rather too many than too few, without placing them. It may be
+    /// infinite.
+    fn expected_points(&self) -> f64;
+
+    /// The texture, with values from 0 to 1 where they are random.
+    ///
+    /// # Errors
+    ///
+    /// Those of the function that makes the texture alone.
+    fn build(&self, image: &Image, seed: Seed) -> Result<PupsField, PupsError>;
+}
+
+/// A texture of any kind, as a function of the plane.
+#[derive(Clone)]
+pub enum PupsField {
+    /// A number at each position.
+    Numbers(Arc<dyn Field>),
+    /// A color at each position.
+    Colors(Box<VectorTexture<3>>),
+}
+
+impl PupsField {
+    fn numbers(field: impl Field + 'static) -> Self {
+        Self::Numbers(Arc::new(field))
+    }
+}
+
+impl core::fmt::Debug for PupsField {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Numbers(_) => "Numbers",
+            Self::Colors(_) => "Colors",
+        })
+    }
+}
+
+/// The table of all recipes, given to another macro: for each its name as data, a name in Rust, and its options. Those that
+/// follow an image are in `Referenced`, which the caller defines.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! recipes {
+    ($table:ident) => {
+        $table! {
+            /// Random values, interpolated, from 0 to 1.
+            "noise" Noise($crate::NoiseOptions),
+            /// Octaves of noise, from 0 to 1.
+            "octaves" Octaves($crate::OctavesOptions),
+            /// Octaves of folded noise, from 0 to 1.
+            "turbulence" Turbulence($crate::TurbulenceOptions),
+            /// Cells with a random value each, from 0 to 1.
+            "cells" Cells($crate::CellsOptions),
+            /// Layers of cells, from 0 to 1.
+            "cellular_noise" CellularNoise($crate::CellularNoiseOptions),
+            /// Random colors, interpolated.
+            "color_noise" ColorNoise($crate::ColorNoiseOptions),
+            /// The patches of a cow, 0 or 1.
+            "cow" Cow($crate::CowOptions),
+            /// The spots of a giraffe (0) on its ground (1).
+            "space_giraffe" SpaceGiraffe($crate::SpaceGiraffeOptions),
+            /// A cow whose patches get smaller to the right.
+            "cow_progression" CowProgression($crate::CowProgressionOptions),
+            /// A giraffe whose spots get smaller to the right.
+            "giraffe_progression" GiraffeProgression($crate::GiraffeProgressionOptions),
+            /// Black cells on the left, white ones on the right.
+            "label_ramp" LabelRamp($crate::LabelRampOptions),
+            /// Black and white cells after an image.
+            "reference" Reference(Referenced<$crate::ReferenceOptions>),
+            /// The last of several rounds of black and white cells, the first after an image: edges like a coast.
+            "iterated_reference" IteratedReference(Referenced<$crate::IteratedOptions>),
+            /// Control points that are given one by one.
+            "points" Points($crate::ControlPoints),
+        }
+    };
+}
 
 #[cfg(test)]
 mod tests;

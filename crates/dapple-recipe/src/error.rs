@@ -3,7 +3,7 @@
 use crate::words::similar_words;
 use core::fmt;
 use dapple_color::ColorError;
-use dapple_pups::PupsError;
+use dapple_pups::{PupsError, Range};
 use dapple_raster::RasterError;
 use dapple_tile::TileError;
 use dapple_wavelet::WaveletError;
@@ -155,6 +155,11 @@ impl RecipeError {
         } else {
             Err(Self::new(RecipeErrorKind::Range { what, value, range }))
         }
+    }
+
+    /// Refuses a number outside of a range.
+    pub(crate) fn check_in(range: Range, what: &'static str, value: f64) -> Result<(), Self> {
+        Self::check(range.holds(value), what, value, range.text)
     }
 
     /// The same error at a place of the text.

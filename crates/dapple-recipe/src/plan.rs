@@ -4,41 +4,32 @@
 //! evaluated step by step, each step once. What every pixel gets depends on its position alone, except after the steps
 //! that see the whole tile, which are evaluated beforehand for a whole picture: see [`Plan::whole`].
 
+mod builder;
 mod evaluate;
-mod fields;
-mod generate;
+mod field;
 mod order;
-mod pups;
 mod step;
 mod whole;
 mod work;
 
+pub(crate) use builder::{Builder, FREQUENCY};
 pub(crate) use evaluate::Known;
-pub use fields::{NodeColors, NodeField};
+pub use field::{NodeColors, NodeField};
 pub(crate) use order::order;
-pub(crate) use step::Layers;
+pub(crate) use step::{Laid, Step};
 pub use whole::Whole;
-pub(crate) use whole::blend_values;
 pub use work::PlanLimits;
+pub(crate) use work::Work;
 
-use crate::{ImageAlpha, Input, Material, Node, Recipe, RecipeError, RecipeErrorKind};
+use crate::{ImageAlpha, Input, Material, Node, Recipe, RecipeError, RecipeErrorKind, Values};
 use dapple_color::LinearRgb;
+use dapple_pups::{Range, range};
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
 use indexmap::IndexMap;
-use std::ops::Range;
 use std::sync::Arc;
-use step::{Step, needed};
-use work::{Work, check_steps};
-
-/// What a node makes: numbers or colors, with one value for each position.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Values {
-    /// Numbers.
-    Numbers(Vec<f32>),
-    /// Colors, linear.
-    Colors(Vec<LinearRgb>),
-}
+use step::{ancestors, needed};
+use work::check_steps;
 
 /// An image that a recipe may name.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +53,7 @@ pub type Images = std::collections::BTreeMap<String, Picture>;
 ///
 /// let recipe = Recipe::builtin("flagstone")?;
 /// let plan = Plan::new(&recipe, &Images::new(), 0.0)?;
-/// let height = plan.height();
+/// let height = plan.height()?;
 /// let raster = height.to_raster(&plan.window([64, 64])?)?;
 /// assert!(raster.pixels().iter().all(|height| (0.0..=1.0).contains(height)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -142,31 +133,21 @@ impl Plan {
         time: f64,
         limits: &PlanLimits,
     ) -> Result<Self, RecipeError> {
-        RecipeError::check(time.is_finite(), "time", time, "finite")?;
+        RecipeError::check_in(TIME, "time", time)?;
         for side in recipe.extent {
-            RecipeError::check(
-                side > 0.0 && side <= 1e6,
-                "extent",
-                side,
-                "above 0 and at most 1e6",
-            )?;
+            RecipeError::check_in(EXTENT, "extent", side)?;
         }
-        let mut builder = step::Builder::new(recipe, images, time);
-        let mut work = Work::new(limits);
-        let mut names = IndexMap::new();
+        let mut builder = Builder::new(recipe, images, time, limits);
         for name in order(recipe)? {
-            let node = &recipe.nodes[name];
-            let step = work
-                .add(builder.generator(), node)
-                .and_then(|()| builder.node(name, node));
-            names.insert(name.to_owned(), step.map_err(|error| error.within(name))?);
+            let added = builder.add(name, &recipe.nodes[name]);
+            added.map_err(|error| error.within(name))?;
         }
         let channels = channels(recipe, &mut builder).map_err(|error| error.within("material"))?;
         let plan = Self {
             extent: recipe.extent.into(),
             wrap: recipe.wrap,
-            steps: builder.into_steps().into(),
-            names,
+            steps: builder.steps.into(),
+            names: builder.names,
             channels,
             material: recipe.material.clone(),
             limits: *limits,
@@ -205,25 +186,58 @@ impl Plan {
     }
 
     /// The height of the material.
-    #[must_use]
-    pub fn height(&self) -> NodeField {
-        NodeField::new(self.steps.clone(), self.channels.height)
+    ///
+    /// # Errors
+    ///
+    /// [`Global`](RecipeErrorKind::Global) if a node that it is made of sees the whole tile, so that it has no value at a
+    /// single position.
+    pub fn height(&self) -> Result<NodeField, RecipeError> {
+        self.local(self.channels.height)?;
+        Ok(NodeField::new(self.steps.clone(), self.channels.height))
     }
 
-    /// The number that a node makes at every position; none if there is no such node, or if it makes a color.
-    #[must_use]
-    pub fn field(&self, node: &str) -> Option<NodeField> {
-        let &step = self.names.get(node)?;
-        (!self.steps[step].is_color()).then(|| NodeField::new(self.steps.clone(), step))
+    /// The number that a node makes at every position.
+    ///
+    /// # Errors
+    ///
+    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node,
+    /// [`NotANumber`](RecipeErrorKind::NotANumber) if it makes a color, and as [`height`](Self::height).
+    pub fn field(&self, node: &str) -> Result<NodeField, RecipeError> {
+        let step = self.find(node)?;
+        if self.steps[step].is_color() {
+            return Err(not_a_number(&Input::from(node)));
+        }
+        Ok(NodeField::new(self.steps.clone(), step))
     }
 
-    /// The color that a node makes at every position; none if there is no such node, or if it makes a number.
-    #[must_use]
-    pub fn colors(&self, node: &str) -> Option<NodeColors> {
-        let &step = self.names.get(node)?;
-        self.steps[step]
-            .is_color()
-            .then(|| NodeColors::new(self.steps.clone(), step))
+    /// The color that a node makes at every position; of a number, a gray.
+    ///
+    /// # Errors
+    ///
+    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node, and as [`height`](Self::height).
+    pub fn colors(&self, node: &str) -> Result<NodeColors, RecipeError> {
+        Ok(NodeColors::new(self.steps.clone(), self.find(node)?))
+    }
+
+    /// The step of a node that has a value at a single position.
+    fn find(&self, node: &str) -> Result<usize, RecipeError> {
+        let &step = self.names.get(node).ok_or_else(|| {
+            let name = node.to_owned();
+            let names = self.names.keys().map(String::as_str);
+            RecipeError::new(RecipeErrorKind::UnknownNode { name }).meant(node, names)
+        })?;
+        self.local(step)?;
+        Ok(step)
+    }
+
+    /// Refuses a step that is made of what sees the whole tile.
+    fn local(&self, step: usize) -> Result<(), RecipeError> {
+        let is_global = |&index: &usize| matches!(self.steps[index], Step::Global(_));
+        let Some(global) = ancestors(&self.steps, &[step]).into_iter().find(is_global) else {
+            return Ok(());
+        };
+        let during = "at single positions";
+        Err(self.within(global, RecipeError::new(RecipeErrorKind::Global { during })))
     }
 
     /// The values of steps at the pixels of a window, in the order of the steps, on all cores where the feature `rayon` is
@@ -245,7 +259,7 @@ impl Plan {
         let is_shared = |index: usize| {
             // A constant is made as soon as it is copied, and what sees the whole tile lies ready.
             let step = &self.steps[index];
-            let is_ready = matches!(step, Step::Number(_) | Step::Color(_) | Step::Global(..));
+            let is_ready = matches!(step, Step::Number(_) | Step::Color(_) | Step::Global(_));
             !is_ready && of_height.binary_search(&index).is_ok()
         };
         let mut steps = needed(&self.steps, wanted, is_shared);
@@ -266,16 +280,15 @@ impl Plan {
     }
 }
 
-/// The steepest relief: far more than any texture needs, and slopes and their squares are finite.
-const MAX_RELIEF: f64 = 1e6;
+const TIME: Range = range!(finite);
+pub(crate) const EXTENT: Range = range!(above 0 to 1e6);
+/// Far more than any texture needs, so that slopes and their squares are finite.
+pub(crate) const RELIEF: Range = range!(from -1e6 to 1e6);
 
 /// The steps of the material, which are made after all nodes.
-fn channels(recipe: &Recipe, builder: &mut step::Builder<'_>) -> Result<Channels, RecipeError> {
+fn channels(recipe: &Recipe, builder: &mut Builder<'_>) -> Result<Channels, RecipeError> {
     let material = &recipe.material;
-    let relief = material.relief;
-    // NaN is no less than anything.
-    let holds = relief.abs() <= MAX_RELIEF;
-    RecipeError::check(holds, "relief", relief, "from -1e6 to 1e6")?;
+    RecipeError::check_in(RELIEF, "relief", material.relief)?;
     let height = builder.number(&material.height)?;
     let albedo = match &material.albedo {
         Some(albedo) => builder.any(albedo)?,
@@ -287,56 +300,6 @@ fn channels(recipe: &Recipe, builder: &mut step::Builder<'_>) -> Result<Channels
         roughness: builder.number(&material.roughness)?,
         metallic: builder.number(&material.metallic)?,
     })
-}
-
-impl Values {
-    /// How many there are.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        match self {
-            Self::Numbers(numbers) => numbers.len(),
-            Self::Colors(colors) => colors.len(),
-        }
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The numbers; of colors, the luminance.
-    pub(crate) fn into_grays(self) -> Vec<f32> {
-        match self {
-            Self::Numbers(numbers) => numbers,
-            Self::Colors(colors) => colors.into_iter().map(LinearRgb::luminance).collect(),
-        }
-    }
-
-    /// The colors; of numbers, grays.
-    pub(crate) fn into_colors(self) -> Vec<LinearRgb> {
-        match self {
-            Self::Numbers(numbers) => numbers.into_iter().map(LinearRgb::gray).collect(),
-            Self::Colors(colors) => colors,
-        }
-    }
-
-    /// Some of them.
-    pub(crate) fn part(&self, range: Range<usize>) -> Self {
-        match self {
-            Self::Numbers(numbers) => Self::Numbers(numbers[range].to_vec()),
-            Self::Colors(colors) => Self::Colors(colors[range].to_vec()),
-        }
-    }
-
-    /// These, and more of the same kind behind them.
-    pub(crate) fn append(&mut self, more: &Self) {
-        match (self, more) {
-            (Self::Numbers(numbers), Self::Numbers(more)) => numbers.extend_from_slice(more),
-            (Self::Colors(colors), Self::Colors(more)) => colors.extend_from_slice(more),
-            _ => unreachable!("a step makes numbers or colors, always the same"),
-        }
-    }
 }
 
 impl Input {

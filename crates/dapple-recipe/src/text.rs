@@ -1,10 +1,12 @@
 //! Recipes as text: TOML and JSON, with errors that name the line and the nearest valid word.
 
-use crate::{Place, Recipe, RecipeError, RecipeErrorKind, SCHEMA};
-use serde::de::DeserializeOwned;
-use unique::UniqueKeys;
+use crate::{Place, PupsNode, Recipe, RecipeError, RecipeErrorKind, SCHEMA};
+use content::Content;
+use serde::Deserialize as _;
+use serde_json::Value;
 
-mod unique;
+mod content;
+mod refusal;
 
 /// The most bytes of a recipe. More than this is no recipe.
 pub const MAX_TEXT: usize = 1 << 22;
@@ -21,20 +23,34 @@ impl Recipe {
     /// past [`MAX_TEXT`] bytes.
     pub fn from_toml(text: &str) -> Result<Self, RecipeError> {
         check_length(text)?;
-        let parsed = parse_toml(text);
-        checked(parsed, parse_toml::<Version>(text))
+        let content: Content = toml::from_str(text).map_err(|error| {
+            let byte = error.span().map(|span| span.start);
+            text_error(error.message()).at(byte.map(|byte| place_of(text, byte)))
+        })?;
+        check_version(&content)?;
+        Self::deserialize(&content).map_err(|refusal| {
+            let byte = refusal.byte_in_toml(text);
+            text_error(&refusal.message).at(byte.map(|byte| place_of(text, byte)))
+        })
     }
 
     /// The recipe that a text in JSON holds.
     ///
     /// # Errors
     ///
-    /// As [`from_toml`](Self::from_toml).
+    /// Those of [`from_toml`](Self::from_toml).
     pub fn from_json(text: &str) -> Result<Self, RecipeError> {
         check_length(text)?;
-        // The maps that recipes are read into would keep the last of two values.
-        let recipe = parse_json::<UniqueKeys>(text).and_then(|_| parse_json(text));
-        checked(recipe, parse_json::<Version>(text))
+        let content: Content = serde_json::from_str(text).map_err(|error| {
+            let (line, column) = (error.line(), error.column());
+            let full = error.to_string();
+            // The reader's own words for the place are cut off, since the error tells it in ours.
+            let message = full.split(" at line ").next().unwrap_or(&full);
+            text_error(message).at((line > 0).then_some(Place { line, column }))
+        })?;
+        check_version(&content)?;
+        Self::deserialize(&content)
+            .map_err(|refusal| text_error(&refusal.message).at(refusal.place_in_json(text)))
     }
 
     /// The recipe as TOML.
@@ -56,12 +72,6 @@ impl Recipe {
     }
 }
 
-/// All that is looked at of a recipe that cannot be read: it may be of another version.
-#[derive(serde::Deserialize)]
-struct Version {
-    dapple: u32,
-}
-
 fn check_length(text: &str) -> Result<(), RecipeError> {
     if text.len() > MAX_TEXT {
         return Err(RecipeError::new(RecipeErrorKind::Count {
@@ -73,36 +83,41 @@ fn check_length(text: &str) -> Result<(), RecipeError> {
     Ok(())
 }
 
-/// The recipe, if it is of this version; of another one, that is the error to tell.
-fn checked(
-    recipe: Result<Recipe, RecipeError>,
-    version: Result<Version, RecipeError>,
-) -> Result<Recipe, RecipeError> {
-    match version {
-        Ok(Version { dapple }) if dapple != SCHEMA => {
-            Err(RecipeError::new(RecipeErrorKind::Schema {
-                version: dapple,
-            }))
-        }
-        _ => recipe,
+impl PupsNode {
+    /// The texture as a value of JSON.
+    ///
+    /// # Errors
+    ///
+    /// [`Text`](RecipeErrorKind::Text) if it holds what cannot be written as data, such as a function.
+    pub fn to_json(&self) -> Result<Value, RecipeError> {
+        serde_json::to_value(self).map_err(|error| text_error(&error.to_string()))
+    }
+
+    /// The texture of a value of JSON.
+    ///
+    /// # Errors
+    ///
+    /// [`Text`](RecipeErrorKind::Text) for what no texture has.
+    pub fn from_json(value: &Value) -> Result<Self, RecipeError> {
+        let content =
+            Content::deserialize(value).map_err(|error| text_error(&error.to_string()))?;
+        Self::deserialize(&content).map_err(|refusal| text_error(&refusal.message))
     }
 }
 
-fn parse_toml<T: DeserializeOwned>(text: &str) -> Result<T, RecipeError> {
-    toml::from_str(text).map_err(|error| {
-        let place = error.span().map(|span| place_of(text, span.start));
-        text_error(error.message()).at(place)
-    })
-}
-
-fn parse_json<T: DeserializeOwned>(text: &str) -> Result<T, RecipeError> {
-    serde_json::from_str(text).map_err(|error| {
-        let (line, column) = (error.line(), error.column());
-        let full = error.to_string();
-        // The reader's own words for the place are cut off, since the error tells it in ours.
-        let message = full.split(" at line ").next().unwrap_or(&full);
-        text_error(message).at((line > 0).then_some(Place { line, column }))
-    })
+/// Refuses a recipe of another version, whatever else is wrong with it.
+fn check_version(content: &Content) -> Result<(), RecipeError> {
+    let version = match content.get("dapple") {
+        Some(Content::Signed(version)) => u32::try_from(*version),
+        Some(Content::Unsigned(version)) => u32::try_from(*version),
+        _ => return Ok(()),
+    };
+    match version {
+        Ok(version) if version != SCHEMA => {
+            Err(RecipeError::new(RecipeErrorKind::Schema { version }))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The error of a reader, with the nearest of the words that it says it expected.
@@ -121,10 +136,6 @@ fn text_error(message: &str) -> RecipeError {
 
 /// The message with the names of Rust types, if it ends in one, as what is to be written.
 fn plain(message: &str) -> String {
-    // What the reader of TOML says of an enum.
-    if message == "wanted string or table" {
-        return "expected a word or a table".to_owned();
-    }
     let Some((found, expected)) = message.rsplit_once(", expected ") else {
         return message.to_owned();
     };

@@ -46,10 +46,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn photo() -> Result<Raster<LinearRgb>, Box<dyn std::error::Error>> {
     let plan = Plan::new(&Recipe::builtin("flagstone")?, &Images::new(), 0.0)?;
     let whole = plan.window([512, 512])?;
-    let colors = plan
-        .colors("albedo")
-        .ok_or("flagstone has a node with colors")?;
-    let paving = colors.to_raster(&whole.crop([40, 70], [320, 320])?)?;
+    let paving = plan.colors("albedo")?;
+    let paving = paving.to_raster(&whole.crop([40, 70], [320, 320])?)?;
     let light = |x: u32| 1.0 - 0.2 * x as f32 / 320.0;
     Ok(Raster::from_fn(paving.size(), |x, y| {
         paving.row(y)[x as usize] * light(x)

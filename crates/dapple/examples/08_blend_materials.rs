@@ -18,11 +18,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A material is a list of maps: here a color and a height. That of the stones is a recipe …
     let plan = Plan::new(&Recipe::builtin("flagstone")?, &Images::new(), 0.0)?;
     let window = plan.window([512, 512])?;
-    let stones = plan.height().to_raster(&window)?;
-    let stone_color = plan
-        .colors("albedo")
-        .ok_or("flagstone has a node with colors")?;
-    let stone_color = stone_color.to_raster(&window)?;
+    let stones = plan.height()?.to_raster(&window)?;
+    let stone_color = plan.colors("albedo")?.to_raster(&window)?;
 
     // … and that of the moss is noise.
     let grain = wavelet_tile(window.size, &[0.5, 1.0, 0.5], Seed(8))?;

@@ -108,6 +108,6 @@ fn height(plan: &Plan, pixels: u32) -> Result<(), RecipeError> {
     let window = plan
         .window([SIDE; 2])?
         .crop(first, [SIDE + 2 * pixels; 2])?;
-    plan.height().to_raster(&window)?;
+    plan.height()?.to_raster(&window)?;
     Ok(())
 }

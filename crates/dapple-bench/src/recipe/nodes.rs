@@ -88,7 +88,7 @@ fn single(nodes: &str, name: &str) -> Result<Single> {
     let text = format!("dapple = 1\n{nodes}\n[material]\nheight = 0.5\n");
     let recipe = Recipe::from_toml(&text).context(text)?;
     let plan = Plan::new(&recipe, &Images::new(), 0.0)?;
-    let field = plan.field(name).context("the node makes numbers")?;
+    let field = plan.field(name)?;
     Ok(Single { plan, field })
 }
 

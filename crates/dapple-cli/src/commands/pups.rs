@@ -8,18 +8,15 @@ use crate::error::{Exit, Hint, usage};
 use crate::field::{Field, FieldArgs, draw, extent_of};
 use crate::input::ALPHA_HINT;
 use crate::job::Context;
-use crate::words::Word;
-use anyhow::Result;
+use crate::words::{Word, with_dashes};
+use anyhow::{Error, Result};
 use clap::ValueEnum;
-use dapple::pups::{
-    AxialWeight, CellsOptions, CellularNoiseOptions, ColorNoiseOptions, CowOptions,
-    LabelRampOptions, NetOptions, NoiseOptions, OctavesOptions, Orientations, ProgressionOptions,
-    ReferenceOptions, SpaceGiraffeOptions, Spacing, Spots,
-};
-use dapple::raster::Varying;
-use dapple::recipe::{Cells, ControlPoints, ImageAlpha, Images, Node, PupsNode, Referenced};
-use serde::Serialize;
-use std::path::{Path, PathBuf};
+use clap::builder::PossibleValue;
+use dapple::pups::{AxialWeight, Orientations};
+use dapple::recipe::{ImageAlpha, Images, Node, PupsNode};
+use serde::{Serialize, Serializer};
+use serde_json::{Value, json};
+use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -57,7 +54,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "W[xH]", alias = "period", help_heading = "Texture")]
     extent: Option<Extent>,
 
-    /// How many octaves or layers, for octaves, turbulence and cellular-noise.
+    /// How many octaves, layers or rounds, for octaves, turbulence, cellular-noise and iterated-reference.
     #[arg(long, value_name = "N", help_heading = "Texture")]
     octaves: Option<u32>,
 
@@ -86,7 +83,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", help_heading = "Texture")]
     points: Option<PathBuf>,
 
-    /// The image that cells follow, for reference: gray, or color by its luminance.
+    /// The image that cells follow, for reference and iterated-reference: gray, or color by its luminance.
     #[arg(long, value_name = "FILE", help_heading = "Texture")]
     reference: Option<PathBuf>,
 
@@ -123,59 +120,81 @@ pub(crate) struct Args {
     image: ImageArgs,
 }
 
-/// Which texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum Kind {
-    /// Random values, interpolated.
-    Noise,
-    /// Octaves of noise.
-    Octaves,
-    /// Octaves of folded noise.
-    Turbulence,
-    /// Cells with a random value each.
-    Cells,
-    /// Layers of cells.
-    #[value(alias = "cellular_noise")]
-    CellularNoise,
-    /// Random colors, interpolated.
-    #[value(alias = "color_noise")]
-    ColorNoise,
-    /// The patches of a cow.
-    Cow,
-    /// The spots of a giraffe.
-    Giraffe,
-    /// A cow whose patches get smaller to the right.
-    #[value(alias = "cow_progression")]
-    CowProgression,
-    /// A giraffe whose spots get smaller to the right.
-    #[value(alias = "giraffe_progression")]
-    GiraffeProgression,
-    /// Black cells on the left, white ones on the right.
-    Ramp,
-    /// Control points of your own: --points.
-    Control,
-    /// Black and white cells after an image: --reference.
-    Reference,
+/// Which texture: an index into [`PupsNode::KINDS`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Kind(usize);
+
+/// Textures that have a shorter name on the command line than in recipes.
+const SHORT_NAMES: [(&str, &str); 3] = [
+    ("space_giraffe", "giraffe"),
+    ("label_ramp", "ramp"),
+    ("points", "control"),
+];
+
+const KINDS: [Kind; PupsNode::KINDS.len()] = {
+    let mut kinds = [Kind(0); PupsNode::KINDS.len()];
+    let mut index = 0;
+    while index < kinds.len() {
+        kinds[index] = Kind(index);
+        index += 1;
+    }
+    kinds
+};
+
+impl Kind {
+    /// The name in recipes.
+    fn in_recipes(self) -> &'static str {
+        PupsNode::KINDS[self.0].0
+    }
+
+    /// The name on the command line.
+    fn name(self) -> String {
+        let name = self.in_recipes();
+        let short = SHORT_NAMES.iter().find(|(long, _)| *long == name);
+        with_dashes(short.map_or(name, |(_, short)| short))
+    }
+
+    /// The texture with all its defaults, as data.
+    fn defaults(self) -> Result<Value> {
+        Ok(serde_json::to_value(PupsNode::of_kind(self.in_recipes()))?)
+    }
 }
 
-/// Runs it.
+impl ValueEnum for Kind {
+    fn value_variants<'a>() -> &'a [Self] {
+        &KINDS
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, about) = PupsNode::KINDS[self.0];
+        let value = PossibleValue::new(self.name()).help(about.trim_end_matches('.'));
+        Some(value.alias(with_dashes(name)).alias(name))
+    }
+}
+
+impl Serialize for Kind {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.name())
+    }
+}
+
+/// Draws the texture.
 ///
 /// # Errors
 ///
-/// Whatever went wrong.
+/// Options that the texture does not have or that are out of range, or a file that cannot be read or written.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
-    args.check()?;
+    let node = args.node()?;
     let field = Field {
         command: "pups",
-        node: Node::Pups(args.node()?),
-        is_color: args.kind == Kind::ColorNoise,
+        is_color: node.is_color(),
+        images: args.images(&node)?,
+        node: Node::Pups(node),
         extent: args
             .extent
             .map_or_else(|| extent_of(args.field.size, SIDE), |extent| extent.0),
         range: [0.0, 1.0],
         frames: None,
-        images: args.images()?,
     };
     draw(&field, &args.field, &args.image, args, context)
 }
@@ -183,198 +202,166 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
 /// The shorter side of a picture, in units of the plane: that of the paper's torus.
 const SIDE: f64 = 2.0;
 
+/// An option of the command line.
+struct Given {
+    option: &'static str,
+    /// The names of what it sets in the options of a texture, of which each texture has one at most.
+    names: &'static [&'static str],
+    value: Value,
+}
+
 impl Args {
-    /// Refuses options that the texture does not have.
-    fn check(&self) -> Result<()> {
-        use Kind::{
-            Cells, CellularNoise, Control, Cow, CowProgression, Giraffe, GiraffeProgression,
-            Octaves, Reference, Turbulence,
-        };
-        let progressions = [CowProgression, GiraffeProgression];
-        let rules: [(&str, bool, &[Kind]); 10] = [
-            ("--spacings", self.spacings.is_some(), &progressions),
-            (
-                "--octaves",
-                self.octaves.is_some(),
-                &[Octaves, Turbulence, CellularNoise],
-            ),
-            (
-                "--gain",
-                self.gain.is_some(),
-                &[Octaves, Turbulence, CellularNoise],
-            ),
-            (
-                "--points-per-cell",
-                self.points_per_cell.is_some(),
-                &[Cells, CellularNoise],
-            ),
-            ("--probability", self.probability.is_some(), &[Cow]),
-            ("--literal", self.literal, &[Giraffe]),
-            ("--points", self.points.is_some(), &[Control]),
-            ("--hard", self.hard, &[Control]),
-            ("--reference", self.reference.is_some(), &[Reference]),
+    /// The texture with what the command line says of it.
+    fn node(&self) -> Result<PupsNode> {
+        let kind = self.kind;
+        let mut data = kind.defaults()?;
+        for given in self.given()? {
+            let Some(path) = path(&data, kind, given.names) else {
+                return Err(not_for(&given, kind));
+            };
+            if let Some(option) = data.pointer_mut(&path) {
+                *option = given.value;
+            }
+        }
+        if let Some(alpha) = self.alpha {
+            data[kind.in_recipes()]["alpha"] = serde_json::to_value(alpha)?;
+        }
+        if kind.in_recipes() == "points" && self.points.is_none() {
+            return Err(usage("there are no control points").hint("give them with --points FILE"));
+        }
+        Ok(serde_json::from_value(data)?)
+    }
+
+    /// The options of textures that the command line gives.
+    fn given(&self) -> Result<Vec<Given>> {
+        let points = self.points.as_deref().map(points::read).transpose()?;
+        let spacings = self.spacings.map(|Numbers(distances)| distances);
+        let counts = self.points_per_cell.map(|Numbers(counts)| counts);
+        let all: [(&str, &[&str], Option<Value>); 14] = [
             (
                 "--spacing",
-                self.spacing.is_some()
-                    && (progressions.contains(&self.kind) || self.kind == Control),
-                &[],
+                &["spacing"],
+                number("--spacing", self.spacing)?,
+            ),
+            (
+                "--spacings",
+                &["distances"],
+                numbers("--spacings", spacings)?,
+            ),
+            (
+                "--octaves",
+                &["octaves", "layers", "iterations"],
+                self.octaves.map(Value::from),
+            ),
+            ("--gain", &["gain"], number("--gain", self.gain)?),
+            (
+                "--points-per-cell",
+                &["points_per_cell"],
+                counts.map(|counts| json!(counts)),
+            ),
+            (
+                "--probability",
+                &["probability"],
+                number("--probability", self.probability)?,
+            ),
+            (
+                "--literal",
+                &["spots"],
+                self.literal.then(|| json!("literal")),
+            ),
+            ("--points", &["points"], points.map(|points| json!(points))),
+            ("--hard", &["cells"], self.hard.then(|| json!("hard"))),
+            (
+                "--reference",
+                &["file"],
+                self.reference
+                    .as_deref()
+                    .map(|file| json!(file.to_string_lossy())),
+            ),
+            (
+                "--axis-scale",
+                &["axis_scale"],
+                number("--axis-scale", self.axis_scale)?,
+            ),
+            (
+                "--weight",
+                &["weight"],
+                self.weight.map(|weight| json!(weight)),
+            ),
+            (
+                "--orientations",
+                &["orientations"],
+                self.orientations
+                    .as_ref()
+                    .map(|orientations| json!(orientations)),
+            ),
+            (
+                "--strength",
+                &["strength"],
+                number("--strength", self.strength)?,
             ),
         ];
-        for (option, is_given, kinds) in rules {
-            if is_given && !kinds.contains(&self.kind) {
-                let error = usage(format!("{option} is not for {}", name(self.kind)));
-                let names: Vec<_> = kinds.iter().map(|&kind| name(kind)).collect();
-                return Err(if names.is_empty() {
-                    error.hint("take --spacings LEFT,RIGHT for progressions; points of your own have their places")
-                } else {
-                    error.hint(format!("it is for {}", names.join(", ")))
-                });
-            }
-        }
-        Ok(())
-    }
-
-    fn node(&self) -> Result<PupsNode> {
-        Ok(match self.kind {
-            Kind::Noise => {
-                PupsNode::Noise(self.texture(|o: &mut NoiseOptions| (&mut o.spacing, &mut o.net)))
-            }
-            Kind::Octaves => PupsNode::Octaves(self.layers(|o: &mut OctavesOptions| {
-                (&mut o.spacing, &mut o.net, &mut o.octaves, &mut o.gain)
-            })),
-            Kind::Turbulence => PupsNode::Turbulence(self.layers(|o: &mut OctavesOptions| {
-                (&mut o.spacing, &mut o.net, &mut o.octaves, &mut o.gain)
-            })),
-            Kind::Cells => {
-                let mut options = self.texture(|o: &mut CellsOptions| (&mut o.spacing, &mut o.net));
-                self.set_points_per_cell(&mut options.points_per_cell);
-                PupsNode::Cells(options)
-            }
-            Kind::CellularNoise => {
-                let mut options = self.layers(|o: &mut CellularNoiseOptions| {
-                    (&mut o.spacing, &mut o.net, &mut o.layers, &mut o.gain)
-                });
-                self.set_points_per_cell(&mut options.points_per_cell);
-                PupsNode::CellularNoise(options)
-            }
-            Kind::ColorNoise => PupsNode::ColorNoise(
-                self.texture(|o: &mut ColorNoiseOptions| (&mut o.spacing, &mut o.net)),
-            ),
-            Kind::Cow => {
-                let mut options = self.texture(|o: &mut CowOptions| (&mut o.spacing, &mut o.net));
-                if let Some(probability) = self.probability {
-                    options.probability = Varying::Constant(probability);
-                }
-                PupsNode::Cow(options)
-            }
-            Kind::Giraffe => {
-                let mut options =
-                    self.texture(|o: &mut SpaceGiraffeOptions| (&mut o.spacing, &mut o.net));
-                if self.literal {
-                    options.spots = Spots::Literal;
-                }
-                PupsNode::SpaceGiraffe(options)
-            }
-            Kind::CowProgression => PupsNode::CowProgression(self.progression()),
-            Kind::GiraffeProgression => PupsNode::GiraffeProgression(self.progression()),
-            Kind::Ramp => PupsNode::LabelRamp(
-                self.texture(|o: &mut LabelRampOptions| (&mut o.spacing, &mut o.net)),
-            ),
-            Kind::Control => PupsNode::Points(self.control()?),
-            Kind::Reference => PupsNode::Reference(Referenced {
-                file: self.reference_file()?.to_string_lossy().into_owned(),
-                alpha: self.alpha,
-                options: self.texture(|o: &mut ReferenceOptions| (&mut o.spacing, &mut o.net)),
-            }),
-        })
-    }
-
-    /// The options of a texture with what the command line says of its control points.
-    fn texture<T: Default>(&self, parts: impl Fn(&mut T) -> (&mut Spacing, &mut NetOptions)) -> T {
-        let mut options = T::default();
-        let (spacing, net) = parts(&mut options);
-        if let Some(distance) = self.spacing {
-            *spacing = Spacing::from(distance);
-        }
-        self.set_net(net);
-        options
-    }
-
-    /// The same for a texture of several layers.
-    fn layers<T: Default>(
-        &self,
-        parts: impl Fn(&mut T) -> (&mut Spacing, &mut NetOptions, &mut u32, &mut f64),
-    ) -> T {
-        let mut options = self.texture(|options| {
-            let (spacing, net, _, _) = parts(options);
-            (spacing, net)
+        let given = all.into_iter().filter_map(|(option, names, value)| {
+            let value = value?;
+            Some(Given {
+                option,
+                names,
+                value,
+            })
         });
-        let (_, _, layers, gain) = parts(&mut options);
-        *layers = self.octaves.unwrap_or(*layers);
-        *gain = self.gain.unwrap_or(*gain);
-        options
-    }
-
-    fn progression(&self) -> ProgressionOptions {
-        let mut options = ProgressionOptions::default();
-        if let Some(Numbers(distances)) = self.spacings {
-            options.distances = distances;
-        }
-        self.set_net(&mut options.net);
-        options
-    }
-
-    fn control(&self) -> Result<ControlPoints> {
-        let Some(file) = &self.points else {
-            return Err(usage("there are no control points").hint("give them with --points FILE"));
-        };
-        let mut net = NetOptions::default();
-        self.set_net(&mut net);
-        Ok(ControlPoints {
-            points: points::read(file)?,
-            net,
-            cells: if self.hard { Cells::Hard } else { Cells::Mixed },
-        })
-    }
-
-    fn reference_file(&self) -> Result<&Path> {
-        let file = self.reference.as_deref();
-        file.ok_or_else(|| {
-            usage("there is no image to follow").hint("give it with --reference FILE")
-        })
+        Ok(given.collect())
     }
 
     /// The image that the texture follows, if it follows one.
-    fn images(&self) -> Result<Images> {
-        if self.kind != Kind::Reference {
+    fn images(&self, node: &PupsNode) -> Result<Images> {
+        let Some(name) = node.image_file() else {
             return Ok(Images::new());
-        }
-        let file = self.reference_file()?;
+        };
+        let Some(file) = self.reference.as_deref() else {
+            let error = usage("there is no image to follow");
+            return Err(error.hint("give it with --reference FILE"));
+        };
         let picture = read_picture(file, self.alpha, ALPHA_HINT)?;
-        Ok(Images::from([(
-            file.to_string_lossy().into_owned(),
-            picture,
-        )]))
-    }
-
-    fn set_points_per_cell(&self, counts: &mut [u32; 2]) {
-        if let Some(Numbers(least_and_most)) = self.points_per_cell {
-            *counts = least_and_most;
-        }
-    }
-
-    fn set_net(&self, net: &mut NetOptions) {
-        net.axis_scale = self.axis_scale.unwrap_or(net.axis_scale);
-        net.strength = self.strength.unwrap_or(net.strength);
-        net.weight = self.weight.unwrap_or(net.weight);
-        if let Some(orientations) = &self.orientations {
-            net.orientations = orientations.clone();
-        }
+        Ok(Images::from([(name.to_owned(), picture)]))
     }
 }
 
-/// The name of a texture on the command line.
-fn name(kind: Kind) -> String {
-    let value = kind.to_possible_value();
-    value.map_or_else(String::new, |value| value.get_name().to_owned())
+/// Where in the data of a texture the option of one of these names is, if it has one.
+fn path(data: &Value, kind: Kind, names: &[&str]) -> Option<String> {
+    let kind = kind.in_recipes();
+    let parts = ["", "/options", "/net", "/options/net"];
+    let mut paths = parts.iter().flat_map(|part| {
+        names
+            .iter()
+            .map(move |name| format!("/{kind}{part}/{name}"))
+    });
+    paths.find(|path| data.pointer(path).is_some())
+}
+
+/// The refusal of an option that a texture does not have, with those that have it.
+fn not_for(given: &Given, kind: Kind) -> Error {
+    let has_it = |&kind: &Kind| {
+        kind.defaults()
+            .is_ok_and(|data| path(&data, kind, given.names).is_some())
+    };
+    let others: Vec<_> = KINDS.into_iter().filter(has_it).map(Kind::name).collect();
+    usage(format!("{} is not for {}", given.option, kind.name()))
+        .hint(format!("it is for {}", others.join(", ")))
+}
+
+/// A number as data, which must be finite.
+fn number(option: &str, number: Option<f64>) -> Result<Option<Value>> {
+    let checked = |number: f64| match number.is_finite() {
+        true => Ok(json!(number)),
+        false => Err(usage(format!("{option} {number}: it must be finite"))),
+    };
+    number.map(checked).transpose()
+}
+
+/// Two numbers as data, which must be finite.
+fn numbers(option: &str, pair: Option<[f64; 2]>) -> Result<Option<Value>> {
+    for part in pair.into_iter().flatten() {
+        number(option, Some(part))?;
+    }
+    Ok(pair.map(|pair| json!(pair)))
 }

@@ -6,15 +6,15 @@
 
 mod divide;
 
-use crate::PupsError;
+use crate::{PupsError, Range, range};
 use dapple_graph::Graph;
 use dapple_hash::{Seed, hash1};
 use dapple_points::PointIdx;
 use divide::divide;
 use std::collections::BTreeSet;
 
-/// The most points that a group can be asked to have.
-const LARGEST_GROUP: u32 = 16;
+/// How many points a group can be asked to have.
+pub(crate) const POINTS_PER_CELL: Range = range!(from 1 to 16);
 
 /// A label for every point, the same for the points of a group, from 0 without gaps.
 ///
@@ -40,7 +40,7 @@ const LARGEST_GROUP: u32 = 16;
 /// ```
 pub fn grouped_labels(graph: &Graph, sizes: [u32; 2], seed: Seed) -> Result<Vec<u32>, PupsError> {
     for size in sizes {
-        let holds = size >= sizes[0] && (1..=LARGEST_GROUP).contains(&size);
+        let holds = size >= sizes[0] && POINTS_PER_CELL.holds(size.into());
         PupsError::check(
             holds,
             "number of points in a group",

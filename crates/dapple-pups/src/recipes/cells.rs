@@ -1,7 +1,8 @@
 //! Cells (section 3.2): of one control point each (figure 9a), or of a few that the graph connects (figure 9b).
 
 use crate::{
-    LabelTexture, NetOptions, PupsError, Spacing, grouped_labels, own_labels, random_values,
+    LabelTexture, NetOptions, PupsError, PupsField, PupsRecipe, Spacing, grouped_labels,
+    own_labels, random_values,
 };
 use dapple_graph::delaunay;
 use dapple_hash::Seed;
@@ -83,4 +84,18 @@ pub fn cells(options: &CellsOptions, seed: Seed) -> Result<LabelTexture, PupsErr
         labels,
         values,
     )
+}
+
+impl PupsRecipe for CellsOptions {
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        self.spacing.expected_points(self.domain)
+    }
+
+    fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
+        Ok(PupsField::numbers(cells(self, seed)?))
+    }
 }

@@ -3,8 +3,12 @@
 //! "We created 4 layers of cellular textures of increasing density and summed them; higher densities have lower
 //! amplitude." The paper does not give the numbers; by default we take those of equation 5.
 
-use super::octaves::check_series;
-use crate::{CellsOptions, LabelTexture, Layers, NetOptions, PupsError, Spacing, cells};
+use super::octaves::{check_series, expected_in_series};
+
+use crate::{
+    CellsOptions, LabelTexture, Layers, NetOptions, PupsError, PupsField, PupsRecipe, Spacing,
+    cells,
+};
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
@@ -88,4 +92,18 @@ pub fn cellular_noise(
         spacing = finer;
     }
     Ok(Layers::geometric(layers, options.gain))
+}
+
+impl PupsRecipe for CellularNoiseOptions {
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        expected_in_series(&self.spacing, self.domain, self.layers, self.lacunarity)
+    }
+
+    fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
+        Ok(PupsField::numbers(cellular_noise(self, seed)?.normalized()))
+    }
 }

@@ -3,7 +3,10 @@
 //!
 //! Colors are interpolated as they are given: give linear RGB, or any three numbers that may be mixed.
 
-use crate::{NetOptions, PupsError, Spacing, VectorTexture, palette_values, random_labels};
+use crate::{
+    NetOptions, PupsError, PupsField, PupsRecipe, Spacing, VectorTexture, palette_values,
+    random_labels,
+};
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
@@ -69,4 +72,20 @@ pub fn color_noise(options: &ColorNoiseOptions, seed: Seed) -> Result<VectorText
     let labels = random_labels(points.len(), n_colors, seed.child("label", 0))?;
     let colors = palette_values(&labels, &options.palette)?;
     options.net.pups(&points, seed)?.vector_texture(colors)
+}
+
+impl PupsRecipe for ColorNoiseOptions {
+    const IS_COLOR: bool = true;
+
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        self.spacing.expected_points(self.domain)
+    }
+
+    fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
+        Ok(PupsField::Colors(Box::new(color_noise(self, seed)?)))
+    }
 }

@@ -2,7 +2,7 @@
 //!
 //! With a spacing that varies it is figure 15, with a probability that varies figure 17.
 
-use crate::{LabelTexture, NetOptions, PupsError, Spacing, biased_labels};
+use crate::{LabelTexture, NetOptions, PupsError, PupsField, PupsRecipe, Spacing, biased_labels};
 use dapple_hash::Seed;
 use dapple_points::Domain;
 use dapple_raster::Varying;
@@ -64,4 +64,18 @@ pub fn cow(options: &CowOptions, seed: Seed) -> Result<LabelTexture, PupsError> 
     let labels = biased_labels(&points, &options.probability, seed.child("label", 0))?;
     let pups = options.net.pups(&points, seed)?;
     LabelTexture::new(pups, labels, options.values.to_vec())
+}
+
+impl PupsRecipe for CowOptions {
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        self.spacing.expected_points(self.domain)
+    }
+
+    fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
+        Ok(PupsField::numbers(cow(self, seed)?))
+    }
 }

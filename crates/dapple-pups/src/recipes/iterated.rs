@@ -8,9 +8,10 @@
 //! The paper does not say whether an iteration's points contain the last's; both are here. If they do, they keep their
 //! label (with an axis scale of at most 1, a texture has at a control point exactly that point's value).
 
+use super::octaves::{COUNT, expected_in_series};
 use crate::{
-    NetOptions, PupsError, PupsErrorKind, ReferenceImage, Spacing, Texture, field_values,
-    random_values,
+    NetOptions, PupsError, PupsErrorKind, PupsField, PupsRecipe, ReferenceImage, Spacing, Texture,
+    field_values, random_values,
 };
 use core::f64::consts::SQRT_2;
 use dapple_hash::Seed;
@@ -91,9 +92,7 @@ pub fn iterated_reference(
     options: &IteratedOptions,
     seed: Seed,
 ) -> Result<Vec<Texture>, PupsError> {
-    let iterations = f64::from(options.iterations);
-    let holds = (1.0..=16.0).contains(&iterations);
-    PupsError::check(holds, "number of iterations", iterations, "1 to 16")?;
+    PupsError::check_in(COUNT, "number of iterations", options.iterations.into())?;
     let mut textures: Vec<Texture> = Vec::new();
     for (iteration, points) in (0..).zip(options.point_sets(seed)?) {
         let seed = seed.child("iteration", iteration);
@@ -137,5 +136,20 @@ impl IteratedOptions {
             Ok(PointSet::new(self.domain, positions)?)
         };
         nested.lengths().iter().map(level).collect()
+    }
+}
+
+impl PupsRecipe<ReferenceImage> for IteratedOptions {
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        expected_in_series(&self.spacing, self.domain, self.iterations, SQRT_2)
+    }
+
+    fn build(&self, image: &ReferenceImage, seed: Seed) -> Result<PupsField, PupsError> {
+        let mut rounds = iterated_reference(image, self, seed)?;
+        Ok(PupsField::numbers(rounds.swap_remove(rounds.len() - 1)))
     }
 }

@@ -1,6 +1,6 @@
 //! Noise (section 3.1): random values at Poisson-disk control points, interpolated. One octave of figure 7.
 
-use crate::{NetOptions, PupsError, Spacing, Texture, random_values};
+use crate::{NetOptions, PupsError, PupsField, PupsRecipe, Spacing, Texture, random_values};
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
@@ -55,4 +55,18 @@ pub fn noise(options: &NoiseOptions, seed: Seed) -> Result<Texture, PupsError> {
         .points(options.domain, seed.child("points", 0))?;
     let values = random_values(points.len(), seed.child("value", 0));
     options.net.pups(&points, seed)?.texture(values)
+}
+
+impl PupsRecipe for NoiseOptions {
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        self.spacing.expected_points(self.domain)
+    }
+
+    fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
+        Ok(PupsField::numbers(noise(self, seed)?))
+    }
 }

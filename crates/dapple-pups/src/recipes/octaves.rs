@@ -8,8 +8,8 @@
 //! the largest possible value: [`Layers::normalized`].
 
 use crate::{
-    Folding, Layers, NetOptions, NoiseOptions, Octave, PupsError, PupsErrorKind, Spacing, Texture,
-    noise,
+    Folding, Layers, NetOptions, NoiseOptions, Octave, PupsError, PupsErrorKind, PupsField,
+    PupsRecipe, Range, Spacing, Texture, noise, range,
 };
 use dapple_hash::Seed;
 use dapple_points::Domain;
@@ -39,6 +39,15 @@ pub struct OctavesOptions {
     /// How the control points are weighted.
     pub net: NetOptions,
 }
+
+/// What a [`turbulence`] is to be like: the same as [`octaves`].
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(transparent)
+)]
+pub struct TurbulenceOptions(pub OctavesOptions);
 
 /// Where octaves come from.
 ///
@@ -168,6 +177,13 @@ impl OctavesOptions {
     }
 }
 
+/// The number of octaves, layers or iterations.
+pub(super) const COUNT: Range = range!(from 1 to 16);
+/// How much finer each is than the one before.
+pub(super) const LACUNARITY: Range = range!(above 1 to 16);
+/// How high each is beside the one before.
+pub(super) const GAIN: Range = range!(above 0 to 1);
+
 /// Refuses a series of layers that is too long or does not get finer and fainter.
 pub(crate) fn check_series(
     what: &'static str,
@@ -175,9 +191,56 @@ pub(crate) fn check_series(
     lacunarity: f64,
     gain: f64,
 ) -> Result<(), PupsError> {
-    PupsError::check((1..=16).contains(&count), what, f64::from(count), "1 to 16")?;
-    let finer = lacunarity > 1.0 && lacunarity <= 16.0;
-    PupsError::check(finer, "lacunarity", lacunarity, "above 1 and at most 16")?;
-    let fainter = gain > 0.0 && gain <= 1.0;
-    PupsError::check(fainter, "gain", gain, "above 0 and at most 1")
+    PupsError::check_in(COUNT, what, count.into())?;
+    PupsError::check_in(LACUNARITY, "lacunarity", lacunarity)?;
+    PupsError::check_in(GAIN, "gain", gain)
+}
+
+impl PupsRecipe for OctavesOptions {
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        match self.source {
+            OctaveSource::Separate => {
+                expected_in_series(&self.spacing, self.domain, self.octaves, self.lacunarity)
+            }
+            OctaveSource::Rescaled => self.spacing.expected_points(self.domain),
+        }
+    }
+
+    fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
+        Ok(PupsField::numbers(octaves(self, seed)?.normalized()))
+    }
+}
+
+impl PupsRecipe for TurbulenceOptions {
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.0.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        self.0.expected_points()
+    }
+
+    fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
+        Ok(PupsField::numbers(turbulence(&self.0, seed)?.normalized()))
+    }
+}
+
+/// The control points of layers, each with distances `factor` times smaller than the one before. Of a number that is
+/// refused when they are to be made there are none.
+pub(super) fn expected_in_series(
+    spacing: &Spacing,
+    domain: Domain,
+    count: u32,
+    factor: f64,
+) -> f64 {
+    let count = if COUNT.holds(count.into()) { count } else { 0 };
+    let scales = core::iter::successors(Some(1.0), |scale| Some(scale * factor));
+    let scales = scales.take(count as usize);
+    scales
+        .map(|scale| spacing.finer(scale).expected_points(domain))
+        .sum()
 }

@@ -6,8 +6,8 @@
 //! distances change by equal ratios over equal lengths, so that the relative change is the same everywhere.
 
 use crate::{
-    CowOptions, LabelTexture, NetOptions, PupsError, SpaceGiraffeOptions, Spacing, cow,
-    space_giraffe,
+    CowOptions, LabelTexture, NetOptions, PupsError, PupsField, PupsRecipe, SpaceGiraffeOptions,
+    Spacing, cow, space_giraffe,
 };
 use dapple_hash::Seed;
 use dapple_points::Domain;
@@ -30,6 +30,24 @@ pub struct ProgressionOptions {
     /// How the control points are weighted.
     pub net: NetOptions,
 }
+
+/// What a [`cow_progression`] is to be like.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(transparent)
+)]
+pub struct CowProgressionOptions(pub ProgressionOptions);
+
+/// What a [`giraffe_progression`] is to be like.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(transparent)
+)]
+pub struct GiraffeProgressionOptions(pub ProgressionOptions);
 
 /// What a [`label_ramp`] is to be like.
 #[derive(Clone, Debug)]
@@ -91,13 +109,7 @@ pub fn cow_progression(
     options: &ProgressionOptions,
     seed: Seed,
 ) -> Result<LabelTexture, PupsError> {
-    let cow_options = CowOptions {
-        domain: options.domain,
-        spacing: options.spacing(),
-        net: options.net.clone(),
-        ..CowOptions::default()
-    };
-    cow(&cow_options, seed)
+    cow(&options.cow(), seed)
 }
 
 /// A space giraffe whose spots become smaller to the right (figure 16).
@@ -111,13 +123,7 @@ pub fn giraffe_progression(
     options: &ProgressionOptions,
     seed: Seed,
 ) -> Result<LabelTexture, PupsError> {
-    let giraffe_options = SpaceGiraffeOptions {
-        domain: options.domain,
-        spacing: options.spacing(),
-        net: options.net.clone(),
-        ..SpaceGiraffeOptions::default()
-    };
-    space_giraffe(&giraffe_options, seed)
+    space_giraffe(&options.giraffe(), seed)
 }
 
 /// Black and white cells, with ever more white to the right (figure 17).
@@ -145,6 +151,24 @@ impl ProgressionOptions {
         let ramp = left_to_right(&self.domain, self.distances);
         Spacing::Distance(Varying::GeometricRamp(ramp))
     }
+
+    fn cow(&self) -> CowOptions {
+        CowOptions {
+            domain: self.domain,
+            spacing: self.spacing(),
+            net: self.net.clone(),
+            ..CowOptions::default()
+        }
+    }
+
+    fn giraffe(&self) -> SpaceGiraffeOptions {
+        SpaceGiraffeOptions {
+            domain: self.domain,
+            spacing: self.spacing(),
+            net: self.net.clone(),
+            ..SpaceGiraffeOptions::default()
+        }
+    }
 }
 
 /// The paper's square, wrapped from top to bottom only.
@@ -161,5 +185,47 @@ fn left_to_right(domain: &Domain, [start, end]: [f64; 2]) -> Ramp {
         to: domain.origin + DVec2::new(domain.size.x, 0.0),
         start,
         end,
+    }
+}
+
+impl PupsRecipe for CowProgressionOptions {
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.0.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        self.0.cow().expected_points()
+    }
+
+    fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
+        Ok(PupsField::numbers(cow_progression(&self.0, seed)?))
+    }
+}
+
+impl PupsRecipe for GiraffeProgressionOptions {
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.0.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        self.0.giraffe().expected_points()
+    }
+
+    fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
+        Ok(PupsField::numbers(giraffe_progression(&self.0, seed)?))
+    }
+}
+
+impl PupsRecipe for LabelRampOptions {
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        self.spacing.expected_points(self.domain)
+    }
+
+    fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
+        Ok(PupsField::numbers(label_ramp(self, seed)?))
     }
 }

@@ -1,6 +1,9 @@
 //! Reference image (section 3.2, figure 13): an image decides which group a control point belongs to.
 
-use crate::{LabelTexture, NetOptions, PupsError, ReferenceImage, Spacing, reference_labels};
+use crate::{
+    LabelTexture, NetOptions, PupsError, PupsField, PupsRecipe, ReferenceImage, Spacing,
+    reference_labels,
+};
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
@@ -63,4 +66,18 @@ pub fn reference_texture(
     let labels = reference_labels(&points, image, seed.child("label", 0));
     let pups = options.net.pups(&points, seed)?;
     LabelTexture::new(pups, labels, options.values.to_vec())
+}
+
+impl PupsRecipe<ReferenceImage> for ReferenceOptions {
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        self.spacing.expected_points(self.domain)
+    }
+
+    fn build(&self, image: &ReferenceImage, seed: Seed) -> Result<PupsField, PupsError> {
+        Ok(PupsField::numbers(reference_texture(image, self, seed)?))
+    }
 }

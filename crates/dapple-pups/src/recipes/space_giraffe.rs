@@ -25,7 +25,10 @@
 
 mod spot;
 
-use crate::{LabelTexture, NetOptions, PupsError, PupsErrorKind, Spacing};
+use crate::{
+    LabelTexture, NetOptions, PupsError, PupsErrorKind, PupsField, PupsRecipe, Range, Spacing,
+    range,
+};
 use dapple_graph::{Graph, delaunay};
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointIdx, PointSet};
@@ -53,6 +56,8 @@ pub struct SpaceGiraffeOptions {
     /// How the control points are weighted.
     pub net: NetOptions,
 }
+
+const PAIRS: Range = range!(from 3 to 256);
 
 /// How the radii around a spot are drawn.
 ///
@@ -134,7 +139,7 @@ impl SpaceGiraffeOptions {
 
     fn check(&self) -> Result<(), PupsError> {
         for n_pairs in self.pairs {
-            let holds = n_pairs >= self.pairs[0] && (3..=256).contains(&n_pairs);
+            let holds = n_pairs >= self.pairs[0] && PAIRS.holds(n_pairs.into());
             PupsError::check(
                 holds,
                 "number of pairs around a spot",
@@ -180,5 +185,21 @@ fn grown(domain: Domain, margin: f64) -> Domain {
         origin: domain.origin - margin,
         size: domain.size + margin * 2.0,
         ..domain
+    }
+}
+
+impl PupsRecipe for SpaceGiraffeOptions {
+    fn domain_mut(&mut self) -> &mut Domain {
+        &mut self.domain
+    }
+
+    fn expected_points(&self) -> f64 {
+        // A spot has its center, and at most so many pairs.
+        let of_spot = 1.0 + 2.0 * f64::from(self.pairs[1]);
+        self.spacing.expected_points(self.domain) * of_spot
+    }
+
+    fn build(&self, (): &(), seed: Seed) -> Result<PupsField, PupsError> {
+        Ok(PupsField::numbers(space_giraffe(self, seed)?))
     }
 }

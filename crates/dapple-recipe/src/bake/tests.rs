@@ -268,7 +268,7 @@ fn a_recipe_that_repeats_has_its_left_columns_past_its_right_edge() {
     let text = text.replace("along = [0.25, 0.0]", "along = [0.0, 0.0]");
     let plan = plan(&text);
     let window = plan.window([64, 64]).unwrap();
-    let height = plan.height();
+    let height = plan.height().unwrap();
     let beyond = window.crop([64, 0], [8, 64]).unwrap();
     let [here, there] = [window.crop([0, 0], [8, 64]).unwrap(), beyond].map(|window| {
         use dapple_raster::Field;
@@ -297,14 +297,20 @@ fn a_field_of_a_node_gives_the_same_at_a_position_as_in_a_window() {
     let colors = plan.colors("layered").unwrap();
     let raster = colors.to_raster(&window).unwrap();
     assert_eq!(
-        colors.sample(window.position(5, 7)),
+        colors.sample(window.position(5, 7)).unwrap(),
         raster.row(7)[5],
         "colors"
     );
+    let error = plan.field("layered").unwrap_err();
     assert!(
-        plan.field("layered").is_none() && plan.colors("height").is_none(),
-        "each of its kind"
+        matches!(error.kind(), RecipeErrorKind::NotANumber { .. }),
+        "{error}"
     );
+    let gray = plan.colors("height").unwrap().sample(window.position(5, 7));
+    let number = plan.field("height").unwrap();
+    let number = number.sample(window.position(5, 7));
+    assert_eq!(gray.unwrap(), LinearRgb::gray(number), "a number is a gray");
+    assert_eq!(plan.field("heigth").unwrap_err().nearest(), Some("height"));
 }
 
 #[test]

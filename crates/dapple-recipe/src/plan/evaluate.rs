@@ -146,7 +146,7 @@ fn step(
             Ok(Values::Numbers(numbers))
         }
         Step::Image(laid) => Ok(laid.at(&places.positions())),
-        Step::ColorNoise(texture) => {
+        Step::Colors(texture) => {
             let colors = match places {
                 Places::Window(window) => texture.to_raster(window)?.into_pixels(),
                 Places::Positions(positions) => {
@@ -157,9 +157,9 @@ fn step(
                 colors.into_iter().map(LinearRgb::from).collect(),
             ))
         }
-        Step::Local(operation, inputs, _) => {
-            let inputs: Vec<_> = inputs.iter().map(made).collect();
-            operation.apply(&inputs, count)
+        Step::Local(local) => {
+            let inputs: Vec<_> = local.inputs.iter().map(made).collect();
+            (local.apply)(&inputs)
         }
         Step::Warp {
             input, by, amount, ..
@@ -173,7 +173,7 @@ fn step(
             let chunks: Result<Vec<_>, _> = core::iter::once(values(first)).chain(rest).collect();
             Ok(join(chunks?).swap_remove(0))
         }
-        Step::Global(..) => match whole {
+        Step::Global(_) => match whole {
             Some(whole) => whole.at(index, places),
             None => Err(RecipeError::new(RecipeErrorKind::Global {
                 during: "at single positions",
@@ -184,10 +184,9 @@ fn step(
 
 /// The positions, shifted by the amount times two numbers for each.
 fn shifted(mut positions: Vec<DVec2>, x: &Values, y: &Values, amount: f64) -> Vec<DVec2> {
-    if let (Values::Numbers(x), Values::Numbers(y)) = (x, y) {
-        for (position, (&x, &y)) in positions.iter_mut().zip(x.iter().zip(y)) {
-            *position += amount * DVec2::new(x.into(), y.into());
-        }
+    let shifts = x.numbers().iter().zip(y.numbers());
+    for (position, (&x, &y)) in positions.iter_mut().zip(shifts) {
+        *position += amount * DVec2::new(x.into(), y.into());
     }
     positions
 }

@@ -113,7 +113,7 @@ fn wavelet_noise_on_a_tile_that_is_not_square_repeats_after_the_tile_alone() {
     ] {
         let recipe = Recipe::from_toml(&text(nodes)).unwrap();
         let plan = Plan::new(&recipe, &Images::new(), 0.0).unwrap();
-        let height = plan.height();
+        let height = plan.height().unwrap();
         let same = |step: DVec2| {
             let places =
                 (0..64).map(|index| DVec2::new(f64::from(index % 8), f64::from(index / 8)));
@@ -203,7 +203,11 @@ fn a_long_chain_of_nodes_is_followed() {
         "dapple = 1\n[nodes]\nn0 = {{ absolute = 0 }}\n{chain}[material]\nheight = \"n999\"\n"
     );
     let plan = Plan::new(&Recipe::from_toml(&text).unwrap(), &Images::new(), 0.0).unwrap();
-    assert_eq!(plan.height().sample(DVec2::ZERO), 999.0, "one for each");
+    assert_eq!(
+        plan.height().unwrap().sample(DVec2::ZERO),
+        999.0,
+        "one for each"
+    );
 }
 
 #[test]
@@ -213,7 +217,7 @@ fn a_node_has_the_same_values_wherever_it_stands_in_the_recipe() {
     let sample = |nodes: String| {
         let text = format!("dapple = 1\nseed = 3\n{nodes}[material]\nheight = \"stones\"\n");
         let plan = Plan::new(&Recipe::from_toml(&text).unwrap(), &Images::new(), 0.0).unwrap();
-        plan.height().sample(DVec2::new(0.3, 0.6))
+        plan.height().unwrap().sample(DVec2::new(0.3, 0.6))
     };
     let alone = sample(node.to_owned());
     assert_eq!(alone, sample(format!("{node}{other}")), "first");
@@ -354,4 +358,46 @@ fn built_in_recipes_are_far_within_the_limits() {
         let plan = Plan::new_within(&recipe, &Images::new(), 0.0, &limits);
         assert!(plan.is_ok(), "{name}: {:?}", plan.err());
     }
+}
+
+#[test]
+fn a_node_that_sees_the_whole_tile_is_refused_as_a_field() {
+    let text = "dapple = 1\n[nodes]\na.coordinate = {}\nb.tile = { input = \"a\" }\nc = { absolute = \"b\" }\n[material]\nheight = \"c\"\n";
+    let plan = Plan::new(&Recipe::from_toml(text).unwrap(), &Images::new(), 0.0).unwrap();
+    for error in [
+        plan.height().unwrap_err(),
+        plan.field("c").unwrap_err(),
+        plan.colors("c").unwrap_err(),
+    ] {
+        let is_global = matches!(error.kind(), RecipeErrorKind::Global { .. });
+        assert!(is_global && error.node() == Some("b"), "{error}");
+    }
+    assert!(plan.field("a").is_ok(), "which is not made of it");
+}
+
+#[test]
+fn a_node_that_refuses_its_values_is_an_error_and_not_black() {
+    let text = "dapple = 1\n[nodes]\na.coordinate = {}\nb.blend = { layers = [{ input = \"#fff\", weight = \"a\" }, { input = \"#000\", weight = -1 }] }\nc.blend = { layers = [{ input = 1, weight = \"a\" }, { input = 0, weight = -1 }] }\n[material]\n";
+    let plan = Plan::new(&Recipe::from_toml(text).unwrap(), &Images::new(), 0.0).unwrap();
+    let window = plan.window([4, 4]).unwrap();
+    let error = plan.colors("b").unwrap().to_raster(&window).unwrap_err();
+    assert!(error.to_string().contains("is -1, but"), "{error}");
+    let field = plan.field("c").unwrap();
+    let error = field.to_raster(&window).unwrap_err();
+    assert!(error.to_string().contains("is -1, but"), "{error}");
+    let error = field.sample_many(&[DVec2::ONE], &mut [0.0]).unwrap_err();
+    assert!(error.to_string().contains("is -1, but"), "{error}");
+}
+
+#[test]
+fn gradient_noise_repeats_after_any_whole_number_of_cells() {
+    let text = "dapple = 1\nnodes.a.noise = { basis = \"gradient\", frequency = 5 }\n[material]\nheight = \"a\"\n";
+    let plan = Plan::new(&Recipe::from_toml(text).unwrap(), &Images::new(), 0.0).unwrap();
+    let height = plan.height().unwrap();
+    let at = DVec2::new(0.25, 0.625);
+    assert_eq!(
+        height.sample(at),
+        height.sample(at + DVec2::ONE),
+        "one tile on"
+    );
 }

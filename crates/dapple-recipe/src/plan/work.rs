@@ -3,12 +3,8 @@
 //! A few lines of a recipe can ask for any number of control points, for wavelet noise of any size, and for warps of
 //! warps, each of which works out all that it is made of once more.
 
-use super::generate::Generator;
-use super::step::{Step, needed};
-use crate::{FractalBasis, Node, PupsNode, RecipeError, RecipeErrorKind};
-use core::f64::consts::SQRT_2;
-use dapple_points::Domain;
-use dapple_pups::{OctaveSource, OctavesOptions, SpaceGiraffeOptions, Spacing};
+use super::step::{Global, Step, needed};
+use crate::{RecipeError, RecipeErrorKind};
 
 /// How much work a recipe may ask for before it is refused.
 ///
@@ -73,121 +69,41 @@ fn check(what: &'static str, value: f64, limit: u64) -> Result<(), RecipeError> 
     Ok(())
 }
 
-/// The work of the nodes that there have been.
-pub(super) struct Work<'a> {
-    limits: &'a PlanLimits,
-    control_points: f64,
-    wavelet_cells: f64,
+/// What making the step of a node takes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Work {
+    /// Control points to be placed and connected.
+    pub(crate) control_points: f64,
+    /// Cells of tiles of wavelet noise.
+    pub(crate) wavelet_cells: f64,
 }
 
-impl<'a> Work<'a> {
+/// The work of all nodes so far.
+pub(super) struct WorkSum<'a> {
+    limits: &'a PlanLimits,
+    sum: Work,
+}
+
+impl<'a> WorkSum<'a> {
     pub(super) fn new(limits: &'a PlanLimits) -> Self {
         Self {
             limits,
-            control_points: 0.0,
-            wavelet_cells: 0.0,
+            sum: Work::default(),
         }
     }
 
-    /// Adds the work of making a node. What is wrong with its options is told when it is made.
-    pub(super) fn add(
-        &mut self,
-        generator: &Generator<'_>,
-        node: &Node,
-    ) -> Result<(), RecipeError> {
-        match node {
-            Node::Pups(pups) => self.control_points += control_points(generator, pups),
-            Node::Noise(noise) if noise.basis == FractalBasis::Pups => {
-                self.control_points +=
-                    of_octaves(&generator.fractal_options(noise), generator.domain());
-            }
-            Node::Noise(noise) => self.add_wavelet(generator, noise.frequency)?,
-            Node::Wavelet(wavelet) => self.add_wavelet(generator, wavelet.frequency)?,
-            _ => {}
-        }
-        check(
-            "control points",
-            self.control_points,
-            self.limits.control_points,
-        )?;
+    /// Adds the work of making a node, or refuses it.
+    pub(super) fn add(&mut self, work: &Work) -> Result<(), RecipeError> {
+        let Self { limits, sum } = self;
+        sum.control_points += work.control_points;
+        sum.wavelet_cells += work.wavelet_cells;
+        check("control points", sum.control_points, limits.control_points)?;
         check(
             "cells of wavelet noise",
-            self.wavelet_cells,
-            self.limits.wavelet_cells,
+            sum.wavelet_cells,
+            limits.wavelet_cells,
         )
     }
-
-    fn add_wavelet(
-        &mut self,
-        generator: &Generator<'_>,
-        frequency: f64,
-    ) -> Result<(), RecipeError> {
-        let cells = generator.wavelet_cells(frequency)?.map(f64::from);
-        self.wavelet_cells += cells[0] * cells[1];
-        Ok(())
-    }
-}
-
-/// The control points of a texture of `dapple-pups`.
-fn control_points(generator: &Generator<'_>, node: &PupsNode) -> f64 {
-    let (tile, strip) = (generator.domain(), generator.strip());
-    let of = |spacing: &Spacing| spacing.expected_points(tile);
-    match node {
-        PupsNode::Noise(options) => of(&options.spacing),
-        PupsNode::Octaves(options) | PupsNode::Turbulence(options) => of_octaves(options, tile),
-        PupsNode::Cells(options) => of(&options.spacing),
-        PupsNode::CellularNoise(options) => {
-            of_series(&options.spacing, tile, options.layers, options.lacunarity)
-        }
-        PupsNode::ColorNoise(options) => of(&options.spacing),
-        PupsNode::Cow(options) => of(&options.spacing),
-        PupsNode::SpaceGiraffe(options) => of(&options.spacing) * of_spot(options),
-        PupsNode::CowProgression(options) | PupsNode::GiraffeProgression(options) => {
-            let mut options = options.clone();
-            options.domain = strip;
-            let centers = options.spacing().expected_points(strip);
-            match node {
-                PupsNode::CowProgression(_) => centers,
-                _ => centers * of_spot(&SpaceGiraffeOptions::default()),
-            }
-        }
-        PupsNode::LabelRamp(options) => options.spacing.expected_points(strip),
-        PupsNode::Reference(node) => of(&node.options.spacing),
-        PupsNode::IteratedReference(node) => {
-            of_series(&node.options.spacing, tile, node.options.iterations, SQRT_2)
-        }
-        PupsNode::Points(node) => node.points.len() as f64,
-    }
-}
-
-/// The control points of a spot of a giraffe: its center, and at most so many pairs.
-fn of_spot(options: &SpaceGiraffeOptions) -> f64 {
-    1.0 + 2.0 * f64::from(options.pairs[1])
-}
-
-fn of_octaves(options: &OctavesOptions, domain: Domain) -> f64 {
-    match options.source {
-        OctaveSource::Separate => of_series(
-            &options.spacing,
-            domain,
-            options.octaves,
-            options.lacunarity,
-        ),
-        OctaveSource::Rescaled => options.spacing.expected_points(domain),
-    }
-}
-
-/// The most layers, octaves or iterations; more are refused when they are to be made.
-const MAX_SERIES: u32 = 16;
-
-/// The control points of layers, each with distances `factor` times smaller than the one before.
-fn of_series(spacing: &Spacing, domain: Domain, count: u32, factor: f64) -> f64 {
-    let count = if count > MAX_SERIES { 0 } else { count };
-    let scales = core::iter::successors(Some(1.0), |scale| Some(scale * factor));
-    let scales = scales.take(count as usize);
-    scales
-        .map(|scale| spacing.finer(scale).expected_points(domain))
-        .sum()
 }
 
 /// How much is worked out for each pixel.
@@ -223,7 +139,7 @@ impl Values {
     fn add(&mut self, before: &[Step], step: &Step) {
         let apart = match step {
             Step::Warp { input, .. } => vec![*input],
-            Step::Global(_, inputs, _) => inputs.clone(),
+            Step::Global(Global { inputs, .. }) => inputs.clone(),
             _ => Vec::new(),
         };
         let under = needed(before, &apart, |_| false);

@@ -1,0 +1,188 @@
+//! The kinds of nodes: each is a file with its name in recipes, its options, and how it becomes a step of a plan.
+//!
+//! To add a kind, write a file that implements [`NodeKind`] for its options, and a line in the table below.
+
+mod alpha;
+mod arithmetic;
+mod blend;
+mod blend_map;
+mod color;
+mod coordinate;
+mod corner_tiles;
+mod distance;
+mod disturb;
+mod image;
+mod levels;
+mod match_borders;
+mod mix;
+mod noise;
+mod power;
+mod profile;
+mod pups;
+mod ramp;
+mod seed;
+mod tile;
+mod warp;
+mod wave;
+mod wavelet;
+mod worley;
+
+pub use alpha::ImageAlpha;
+pub use arithmetic::{Absolute, Add, Divide, Maximum, Minimum, Multiply, Subtract};
+pub use blend::{Blended, BlendedLayer};
+pub use blend_map::BlendMapOf;
+pub use color::ColorOf;
+pub use coordinate::Coordinate;
+pub use corner_tiles::CornerTilesOf;
+pub use dapple_pups::{Cells, ControlPoint, ControlPoints};
+pub use distance::Distance;
+pub use disturb::Disturbed;
+pub use image::ImageNode;
+pub use levels::{Levels, LevelsCurve};
+pub use match_borders::Framed;
+pub use mix::Mix;
+pub use noise::{Fractal, FractalBasis};
+pub use power::Power;
+pub use profile::ProfileOf;
+pub use pups::{PupsNode, Referenced};
+pub use ramp::Ramped;
+pub use seed::NodeSeed;
+pub use tile::Tiled;
+pub use warp::Warp;
+pub use wave::{Wave, Waveform};
+pub use wavelet::WaveletNode;
+pub use worley::{Frequency, Motion, WorleyNode, WorleyValue};
+
+use crate::plan::{Builder, Step, Work};
+use crate::{Input, RecipeError};
+use serde::{Deserialize, Serialize};
+
+/// What every kind of node has.
+///
+/// A node is a number at every position, or a color if [`build`](Self::build) makes a step of colors.
+pub(crate) trait NodeKind {
+    /// The inputs, in a fixed order.
+    fn inputs(&self) -> Vec<&Input> {
+        Vec::new()
+    }
+
+    /// The image file that the node reads, with what becomes of its alpha where the node says so.
+    fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
+        None
+    }
+
+    /// About how much work it is to make the node's step, rather too much than too little.
+    fn work(&self, _plan: &Builder<'_>) -> Result<Work, RecipeError> {
+        Ok(Work::default())
+    }
+
+    /// The step of the node, whose inputs have steps in the plan.
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError>;
+}
+
+/// Makes the enum of all kinds, their names in recipes, and the way from a node to its kind.
+macro_rules! nodes {
+    ($($(#[$doc:meta])* $name:literal $variant:ident($options:ident),)*) => {
+        /// A node of a recipe: a table with one entry, whose name is the kind.
+        ///
+        /// Most nodes make a number at every position. Those that make a color are `ramp`, `color`, `image` of a color
+        /// image, and `pups = { color_noise = … }`; `add`, `multiply`, `mix`, `tile`, `disturb`, `match_borders`,
+        /// `corner_tiles`, `warp` and `blend` make a color where they are given one, and take a number beside it as a
+        /// gray.
+        #[derive(Clone, Debug, Serialize, Deserialize)]
+        #[non_exhaustive]
+        pub enum Node {
+            $($(#[$doc])* #[serde(rename = $name)] $variant($options),)*
+        }
+
+        /// The names of the kinds, as they are in files.
+        pub const KINDS: [&str; [$($name),*].len()] = [$($name),*];
+
+        impl Node {
+            pub(crate) fn kind(&self) -> &dyn NodeKind {
+                match self {
+                    $(Self::$variant(node) => node,)*
+                }
+            }
+        }
+    };
+}
+
+nodes! {
+    /// Worley's cellular basis.
+    "worley" Worley(WorleyNode),
+    /// A partition-of-unity texture.
+    "pups" Pups(PupsNode),
+    /// Wavelet noise.
+    "wavelet" Wavelet(WaveletNode),
+    /// Octaves of noise from 0 to 1, of PUPs, gradients or wavelets.
+    "noise" Noise(Fractal),
+    /// How far along a direction a position is.
+    "coordinate" Coordinate(Coordinate),
+    /// How far from a center a position is.
+    "distance" Distance(Distance),
+    /// An image file, laid over the tile.
+    "image" Image(ImageNode),
+    /// One color at every position.
+    "color" Color(ColorOf),
+    /// The sum of all inputs.
+    "add" Add(Add),
+    /// The first input less the second.
+    "subtract" Subtract(Subtract),
+    /// The product of all inputs.
+    "multiply" Multiply(Multiply),
+    /// The first input over the second; 0 where that is 0.
+    "divide" Divide(Divide),
+    /// The smallest of all inputs.
+    "minimum" Minimum(Minimum),
+    /// The largest of all inputs.
+    "maximum" Maximum(Maximum),
+    /// A number without its sign.
+    "absolute" Absolute(Absolute),
+    /// A number to a power.
+    "power" Power(Power),
+    /// A wave of a number.
+    "wave" Wave(Wave),
+    /// A range of numbers stretched to another.
+    "levels" Levels(Levels),
+    /// The cross-section of a bump, such as spots or channels.
+    "profile" Profile(ProfileOf),
+    /// A part of the way from one input to another.
+    "mix" Mix(Mix),
+    /// Another node at positions that are shifted.
+    "warp" Warp(Warp),
+    /// Colors for numbers.
+    "ramp" Ramp(Ramped),
+    /// A texture made to repeat.
+    "tile" Tile(Tiled),
+    /// Copies of a texture that differ inside.
+    "disturb" Disturb(Disturbed),
+    /// A texture with the borders of another.
+    "match_borders" MatchBorders(Framed),
+    /// Pieces of several textures, in random order.
+    "corner_tiles" CornerTiles(CornerTilesOf),
+    /// A map that says where another texture shows first.
+    "blend_map" BlendMap(BlendMapOf),
+    /// Layers blended by weights.
+    "blend" Blend(Blended),
+}
+
+impl Node {
+    /// The image file that the node names, if it names one.
+    #[must_use]
+    pub fn image_file(&self) -> Option<&str> {
+        Some(self.kind().image()?.0)
+    }
+
+    /// What becomes of the alpha of that file, where the node says so.
+    #[must_use]
+    pub fn image_alpha(&self) -> Option<ImageAlpha> {
+        self.kind().image()?.1
+    }
+
+    /// The inputs of the node, in a fixed order.
+    #[must_use]
+    pub fn inputs(&self) -> Vec<&Input> {
+        self.kind().inputs()
+    }
+}

@@ -1,0 +1,108 @@
+//! Sums, products and the like of inputs at each position.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError};
+use dapple_color::LinearRgb;
+use dapple_raster::PairOperation;
+use serde::{Deserialize, Serialize};
+
+/// The sum of all inputs, numbers or colors; at least one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Add(pub Vec<Input>);
+
+/// The first number less the second.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Subtract(pub [Input; 2]);
+
+/// The product of all inputs, numbers or colors (part by part); at least one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Multiply(pub Vec<Input>);
+
+/// The first number over the second; 0 where that is 0.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Divide(pub [Input; 2]);
+
+/// The smallest of all numbers; at least one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Minimum(pub Vec<Input>);
+
+/// The largest of all numbers; at least one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Maximum(pub Vec<Input>);
+
+/// A number without its sign.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Absolute(pub Input);
+
+impl NodeKind for Add {
+    fn inputs(&self) -> Vec<&Input> {
+        self.0.iter().collect()
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        plan.fold_any(&self.0, |a, b| a + b, |a, b| a + b)
+    }
+}
+
+impl NodeKind for Subtract {
+    fn inputs(&self) -> Vec<&Input> {
+        self.0.iter().collect()
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        plan.fold(&self.0, |a, b| a - b)
+    }
+}
+
+impl NodeKind for Multiply {
+    fn inputs(&self) -> Vec<&Input> {
+        self.0.iter().collect()
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let of_colors =
+            |a: LinearRgb, b: LinearRgb| LinearRgb::new(a.r * b.r, a.g * b.g, a.b * b.b);
+        plan.fold_any(&self.0, |a, b| a * b, of_colors)
+    }
+}
+
+impl NodeKind for Divide {
+    fn inputs(&self) -> Vec<&Input> {
+        self.0.iter().collect()
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        plan.fold(&self.0, |a, b| if b == 0.0 { 0.0 } else { a / b })
+    }
+}
+
+impl NodeKind for Minimum {
+    fn inputs(&self) -> Vec<&Input> {
+        self.0.iter().collect()
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        plan.fold(&self.0, |a, b| PairOperation::Minimum.apply(a, b))
+    }
+}
+
+impl NodeKind for Maximum {
+    fn inputs(&self) -> Vec<&Input> {
+        self.0.iter().collect()
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        plan.fold(&self.0, |a, b| PairOperation::Maximum.apply(a, b))
+    }
+}
+
+impl NodeKind for Absolute {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.0]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        plan.each(&self.0, f32::abs)
+    }
+}

@@ -1,0 +1,123 @@
+//! Layers blended by weights.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError, RecipeErrorKind, Values};
+use dapple_tile::{Blend, Layer, Mixing, Weighting, blend, blend_by_tile};
+use serde::{Deserialize, Serialize};
+
+/// Layers blended by weights.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Blended {
+    /// The layers, at least one.
+    pub layers: Vec<BlendedLayer>,
+    /// How weights become shares; as given by default.
+    #[serde(default)]
+    pub weighting: Weighting,
+    /// How layers are mixed by their shares; linear by default. The others see the whole tile.
+    #[serde(default)]
+    pub mixing: Mixing,
+    /// The blend tile of `weighting = { mask = … }`, from 0 to 1: a number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mask: Option<Input>,
+}
+
+/// A layer of a blend.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BlendedLayer {
+    /// A number or a color.
+    pub input: Input,
+    /// How much of it there is, at least 0, beside the other layers: a number; 1 by default.
+    #[serde(default = "full")]
+    pub weight: Input,
+    /// Its height for `weighting = { height = … }`: a number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height: Option<Input>,
+}
+
+fn full() -> Input {
+    Input::Number(1.0)
+}
+
+impl NodeKind for Blended {
+    fn inputs(&self) -> Vec<&Input> {
+        let layers = self.layers.iter().flat_map(|layer| {
+            let always = [&layer.input, &layer.weight];
+            always.into_iter().chain(&layer.height)
+        });
+        layers.chain(&self.mask).collect()
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let count = self.layers.len();
+        if count == 0 {
+            let (what, needed) = ("layers", "at least 1");
+            return Err(RecipeError::new(RecipeErrorKind::Count {
+                what,
+                count,
+                needed,
+            }));
+        }
+        let layers = Layers {
+            how: Blend::new(self.weighting, self.mixing),
+            heights: self.layers.iter().map(|l| l.height.is_some()).collect(),
+            mask: self.mask.is_some(),
+        };
+        let any = self.layers.iter().map(|layer| plan.any(&layer.input));
+        let mut inputs = any.collect::<Result<Vec<_>, _>>()?;
+        let weights = self.layers.iter().map(|layer| &layer.weight);
+        let heights = self.layers.iter().filter_map(|layer| layer.height.as_ref());
+        for number in weights.chain(heights).chain(&self.mask) {
+            inputs.push(plan.number(number)?);
+        }
+        // Each pixel on its own, as long as no mean over all is needed.
+        Ok(if self.mixing == Mixing::Linear {
+            plan.local(inputs, move |inputs| {
+                layers.blend(inputs, [inputs[0].len() as u32, 1])
+            })
+        } else {
+            plan.global(inputs, [1; 2], move |tile| {
+                layers.blend(tile.inputs, tile.window.size)
+            })
+        })
+    }
+}
+
+/// What a blend knows beside its inputs: those of its layers, their weights, the heights of those that have one, and the
+/// mask.
+#[derive(Clone, Debug)]
+struct Layers {
+    how: Blend,
+    /// For each layer, whether it has a height.
+    heights: Vec<bool>,
+    /// Whether there is a mask.
+    mask: bool,
+}
+
+impl Layers {
+    /// The blend of pictures of this size.
+    fn blend(&self, inputs: &[&Values], size: [u32; 2]) -> Result<Values, RecipeError> {
+        let count = self.heights.len();
+        let maps = Values::maps(&inputs[..count], size)?;
+        let maps: Vec<_> = maps.into_iter().map(|map| [map]).collect();
+        let rasters = inputs[count..].iter().map(|values| values.raster(size));
+        let rasters = rasters.collect::<Result<Vec<_>, _>>()?;
+        let mut heights = rasters[count..].iter();
+        let layer = |index: usize| Layer {
+            maps: &maps[index],
+            weight: &rasters[index],
+            height: if self.heights[index] {
+                heights.next()
+            } else {
+                None
+            },
+        };
+        let layers: Vec<_> = (0..count).map(layer).collect();
+        Values::of_map(match (self.mask, rasters.last()) {
+            (true, Some(mask)) => blend_by_tile(&layers, mask, &self.how)?,
+            _ => blend(&layers, &self.how)?,
+        })
+    }
+}

@@ -1,0 +1,46 @@
+//! Maps that say where another texture shows first.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError, Values};
+use dapple_tile::{BlendMap, rank_equalize};
+use serde::{Deserialize, Serialize};
+
+/// A map from 0 to 1, each value as often as any other, that is low in the cracks of a texture: where another one shows
+/// first. It sees the whole tile.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BlendMapOf {
+    /// A number, or a color, of which the luminance counts.
+    pub input: Input,
+    /// The size of the features, such as the diameter of stones, in units of the plane.
+    pub feature_size: f64,
+    /// How steep it is before all values become equally frequent, above 0; 1 by default.
+    #[serde(default = "one")]
+    pub contrast: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+impl NodeKind for BlendMapOf {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let how = BlendMap::new(32.0)
+            .with_contrast(self.contrast)
+            .with_wrap(plan.wrap());
+        let feature_size = self.feature_size;
+        let inputs = vec![plan.any(&self.input)?];
+        let step = plan.global(inputs, [1; 2], move |tile| {
+            let mut how = how;
+            how.feature_size = feature_size / tile.window.pixel.max_element();
+            let map = how.apply(&tile.inputs[0].raster(tile.window.size)?)?;
+            Ok(Values::Numbers(rank_equalize(&map)?.into_pixels()))
+        });
+        Ok(step.with_numbers())
+    }
+}

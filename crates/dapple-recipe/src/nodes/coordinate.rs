@@ -1,0 +1,43 @@
+//! How far along a direction positions are.
+
+use super::NodeKind;
+use crate::RecipeError;
+use crate::plan::{Builder, Step};
+use dapple_pups::{Range, range};
+use dapple_raster::field_fn;
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+/// How far along a direction a position is: `(position − center) · along`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Coordinate {
+    /// Where it is 0, in units of the plane; the origin by default.
+    pub center: [f64; 2],
+    /// The direction, times how much it grows per unit; `[1, 0]` by default.
+    pub along: [f64; 2],
+}
+
+impl Default for Coordinate {
+    fn default() -> Self {
+        Self {
+            center: [0.0; 2],
+            along: [1.0, 0.0],
+        }
+    }
+}
+
+const PART: Range = range!(finite);
+
+impl NodeKind for Coordinate {
+    fn build(&self, _: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        for number in self.center.into_iter().chain(self.along) {
+            RecipeError::check_in(PART, "part of a coordinate", number)?;
+        }
+        let [center, along] = [self.center, self.along].map(DVec2::from);
+        Ok(Step::field(field_fn(move |position: DVec2| {
+            let offset = position - center;
+            (offset.x * along.x + offset.y * along.y) as f32
+        })))
+    }
+}

@@ -1,0 +1,65 @@
+//! Pieces of several textures, in random order.
+
+use super::disturb::check_copies;
+use super::{NodeKind, NodeSeed};
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError, RecipeErrorKind, Values};
+use dapple_tile::CornerTiles;
+use serde::{Deserialize, Serialize};
+
+/// The tile as a board of pieces of several textures, chosen by random colors at their corners: see [`CornerTiles`]. It sees the
+/// whole tile.
+///
+/// [`CornerTiles`]: dapple_tile::CornerTiles
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CornerTilesOf {
+    /// Two to four numbers or colors, which repeat: each piece is as large as all of them, made smaller.
+    pub inputs: Vec<Input>,
+    /// How many pieces there are along each axis, x first; `[4, 4]` by default. They have a whole number of pixels.
+    #[serde(default = "four")]
+    pub copies: [u32; 2],
+    /// The share of the side of a piece that cuts may take, above 0 and at most 1; ½ by default.
+    #[serde(default = "half")]
+    pub width: f64,
+    /// The name by which it draws, instead of its own, or a seed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<NodeSeed>,
+}
+
+fn four() -> [u32; 2] {
+    [4; 2]
+}
+
+fn half() -> f64 {
+    0.5
+}
+
+impl NodeKind for CornerTilesOf {
+    fn inputs(&self) -> Vec<&Input> {
+        self.inputs.iter().collect()
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        check_copies(self.copies)?;
+        let count = self.inputs.len();
+        if !(2..=4).contains(&count) {
+            let (what, needed) = ("inputs", "2 to 4");
+            return Err(RecipeError::new(RecipeErrorKind::Count {
+                what,
+                count,
+                needed,
+            }));
+        }
+        let (seed, copies, width) = (plan.seed(self.seed.as_ref()), self.copies, self.width);
+        let inputs = self.inputs.iter().map(|input| plan.any(input));
+        let inputs = inputs.collect::<Result<_, _>>()?;
+        Ok(plan.global(inputs, copies, move |tile| {
+            let maps: Vec<_> = tile.maps()?.into_iter().map(|map| vec![map]).collect();
+            let tiles = CornerTiles::new(&maps)?
+                .with_width(width)?
+                .with_period(copies.map(Some))?;
+            Values::of_map(tiles.render(seed, [0, 0], tile.window.size)?)
+        }))
+    }
+}

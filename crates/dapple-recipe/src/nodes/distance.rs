@@ -1,0 +1,38 @@
+//! How far from a center positions are.
+
+use super::NodeKind;
+use crate::RecipeError;
+use crate::plan::{Builder, Step};
+use dapple_pups::{Range, range};
+use dapple_raster::field_fn;
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+/// How far from a center a position is, in units of the plane; from the nearest of its repeats where the recipe repeats.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Distance {
+    /// The center, in units of the plane.
+    pub center: [f64; 2],
+}
+
+const CENTER: Range = range!(finite);
+
+impl NodeKind for Distance {
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        for number in self.center {
+            RecipeError::check_in(CENTER, "center", number)?;
+        }
+        let (center, tile) = (DVec2::from(self.center), plan.domain());
+        Ok(Step::field(field_fn(move |position: DVec2| {
+            let mut offset = position - center;
+            for axis in 0..2 {
+                if tile.wrap[axis] {
+                    let repeats = (offset[axis] / tile.size[axis] + 0.5).floor();
+                    offset[axis] -= repeats * tile.size[axis];
+                }
+            }
+            (offset.x * offset.x + offset.y * offset.y).sqrt() as f32
+        })))
+    }
+}

@@ -1,0 +1,79 @@
+//! Ranges of numbers stretched to others.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError};
+use dapple_pups::{Range, range};
+use serde::{Deserialize, Serialize};
+
+/// A range stretched to another: how most textures become heights.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Levels {
+    /// The number.
+    pub input: Input,
+    /// The range that is stretched; 0 to 1 by default. Its ends may lie either way round, but must differ.
+    #[serde(default = "unit")]
+    pub from: [f32; 2],
+    /// What it becomes; 0 to 1 by default.
+    #[serde(default = "unit")]
+    pub to: [f32; 2],
+    /// What lies in between; a line by default.
+    #[serde(default)]
+    pub curve: LevelsCurve,
+}
+
+fn unit() -> [f32; 2] {
+    [0.0, 1.0]
+}
+
+const END: Range = range!(finite);
+
+/// What lies between the ends of a range. All but the first stay at its ends outside of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum LevelsCurve {
+    /// A line that goes on past the ends.
+    Unclamped,
+    /// A line.
+    #[default]
+    Linear,
+    /// `3t² − 2t³`, which is flat at its ends.
+    Smooth,
+}
+
+impl NodeKind for Levels {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let (from, to, curve) = (self.from, self.to, self.curve);
+        for end in from.into_iter().chain(to) {
+            RecipeError::check_in(END, "end of a range", end.into())?;
+        }
+        let length = from[1] - from[0];
+        let holds = length != 0.0 && length.is_finite();
+        let what = "length of the range `from`";
+        RecipeError::check(holds, what, length.into(), "finite and not 0")?;
+        plan.each(&self.input, move |value| {
+            let t = (value - from[0]) / (from[1] - from[0]);
+            to[0] + (to[1] - to[0]) * curve.at(t)
+        })
+    }
+}
+
+impl LevelsCurve {
+    /// How far the result is from the first end of the new range, for a number that is `t` from that of the old one.
+    fn at(self, t: f32) -> f32 {
+        match self {
+            Self::Unclamped => t,
+            Self::Linear => t.clamp(0.0, 1.0),
+            Self::Smooth => {
+                let t = t.clamp(0.0, 1.0);
+                t * t * (3.0 - 2.0 * t)
+            }
+        }
+    }
+}

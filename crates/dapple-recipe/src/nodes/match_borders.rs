@@ -1,0 +1,36 @@
+//! Textures with the borders of another.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError, Values};
+use dapple_tile::MatchBorders;
+use serde::{Deserialize, Serialize};
+
+/// A texture with the borders of another, so that both fit beside each other: see [`MatchBorders`]. It sees the whole tile.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Framed {
+    /// A number or a color.
+    pub input: Input,
+    /// What the borders are of: a number or a color.
+    pub border: Input,
+    /// How far from a border the texture changes, and which part of the other becomes it, as in [`MatchBorders`]. Lengths
+    /// are in pixels of the bake.
+    #[serde(default)]
+    pub options: MatchBorders,
+}
+
+impl NodeKind for Framed {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input, &self.border]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let options = self.options;
+        let inputs = vec![plan.any(&self.border)?, plan.any(&self.input)?];
+        Ok(plan.global(inputs, [1; 2], move |tile| {
+            let maps: Vec<_> = tile.maps()?.into_iter().map(|map| vec![map]).collect();
+            Values::of_map(options.apply_maps(&maps)?.swap_remove(1))
+        }))
+    }
+}

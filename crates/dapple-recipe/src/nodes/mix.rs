@@ -1,0 +1,50 @@
+//! Parts of the way from one input to another.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError, Values};
+use serde::{Deserialize, Serialize};
+
+/// A part of the way from one input to another.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mix {
+    /// The number or color at 0.
+    pub from: Input,
+    /// The number or color at 1.
+    pub to: Input,
+    /// The part of the way: a number, cut off at 0 and 1.
+    pub by: Input,
+}
+
+impl NodeKind for Mix {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.from, &self.to, &self.by]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let inputs = vec![
+            plan.any(&self.from)?,
+            plan.any(&self.to)?,
+            plan.number(&self.by)?,
+        ];
+        Ok(plan.local(inputs, |inputs| Ok(mix(inputs))))
+    }
+}
+
+fn mix(inputs: &[&Values]) -> Values {
+    let by = inputs[2].numbers();
+    if let [Values::Numbers(from), Values::Numbers(to), _] = inputs {
+        let ends = from.iter().zip(to).zip(by);
+        return Values::Numbers(
+            ends.map(|((&from, &to), &by)| from + (to - from) * by.clamp(0.0, 1.0))
+                .collect(),
+        );
+    }
+    let [from, to] = [0, 1].map(|index: usize| inputs[index].clone().into_colors());
+    let ends = from.into_iter().zip(to).zip(by);
+    Values::Colors(
+        ends.map(|((from, to), &by)| from.lerp(to, by.clamp(0.0, 1.0)))
+            .collect(),
+    )
+}

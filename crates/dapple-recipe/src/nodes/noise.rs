@@ -1,0 +1,122 @@
+//! Octaves of noise of several kinds, with values from 0 to 1.
+
+use super::{NodeKind, NodeSeed, wavelet};
+use crate::RecipeError;
+use crate::plan::{Builder, FREQUENCY, Step, Work};
+use dapple_noise::GradientNoise2;
+use dapple_pups::{OctavesOptions, PupsRecipe as _, Range, Spacing, octaves, range};
+use dapple_raster::{FieldExt, FractalShape};
+use serde::{Deserialize, Serialize};
+
+/// Octaves of noise with values from 0 to 1.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Fractal {
+    /// What an octave is; PUPs by default.
+    pub basis: FractalBasis,
+    /// About how many bumps there are per unit of the plane in the first octave; 8 by default. For gradients and
+    /// wavelets, these are their cells.
+    pub frequency: f64,
+    /// How many octaves, 1 to 16, each twice as fine as the one before; 4 by default.
+    pub octaves: u32,
+    /// The amplitude of an octave as a multiple of the one before, above 0 and at most 1; ½ by default.
+    #[serde(alias = "persistence")]
+    pub gain: f64,
+    /// The name by which it draws, instead of its own, or a seed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<NodeSeed>,
+}
+
+impl Default for Fractal {
+    fn default() -> Self {
+        Self {
+            basis: FractalBasis::Pups,
+            frequency: 8.0,
+            octaves: 4,
+            gain: 0.5,
+            seed: None,
+        }
+    }
+}
+
+/// What an octave of noise is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum FractalBasis {
+    /// Random values at Poisson-disk points, interpolated; the sum over its largest possible value.
+    #[default]
+    Pups,
+    /// Perlin's gradient noise; the sum is `½ + sum / 6σ`, with `σ` its standard deviation, cut off at 0 and 1.
+    #[serde(alias = "perlin")]
+    Gradient,
+    /// Wavelet noise; the sum is `½ + sum / 6σ`, with `σ` its standard deviation, cut off at 0 and 1.
+    Wavelet,
+}
+
+const OCTAVES: Range = range!(from 1 to 16);
+const GAIN: Range = range!(above 0 to 1);
+
+impl NodeKind for Fractal {
+    fn work(&self, plan: &Builder<'_>) -> Result<Work, RecipeError> {
+        match self.basis {
+            FractalBasis::Pups => Ok(Work {
+                control_points: self.pups(plan).expected_points(),
+                ..Work::default()
+            }),
+            FractalBasis::Gradient => Ok(Work::default()),
+            FractalBasis::Wavelet => wavelet::work(plan, self.frequency),
+        }
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let (seed, frequency) = (plan.seed(self.seed.as_ref()), self.frequency);
+        RecipeError::check_in(FREQUENCY, "frequency", frequency)?;
+        RecipeError::check_in(OCTAVES, "number of octaves", self.octaves.into())?;
+        RecipeError::check_in(GAIN, "gain", self.gain)?;
+        Ok(match self.basis {
+            FractalBasis::Pups => Step::field(octaves(&self.pups(plan), seed)?.normalized()),
+            FractalBasis::Wavelet => {
+                let noise = wavelet::noise(plan, seed, frequency, &self.weights(1.0))?;
+                Step::field(noise.map(about_half))
+            }
+            FractalBasis::Gradient => {
+                let noise = GradientNoise2::new(seed).with_period(plan.periods([frequency; 2])?)?;
+                let octaves = noise.fractal(self.octaves, self.gain, 2.0, FractalShape::Sum)?;
+                let scale = self.weights(GradientNoise2::VARIANCE.into())[0];
+                let noise = octaves.frequency(frequency);
+                Step::field(noise.map(move |sum| about_half(scale * sum)))
+            }
+        })
+    }
+}
+
+impl Fractal {
+    /// The options of the octaves of PUPs noise.
+    fn pups(&self, plan: &Builder<'_>) -> OctavesOptions {
+        OctavesOptions {
+            domain: plan.domain(),
+            spacing: Spacing::from(1.0 / self.frequency),
+            octaves: self.octaves,
+            gain: self.gain,
+            ..OctavesOptions::default()
+        }
+    }
+
+    /// The weights of octaves of noise with a variance, for a sum with a standard deviation of a sixth.
+    fn weights(&self, variance: f64) -> Vec<f32> {
+        let weights = core::iter::successors(Some(1.0), |weight| Some(weight * self.gain));
+        let weights: Vec<f64> = weights.take(self.octaves as usize).collect();
+        let squares = weights.iter().map(|weight| weight * weight * variance);
+        let deviation = squares.sum::<f64>().sqrt();
+        let weights = weights.into_iter();
+        weights
+            .map(|weight| (weight / (6.0 * deviation)) as f32)
+            .collect()
+    }
+}
+
+/// Half more than a value, cut off at 0 and 1.
+fn about_half(value: f32) -> f32 {
+    (0.5 + value).clamp(0.0, 1.0)
+}

@@ -1,0 +1,34 @@
+//! Powers.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError};
+use dapple_pups::{Range, range};
+use serde::{Deserialize, Serialize};
+
+/// A number to a power.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Power {
+    /// The number; below 0 it counts as 0.
+    pub input: Input,
+    /// The exponent, above 0.
+    pub exponent: f32,
+}
+
+const EXPONENT: Range = range!(above 0);
+
+impl NodeKind for Power {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let exponent = self.exponent;
+        RecipeError::check_in(EXPONENT, "exponent", exponent.into())?;
+        plan.each(&self.input, move |value| {
+            let positive = if value < 0.0 { 0.0 } else { value };
+            libm::powf(positive, exponent)
+        })
+    }
+}

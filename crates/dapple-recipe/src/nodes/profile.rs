@@ -1,0 +1,29 @@
+//! Cross-sections of bumps.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError};
+use dapple_worley::Profile;
+use serde::{Deserialize, Serialize};
+
+/// A cross-section: how high a bump is where a number has a value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProfileOf {
+    /// The number; 0 is in the middle of the bump.
+    pub input: Input,
+    /// The cross-section, such as `{ channels = { width = 0.1 } }` or `{ spots = { radius = 0.3 } }`.
+    pub shape: Profile,
+}
+
+impl NodeKind for ProfileOf {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let shape = self.shape;
+        shape.check()?;
+        plan.each(&self.input, move |value| shape.height(value))
+    }
+}

@@ -1,0 +1,170 @@
+//! The textures of `dapple-pups` over the tile of a recipe.
+
+use super::{ImageAlpha, NodeKind};
+use crate::plan::{Builder, Picture, Step, Work};
+use crate::{RecipeError, RecipeErrorKind};
+use dapple_points::Domain;
+use dapple_pups::{PupsField, PupsRecipe, ReferenceImage};
+use serde::{Deserialize, Serialize};
+
+/// A texture after an image, which covers the tile. Of a color image the luminance counts.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    bound(deserialize = "T: Default + Deserialize<'de>")
+)]
+pub struct Referenced<T> {
+    /// The file, as it is asked for.
+    pub file: String,
+    /// What becomes of its alpha when it is read; by default a partly transparent image is refused.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub alpha: Option<ImageAlpha>,
+    /// What the texture is to be like.
+    #[serde(default)]
+    pub options: T,
+}
+
+/// What every texture of `dapple-pups` is as a node.
+trait Texture {
+    /// The image that the texture follows, with what becomes of its alpha.
+    fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
+        None
+    }
+
+    /// Whether it makes colors.
+    fn is_color(&self) -> bool;
+
+    /// About how many control points the texture has on a tile.
+    fn expected_points(&self, tile: Domain) -> f64;
+
+    /// The texture on the tile of a plan.
+    fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError>;
+}
+
+impl<T: PupsRecipe> Texture for T {
+    fn is_color(&self) -> bool {
+        T::IS_COLOR
+    }
+
+    fn expected_points(&self, tile: Domain) -> f64 {
+        placed(self, tile).expected_points()
+    }
+
+    fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError> {
+        check_domain(self)?;
+        Ok(placed(self, plan.domain()).build(&(), plan.seed(None))?)
+    }
+}
+
+impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
+    fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
+        Some((&self.file, self.alpha))
+    }
+
+    fn is_color(&self) -> bool {
+        T::IS_COLOR
+    }
+
+    fn expected_points(&self, tile: Domain) -> f64 {
+        placed(&self.options, tile).expected_points()
+    }
+
+    fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError> {
+        let image = ReferenceImage::new(match plan.image(&self.file)? {
+            Picture::Numbers(raster) => raster.as_ref().clone(),
+            Picture::Colors(raster) => raster.map(|color| color.luminance()),
+        })?;
+        check_domain(&self.options)?;
+        Ok(placed(&self.options, plan.domain()).build(&image, plan.seed(None))?)
+    }
+}
+
+/// The options with the tile as their domain, which wraps along no axis along which the texture changes.
+fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain) -> T {
+    let usual = T::default().domain_mut().wrap;
+    let mut options = options.clone();
+    *options.domain_mut() = Domain {
+        wrap: [0, 1].map(|axis| tile.wrap[axis] && usual[axis]),
+        ..tile
+    };
+    options
+}
+
+/// Refuses options with a domain of their own.
+fn check_domain<T: PupsRecipe<Image>, Image>(options: &T) -> Result<(), RecipeError> {
+    if options.clone().domain_mut() == T::default().domain_mut() {
+        return Ok(());
+    }
+    let rule = "the `domain` of a texture in a recipe is the tile; leave it out, and give the recipe an `extent` and a `wrap`";
+    Err(RecipeError::new(RecipeErrorKind::Conflict { rule }))
+}
+
+/// Makes the node of the textures in the table of `dapple-pups`.
+macro_rules! node {
+    ($(#[doc = $about:literal] $name:literal $variant:ident($options:ty),)*) => {
+        /// A partition-of-unity texture: one of the recipes of `dapple-pups`.
+        ///
+        /// Its domain is the tile of the recipe and is not to be given.
+        #[derive(Clone, Debug, Serialize, Deserialize)]
+        #[non_exhaustive]
+        pub enum PupsNode {
+            $(#[doc = $about] #[serde(rename = $name)] $variant($options),)*
+        }
+
+        impl PupsNode {
+            /// The names of the textures, as they are in files, with a sentence about each.
+            pub const KINDS: [(&str, &str); [$($name),*].len()] = [$(($name, $about.trim_ascii())),*];
+
+            /// The texture of this name with all its defaults; what it needs is empty.
+            #[must_use]
+            pub fn of_kind(name: &str) -> Option<Self> {
+                match name {
+                    $($name => Some(Self::$variant(Default::default())),)*
+                    _ => None,
+                }
+            }
+
+            fn texture(&self) -> &dyn Texture {
+                match self {
+                    $(Self::$variant(options) => options,)*
+                }
+            }
+        }
+    };
+}
+
+dapple_pups::recipes!(node);
+
+impl PupsNode {
+    /// Whether the texture makes a color at every position, not a number.
+    #[must_use]
+    pub fn is_color(&self) -> bool {
+        self.texture().is_color()
+    }
+
+    /// The image file that the texture follows, if it follows one.
+    #[must_use]
+    pub fn image_file(&self) -> Option<&str> {
+        Some(self.texture().image()?.0)
+    }
+}
+
+impl NodeKind for PupsNode {
+    fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
+        self.texture().image()
+    }
+
+    fn work(&self, plan: &Builder<'_>) -> Result<Work, RecipeError> {
+        Ok(Work {
+            control_points: self.texture().expected_points(plan.domain()),
+            ..Work::default()
+        })
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        Ok(match self.texture().build(plan)? {
+            PupsField::Numbers(field) => Step::Field(field),
+            PupsField::Colors(texture) => Step::Colors(texture),
+        })
+    }
+}

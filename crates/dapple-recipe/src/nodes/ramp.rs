@@ -1,0 +1,101 @@
+//! Colors for numbers.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError, RecipeErrorKind, Values};
+use dapple_color::{ColorRamp, ColorStop, Interpolation, LinearRgb, Outside, Palette, RampSpace};
+use serde::{Deserialize, Serialize};
+
+/// Colors for numbers: a palette, or colors of one's own.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ramped {
+    /// The number.
+    pub input: Input,
+    /// A palette; not beside `colors`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub palette: Option<Palette>,
+    /// Colors in sRGB, such as `["#204060", "#ffffff"]`; not beside `palette`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", with = "colors")]
+    pub colors: Vec<LinearRgb>,
+    /// The number at which each color is; at equal distances from 0 to 1 by default.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub positions: Vec<f32>,
+    /// The space in which two colors are mixed; Oklab by default.
+    #[serde(default)]
+    pub space: RampSpace,
+    /// What lies between two colors; a line by default.
+    #[serde(default)]
+    pub interpolation: Interpolation,
+    /// What lies outside; the color at the end by default.
+    #[serde(default)]
+    pub outside: Outside,
+}
+
+impl NodeKind for Ramped {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let ramp = self.ramp()?;
+        let inputs = vec![plan.number(&self.input)?];
+        let step = plan.local(inputs, move |inputs| {
+            let numbers = inputs[0].numbers().iter();
+            Ok(Values::Colors(
+                numbers.map(|&value| ramp.at(value)).collect(),
+            ))
+        });
+        Ok(step.with_colors())
+    }
+}
+
+impl Ramped {
+    /// The ramp of the palette, or of the node's own colors.
+    fn ramp(&self) -> Result<ColorRamp, RecipeError> {
+        let conflict = |rule| Err(RecipeError::new(RecipeErrorKind::Conflict { rule }));
+        let colors = match (self.palette, self.colors.is_empty()) {
+            (Some(palette), true) => palette.colors(),
+            (None, false) => self.colors.clone(),
+            (Some(_), false) => {
+                return conflict("a ramp has a `palette` or `colors`, but not both");
+            }
+            (None, true) => return conflict("a ramp needs a `palette` or `colors`"),
+        };
+        let ramp = if self.positions.is_empty() {
+            ColorRamp::even(&colors)?
+        } else if self.positions.len() == colors.len() {
+            let stops = self.positions.iter().zip(colors);
+            let stops = stops.map(|(&position, color)| ColorStop { position, color });
+            ColorRamp::new(stops.collect::<Vec<_>>())?
+        } else {
+            return conflict("a ramp has as many `positions` as colors, or none");
+        };
+        Ok(ramp
+            .with_space(self.space)
+            .with_interpolation(self.interpolation)
+            .with_outside(self.outside))
+    }
+}
+
+/// Lists of colors as sRGB in hexadecimal.
+mod colors {
+    use crate::ColorOf;
+    use dapple_color::LinearRgb;
+    use serde::de::{Deserialize, Deserializer};
+    use serde::ser::Serializer;
+
+    pub(super) fn serialize<S: Serializer>(
+        colors: &[LinearRgb],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(colors.iter().map(|&color| ColorOf(color)))
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Vec<LinearRgb>, D::Error> {
+        let colors = Vec::<ColorOf>::deserialize(deserializer)?;
+        Ok(colors.into_iter().map(|ColorOf(color)| color).collect())
+    }
+}

@@ -1,0 +1,46 @@
+//! Nodes at positions that are shifted.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError};
+use dapple_pups::{Range, range};
+use serde::{Deserialize, Serialize};
+
+/// Another node at positions that are shifted by `amount · (x, y)`.
+#[doc(alias = "domain warping")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Warp {
+    /// The node that is asked elsewhere. No node that it is made of may see the whole tile.
+    pub input: Input,
+    /// How far to the right, as a multiple of the amount: a number.
+    pub x: Input,
+    /// How far down, as a multiple of the amount: a number.
+    pub y: Input,
+    /// How far a 1 goes, in units of the plane; 1 by default.
+    #[serde(default = "one")]
+    pub amount: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+const AMOUNT: Range = range!(finite);
+
+impl NodeKind for Warp {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input, &self.x, &self.y]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        RecipeError::check_in(AMOUNT, "amount", self.amount)?;
+        let input = plan.any(&self.input)?;
+        Ok(Step::Warp {
+            input,
+            by: [plan.number(&self.x)?, plan.number(&self.y)?],
+            amount: self.amount,
+            color: plan.is_color(input),
+        })
+    }
+}

@@ -1,0 +1,77 @@
+//! Waves of a number.
+
+use super::NodeKind;
+use crate::plan::{Builder, Step};
+use crate::{Input, RecipeError};
+use dapple_pups::{Range, range};
+use serde::{Deserialize, Serialize};
+
+/// A wave of a number, from 0 to 1: veins of a sum of coordinates and noise, rings of a distance.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Wave {
+    /// The number.
+    pub input: Input,
+    /// Waves per unit of the number; 1 by default. Of a coordinate along which the recipe repeats, the tile must hold a
+    /// whole number of them.
+    #[serde(default = "one")]
+    pub frequency: f64,
+    /// How far the wave has come at 0, in waves; 0 by default.
+    #[serde(default)]
+    pub phase: f64,
+    /// Its form; a sine by default.
+    #[serde(default)]
+    pub form: Waveform,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+const FINITE: Range = range!(finite);
+
+/// The form of a wave.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Waveform {
+    /// `½ + ½ sin 2πt`.
+    #[default]
+    Sine,
+    /// From 0 up to 1 and down again, in lines.
+    Triangle,
+    /// From 0 up to 1, then 0 at once.
+    Sawtooth,
+    /// 0 in the first half, 1 in the second.
+    Square,
+}
+
+impl NodeKind for Wave {
+    fn inputs(&self) -> Vec<&Input> {
+        vec![&self.input]
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        RecipeError::check_in(FINITE, "frequency of the wave", self.frequency)?;
+        RecipeError::check_in(FINITE, "phase", self.phase)?;
+        let (frequency, phase, form) = (self.frequency, self.phase, self.form);
+        plan.each(&self.input, move |value| {
+            form.at(f64::from(value) * frequency + phase) as f32
+        })
+    }
+}
+
+impl Waveform {
+    /// The height of the wave, from 0 to 1, after so many waves.
+    fn at(self, t: f64) -> f64 {
+        let t = t - t.floor();
+        match self {
+            Self::Sine => 0.5 + 0.5 * libm::sin(core::f64::consts::TAU * t),
+            Self::Triangle => 1.0 - (2.0 * t - 1.0).abs(),
+            Self::Sawtooth => t,
+            Self::Square if t < 0.5 => 0.0,
+            Self::Square if t.is_nan() => t,
+            Self::Square => 1.0,
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Wavelet noise.
+
+use super::{NodeKind, NodeSeed};
+use crate::RecipeError;
+use crate::plan::{Builder, Step, Work};
+use dapple_hash::Seed;
+use dapple_raster::FieldExt;
+use dapple_wavelet::WaveletNoise2;
+use serde::{Deserialize, Serialize};
+
+/// Wavelet noise: nearly normal values with mean 0 and, for a single band, variance 1.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WaveletNode {
+    /// Cells per unit of the plane, in the coarsest band; 8 by default. Along an axis on which the recipe repeats, the tile
+    /// must be an even whole number of cells, from 4 on.
+    pub frequency: f64,
+    /// The weight of each band, coarsest first, each twice as fine as the one before; a single 1 by default.
+    pub weights: Vec<f32>,
+    /// The name by which it draws, instead of its own, or a seed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<NodeSeed>,
+}
+
+impl Default for WaveletNode {
+    fn default() -> Self {
+        Self {
+            frequency: 8.0,
+            weights: vec![1.0],
+            seed: None,
+        }
+    }
+}
+
+/// The cells of a wavelet tile along axes that do not repeat.
+const UNBOUND_TILE: u32 = 128;
+
+impl NodeKind for WaveletNode {
+    fn work(&self, plan: &Builder<'_>) -> Result<Work, RecipeError> {
+        work(plan, self.frequency)
+    }
+
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let seed = plan.seed(self.seed.as_ref());
+        Ok(Step::field(noise(
+            plan,
+            seed,
+            self.frequency,
+            &self.weights,
+        )?))
+    }
+}
+
+/// Wavelet noise with bands of these weights, the coarsest of which has so many cells per unit of the plane.
+pub(super) fn noise(
+    plan: &Builder<'_>,
+    seed: Seed,
+    frequency: f64,
+    weights: &[f32],
+) -> Result<dapple_raster::Frequency<WaveletNoise2>, RecipeError> {
+    let noise = WaveletNoise2::of_size(cells(plan, frequency)?, seed)?.with_weights(weights)?;
+    Ok(noise.frequency(frequency))
+}
+
+/// The work of making such noise.
+pub(super) fn work(plan: &Builder<'_>, frequency: f64) -> Result<Work, RecipeError> {
+    let [across, down] = cells(plan, frequency)?.map(f64::from);
+    Ok(Work {
+        wavelet_cells: across * down,
+        ..Work::default()
+    })
+}
+
+/// The cells of the tile of wavelet noise along each axis.
+fn cells(plan: &Builder<'_>, frequency: f64) -> Result<[u32; 2], RecipeError> {
+    let periods = plan.periods([frequency; 2])?;
+    for cells in periods.into_iter().flatten() {
+        let holds = cells >= 4 && cells.is_multiple_of(2);
+        let range = "even, at least 4 (extent times frequency, since the recipe repeats)";
+        let what = "number of cells of wavelet noise along a side of the tile";
+        RecipeError::check(holds, what, cells.into(), range)?;
+    }
+    Ok(periods.map(|cells| cells.unwrap_or(UNBOUND_TILE)))
+}

@@ -1,0 +1,312 @@
+//! Worley's cellular basis.
+
+use super::{NodeKind, NodeSeed};
+use crate::plan::{Builder, Step};
+use crate::{RecipeError, RecipeErrorKind};
+use core::fmt;
+use dapple_pups::{Range, range};
+use dapple_raster::{Field, FieldExt, field_fn};
+use dapple_worley::{Axes, Combination, Metric, Octaves, Scatter, Space, Worley, Worley2, Worley4};
+use glam::DVec2;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Deserializer, Error, SeqAccess, Visitor};
+use serde::ser::Serializer;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Worley's cellular basis in the plane.
+///
+/// Distances are in cells. Along an axis on which the recipe repeats, the tile must be a whole number of cells.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WorleyNode {
+    /// Cells per unit of the plane, one number or one for each axis; 1 by default.
+    pub frequency: Frequency,
+    /// What is shown; F1 by default.
+    pub value: WorleyValue,
+    /// How distances are measured; Euclidean by default.
+    pub metric: Metric,
+    /// How many feature points a cell has, and where; Poisson by default.
+    pub scatter: Scatter,
+    /// A fractal sum instead of a single texture. Its first octave has the frequency.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub octaves: Option<Octaves>,
+    /// The range of values that becomes 0 to 1; none by default, which gives the distances themselves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range: Option<[f32; 2]>,
+    /// How it moves with time; it does not by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Motion>,
+    /// The name by which it draws, instead of its own, or a seed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<NodeSeed>,
+}
+
+/// A slice of the basis in four dimensions, whose fourth axis is time: the pictures of a loop join.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Motion {
+    /// How many cells a loop goes along the fourth axis, at least 1.
+    pub cells: u32,
+    /// Where the slice lies along the third axis, in cells; 0 by default.
+    #[serde(default)]
+    pub z: f64,
+}
+
+/// Something per unit of the plane, for each axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frequency(pub [f64; 2]);
+
+impl Default for Frequency {
+    fn default() -> Self {
+        Self([1.0; 2])
+    }
+}
+
+/// What of the nearest feature points is shown.
+///
+/// In a file: `"f1"`, `"f2_minus_f1"` and so on, `"cell_value"`, `"edge_distance"`, or the four coefficients of F1 to F4.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum WorleyValue {
+    /// A combination of distances.
+    Combination(Combination),
+    /// A random number from 0 to 1 for each Voronoi cell.
+    CellValue,
+    /// The distance to the nearest border of a Voronoi cell, in cells, for the Euclidean metric: joints of one width. It is
+    /// several times slower than F2 − F1.
+    EdgeDistance,
+}
+
+impl Default for WorleyValue {
+    fn default() -> Self {
+        Self::Combination(Combination::F1)
+    }
+}
+
+impl NodeKind for WorleyNode {
+    fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
+        let seed = plan.seed(self.seed.as_ref());
+        let [x, y] = plan.periods(self.frequency.0)?;
+        let field = match self.motion {
+            None => {
+                let worley = Worley2::new(seed).with_period([x, y])?;
+                self.plane_field(worley)?
+            }
+            Some(Motion { cells, z }) => {
+                RecipeError::check_in(PLACE, "place along z", z)?;
+                let worley = Worley4::new(seed).with_period([x, y, None, Some(cells)])?;
+                self.moving_field(worley, [z, plan.time() * f64::from(cells)])?
+            }
+        };
+        Ok(Step::field(field.frequency_xy(self.frequency.0.into())))
+    }
+}
+
+impl WorleyNode {
+    /// A cellular basis with the metric and the scatter of the node.
+    fn basis<const N: usize>(&self, worley: Worley<N>) -> Result<Worley<N>, RecipeError>
+    where
+        Axes: Space<N>,
+    {
+        match self.value {
+            WorleyValue::Combination(_) => {}
+            WorleyValue::CellValue => self.check_single(true)?,
+            WorleyValue::EdgeDistance => self.check_single(self.metric == Metric::Euclidean)?,
+        }
+        Ok(worley
+            .with_metric(self.metric)?
+            .with_scatter(self.scatter)?)
+    }
+
+    /// The field of a cellular basis of the plane.
+    fn plane_field(&self, worley: Worley2) -> Result<Arc<dyn Field>, RecipeError> {
+        let worley = self.basis(worley)?;
+        let combination = match self.value {
+            WorleyValue::Combination(combination) => combination,
+            WorleyValue::CellValue => return Ok(Arc::new(worley.cell_values())),
+            WorleyValue::EdgeDistance => return Ok(Arc::new(worley.edge_distances())),
+        };
+        let cellular = worley.combine(combination);
+        Ok(match (self.octaves, self.range) {
+            (None, None) => Arc::new(cellular),
+            (None, Some(range)) => Arc::new(cellular.with_range(range)?),
+            (Some(octaves), None) => Arc::new(cellular.fractal(octaves)?),
+            (Some(octaves), Some(range)) => Arc::new(cellular.fractal(octaves)?.with_range(range)?),
+        })
+    }
+
+    /// The field of a slice of a basis of four dimensions.
+    fn moving_field(
+        &self,
+        worley: Worley4,
+        place: [f64; 2],
+    ) -> Result<Arc<dyn Field>, RecipeError> {
+        let worley = self.basis(worley)?;
+        let combination = match self.value {
+            WorleyValue::Combination(combination) => combination,
+            WorleyValue::CellValue => {
+                let [z, w] = place;
+                let value = move |at: DVec2| cell_value(&worley, [at.x, at.y, z, w]);
+                return Ok(Arc::new(field_fn(value)));
+            }
+            WorleyValue::EdgeDistance => return Ok(Arc::new(worley.edge_distances().slice(place))),
+        };
+        let cellular = worley.combine(combination);
+        Ok(Arc::new(match (self.octaves, self.range) {
+            (None, None) => cellular.slice(place),
+            (None, Some(range)) => cellular.with_range(range)?.slice(place),
+            (Some(octaves), None) => cellular.fractal(octaves)?.slice(place),
+            (Some(octaves), Some(range)) => {
+                cellular.fractal(octaves)?.with_range(range)?.slice(place)
+            }
+        }))
+    }
+
+    /// Refuses what only combinations of distances have.
+    fn check_single(&self, has_metric: bool) -> Result<(), RecipeError> {
+        let rule = if self.octaves.is_some() || self.range.is_some() {
+            "`cell_value` and `edge_distance` have neither `octaves` nor a `range`"
+        } else if !has_metric {
+            "`edge_distance` is of the Euclidean metric"
+        } else {
+            return Ok(());
+        };
+        Err(RecipeError::new(RecipeErrorKind::Conflict { rule }))
+    }
+}
+
+const PLACE: Range = range!(finite);
+
+/// The value of the cell at a position of four dimensions; NaN where there is none.
+fn cell_value(worley: &Worley4, at: [f64; 4]) -> f32 {
+    let [nearest] = worley.sample(at);
+    if nearest.distance.is_nan() {
+        f32::NAN
+    } else {
+        nearest.cell_value()
+    }
+}
+
+impl Serialize for Frequency {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let [x, y] = self.0;
+        if x == y {
+            serializer.serialize_f64(x)
+        } else {
+            self.0.serialize(serializer)
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Frequency {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(FrequencyVisitor)
+    }
+}
+
+struct FrequencyVisitor;
+
+impl<'de> Visitor<'de> for FrequencyVisitor {
+    type Value = Frequency;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number, or one for each of the two axes")
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Frequency, E> {
+        Ok(Frequency([value; 2]))
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Frequency, E> {
+        Ok(Frequency([value as f64; 2]))
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Frequency, E> {
+        Ok(Frequency([value as f64; 2]))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, axes: A) -> Result<Frequency, A::Error> {
+        <[f64; 2]>::deserialize(SeqAccessDeserializer::new(axes)).map(Frequency)
+    }
+}
+
+/// The names of [`WorleyValue`] in files; those of combinations are in the order of [`Combination::NAMED`].
+pub(crate) const WORLEY_VALUES: [&str; 13] = [
+    "f1",
+    "f2",
+    "f3",
+    "f4",
+    "f2_minus_f1",
+    "f1_plus_f2",
+    "f3_minus_f1",
+    "f3_minus_f2",
+    "f4_minus_f1",
+    "f4_minus_f3",
+    "2f3_minus_f2_minus_f1",
+    "cell_value",
+    "edge_distance",
+];
+
+impl WorleyValue {
+    /// The value of this name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        let index = WORLEY_VALUES.iter().position(|&known| known == name)?;
+        Some(match (Combination::NAMED.get(index), name) {
+            (Some(&(_, combination)), _) => Self::Combination(combination),
+            (None, "cell_value") => Self::CellValue,
+            (None, _) => Self::EdgeDistance,
+        })
+    }
+
+    /// Its name, where it has one.
+    #[must_use]
+    pub fn name(self) -> Option<&'static str> {
+        WORLEY_VALUES
+            .into_iter()
+            .find(|name| Self::from_name(name) == Some(self))
+    }
+
+    /// All names, in the order of their definition.
+    #[must_use]
+    pub fn names() -> [&'static str; 13] {
+        WORLEY_VALUES
+    }
+}
+
+impl Serialize for WorleyValue {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match (self, self.name()) {
+            (Self::Combination(combination), None) => {
+                combination.coefficients().serialize(serializer)
+            }
+            (_, name) => serializer.serialize_str(name.unwrap_or_default()),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for WorleyValue {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(WorleyValueVisitor)
+    }
+}
+
+struct WorleyValueVisitor;
+
+impl<'de> Visitor<'de> for WorleyValueVisitor {
+    type Value = WorleyValue;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a name such as \"f2_minus_f1\", or the four coefficients of F1 to F4")
+    }
+
+    fn visit_str<E: Error>(self, name: &str) -> Result<WorleyValue, E> {
+        WorleyValue::from_name(name).ok_or_else(|| E::unknown_variant(name, &WORLEY_VALUES))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, coefficients: A) -> Result<WorleyValue, A::Error> {
+        let coefficients = <[f32; 4]>::deserialize(SeqAccessDeserializer::new(coefficients))?;
+        Ok(WorleyValue::Combination(Combination::new(coefficients)))
+    }
+}

@@ -1,0 +1,232 @@
+//! What a node finds in the plan that it becomes a step of: the tile, its seed, its inputs.
+
+use super::step::{Global, Local, Step, Tile};
+use super::work::{Work, WorkSum};
+use super::{Images, Picture, PlanLimits, not_a_number, order};
+use crate::{Input, Node, NodeSeed, Recipe, RecipeError, RecipeErrorKind, Values};
+use dapple_color::LinearRgb;
+use dapple_hash::Seed;
+use dapple_points::Domain;
+use dapple_pups::{Range, range};
+use dapple_raster::Wrap;
+use indexmap::IndexMap;
+
+/// Makes steps of nodes, one after the other.
+pub(crate) struct Builder<'a> {
+    recipe: &'a Recipe,
+    images: &'a Images,
+    time: f64,
+    /// The name of the node that is being made.
+    node: &'a str,
+    work: WorkSum<'a>,
+    pub(super) steps: Vec<Step>,
+    pub(super) names: IndexMap<String, usize>,
+}
+
+/// Cells or bumps per unit of the plane.
+pub(crate) const FREQUENCY: Range = range!(above 0 to 1e6);
+
+impl<'a> Builder<'a> {
+    pub(super) fn new(
+        recipe: &'a Recipe,
+        images: &'a Images,
+        time: f64,
+        limits: &'a PlanLimits,
+    ) -> Self {
+        Self {
+            recipe,
+            images,
+            time,
+            node: "",
+            work: WorkSum::new(limits),
+            steps: Vec::new(),
+            names: IndexMap::new(),
+        }
+    }
+
+    /// Adds the step of a node all of whose inputs have steps.
+    pub(super) fn add(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
+        self.node = name;
+        let work: Work = node.kind().work(self)?;
+        self.work.add(&work)?;
+        let step = node.kind().build(self)?;
+        self.names.insert(name.to_owned(), self.steps.len());
+        self.steps.push(step);
+        Ok(())
+    }
+
+    /// The part of a loop that has passed.
+    pub(crate) fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// What lies past the edges of the tile.
+    pub(crate) fn wrap(&self) -> [Wrap; 2] {
+        wrap(self.recipe.wrap)
+    }
+
+    /// The tile as a domain.
+    pub(crate) fn domain(&self) -> Domain {
+        Domain {
+            origin: glam::DVec2::ZERO,
+            size: self.recipe.extent.into(),
+            wrap: self.recipe.wrap,
+        }
+    }
+
+    /// An image that the recipe names.
+    pub(crate) fn image(&self, file: &str) -> Result<&'a Picture, RecipeError> {
+        self.images.get(file).ok_or_else(|| {
+            let file = file.to_owned();
+            RecipeError::new(RecipeErrorKind::NoImage { file })
+        })
+    }
+
+    /// The seed of the node, which draws by its own name unless it says otherwise.
+    pub(crate) fn seed(&self, other: Option<&NodeSeed>) -> Seed {
+        match other {
+            None => self.recipe.seed.child(self.node, 0),
+            Some(NodeSeed::Name(name)) => self.recipe.seed.child(name, 0),
+            Some(NodeSeed::Seed(seed)) => *seed,
+        }
+    }
+
+    /// The cells of the tile along each axis that repeats, of a frequency per axis.
+    pub(crate) fn periods(&self, frequency: [f64; 2]) -> Result<[Option<u32>; 2], RecipeError> {
+        let mut periods = [None; 2];
+        for axis in 0..2 {
+            RecipeError::check_in(FREQUENCY, "frequency", frequency[axis])?;
+            if self.recipe.wrap[axis] {
+                let cells = self.recipe.extent[axis] * frequency[axis];
+                let whole = cells >= 1.0 && cells.fract() == 0.0 && cells <= f64::from(u32::MAX);
+                let range =
+                    "a whole number, at least 1 (extent times frequency, since the recipe repeats)";
+                let what = "number of cells along a side of the tile";
+                RecipeError::check(whole, what, cells, range)?;
+                periods[axis] = Some(cells as u32);
+            }
+        }
+        Ok(periods)
+    }
+
+    /// The step of an input that may be a color.
+    pub(crate) fn any(&mut self, input: &Input) -> Result<usize, RecipeError> {
+        let step = match input {
+            Input::Number(number) => {
+                let finite = (*number as f32).is_finite();
+                RecipeError::check(finite, "number", *number, "finite in single precision")?;
+                Step::Number(*number as f32)
+            }
+            Input::Color(color) => Step::Color(*color),
+            Input::Node(name) => {
+                let known = self.names.get(name).copied();
+                return known.ok_or_else(|| order::unknown(self.recipe, name));
+            }
+        };
+        self.steps.push(step);
+        Ok(self.steps.len() - 1)
+    }
+
+    /// The step of an input that must be a number.
+    pub(crate) fn number(&mut self, input: &Input) -> Result<usize, RecipeError> {
+        let step = self.any(input)?;
+        if self.is_color(step) {
+            return Err(not_a_number(input));
+        }
+        Ok(step)
+    }
+
+    /// Whether a step makes colors.
+    pub(crate) fn is_color(&self, step: usize) -> bool {
+        self.steps[step].is_color()
+    }
+
+    /// A step that makes each value of those of the inputs at its position, colors if one of them has colors.
+    pub(crate) fn local(
+        &self,
+        inputs: Vec<usize>,
+        apply: impl Fn(&[&Values]) -> Result<Values, RecipeError> + Send + Sync + 'static,
+    ) -> Step {
+        Step::Local(Local {
+            color: inputs.iter().any(|&input| self.is_color(input)),
+            inputs,
+            apply: Box::new(apply),
+        })
+    }
+
+    /// A step that makes each value of all values of the inputs, colors if one of them has colors. Pictures of the inputs
+    /// have as many pixels as one of the tile's copies.
+    pub(crate) fn global(
+        &self,
+        inputs: Vec<usize>,
+        copies: [u32; 2],
+        apply: impl Fn(&Tile<'_>) -> Result<Values, RecipeError> + Send + Sync + 'static,
+    ) -> Step {
+        Step::Global(Global {
+            color: inputs.iter().any(|&input| self.is_color(input)),
+            inputs,
+            copies,
+            apply: Box::new(apply),
+        })
+    }
+
+    /// A step that changes a number.
+    pub(crate) fn each(
+        &mut self,
+        input: &Input,
+        change: impl Fn(f32) -> f32 + Send + Sync + 'static,
+    ) -> Result<Step, RecipeError> {
+        let inputs = vec![self.number(input)?];
+        Ok(self.local(inputs, move |inputs| {
+            let numbers = inputs[0].numbers().iter();
+            Ok(Values::Numbers(
+                numbers.map(|&number| change(number)).collect(),
+            ))
+        }))
+    }
+
+    /// A step that combines numbers, from the first to the last.
+    pub(crate) fn fold(
+        &mut self,
+        inputs: &[Input],
+        combine: impl Fn(f32, f32) -> f32 + Send + Sync + 'static,
+    ) -> Result<Step, RecipeError> {
+        let inputs = inputs.iter().map(|input| self.number(input));
+        let inputs = at_least_one(inputs.collect::<Result<_, _>>()?)?;
+        Ok(self.local(inputs, move |inputs| {
+            Ok(Values::fold(inputs, &combine, |first, _| first))
+        }))
+    }
+
+    /// A step that combines numbers or colors, from the first to the last.
+    pub(crate) fn fold_any(
+        &mut self,
+        inputs: &[Input],
+        combine: impl Fn(f32, f32) -> f32 + Send + Sync + 'static,
+        combine_colors: impl Fn(LinearRgb, LinearRgb) -> LinearRgb + Send + Sync + 'static,
+    ) -> Result<Step, RecipeError> {
+        let inputs = inputs.iter().map(|input| self.any(input));
+        let inputs = at_least_one(inputs.collect::<Result<_, _>>()?)?;
+        Ok(self.local(inputs, move |inputs| {
+            Ok(Values::fold(inputs, &combine, &combine_colors))
+        }))
+    }
+}
+
+/// What lies past the edges of a tile that repeats along some axes.
+pub(super) fn wrap(repeats: [bool; 2]) -> [Wrap; 2] {
+    repeats.map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Clamp })
+}
+
+/// Refuses no input at all.
+fn at_least_one(inputs: Vec<usize>) -> Result<Vec<usize>, RecipeError> {
+    if inputs.is_empty() {
+        let (what, count, needed) = ("inputs", 0, "at least 1");
+        return Err(RecipeError::new(RecipeErrorKind::Count {
+            what,
+            count,
+            needed,
+        }));
+    }
+    Ok(inputs)
+}

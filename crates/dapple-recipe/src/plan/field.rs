@@ -1,0 +1,117 @@
+//! Nodes as fields: what previews, seam tests and warps of one's own can ask.
+
+use super::evaluate::{Places, evaluate};
+use super::step::Step;
+use crate::{RecipeError, RecipeErrorKind, Values};
+use dapple_color::LinearRgb;
+use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
+use dapple_tile::TileErrorKind;
+use glam::DVec2;
+use std::sync::Arc;
+
+/// The number that a node makes at every position of the plane.
+///
+/// A node may refuse what it is given, such as a blend whose weights are below 0. Then many positions and windows are
+/// refused, and [`sample`](Field::sample), which cannot refuse, gives NaN.
+#[derive(Clone, Debug)]
+pub struct NodeField {
+    steps: Arc<[Step]>,
+    step: usize,
+}
+
+/// The color that a node makes at every position of the plane.
+#[derive(Clone, Debug)]
+pub struct NodeColors {
+    steps: Arc<[Step]>,
+    step: usize,
+}
+
+impl NodeField {
+    pub(super) fn new(steps: Arc<[Step]>, step: usize) -> Self {
+        Self { steps, step }
+    }
+
+    fn values(&self, places: Places<'_>) -> Result<Arc<Values>, RasterError> {
+        one(&self.steps, places, self.step).map_err(|error| refused(&error))
+    }
+}
+
+impl Field for NodeField {
+    fn sample(&self, position: DVec2) -> f32 {
+        match self.values(Places::Positions(&[position])) {
+            Ok(values) => values.numbers().first().copied().unwrap_or(f32::NAN),
+            Err(_) => f32::NAN,
+        }
+    }
+
+    fn sample_many(&self, positions: &[DVec2], values: &mut [f32]) -> Result<(), RasterError> {
+        RasterError::check_length(values.len(), positions.len())?;
+        let made = self.values(Places::Positions(positions))?;
+        RasterError::check_length(made.numbers().len(), values.len())?;
+        values.copy_from_slice(made.numbers());
+        Ok(())
+    }
+
+    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+        window.check_size(out.size())?;
+        let made = self.values(Places::Window(window))?;
+        RasterError::check_length(made.numbers().len(), window.n_pixels())?;
+        let rows = made.numbers().chunks(window.size[0] as usize);
+        for (line, row) in out.rows_mut().zip(rows) {
+            line.copy_from_slice(row);
+        }
+        Ok(())
+    }
+}
+
+impl NodeColors {
+    pub(super) fn new(steps: Arc<[Step]>, step: usize) -> Self {
+        Self { steps, step }
+    }
+
+    /// The color at a position.
+    ///
+    /// # Errors
+    ///
+    /// What a node refuses that the color is made of, such as a blend whose weights are below 0.
+    pub fn sample(&self, position: DVec2) -> Result<LinearRgb, RecipeError> {
+        let values = one(&self.steps, Places::Positions(&[position]), self.step)?;
+        let color = Arc::unwrap_or_clone(values).into_colors().pop();
+        Ok(color.expect("a value for each position"))
+    }
+
+    /// The colors at the pixel centers of a window.
+    ///
+    /// # Errors
+    ///
+    /// [`Raster`](RecipeErrorKind::Raster) if the window has a bad size, and as [`sample`](Self::sample).
+    pub fn to_raster(&self, window: &Window) -> Result<Raster<LinearRgb>, RecipeError> {
+        // A window of a bad size is refused before anything is made for it.
+        let mut raster = Raster::filled(window.size, LinearRgb::BLACK)?;
+        let values = one(&self.steps, Places::Window(window), self.step)?;
+        let colors = Arc::unwrap_or_clone(values).into_colors();
+        raster.pixels_mut().copy_from_slice(&colors);
+        Ok(raster)
+    }
+}
+
+/// The values of one step.
+fn one(steps: &[Step], places: Places<'_>, step: usize) -> Result<Arc<Values>, RecipeError> {
+    let mut values = evaluate(steps, None, places, &[step], &[])?;
+    Ok(values.swap_remove(0))
+}
+
+/// What a node refused, as an error of fields.
+fn refused(error: &RecipeError) -> RasterError {
+    let (what, value, range) = match error.kind() {
+        RecipeErrorKind::Raster(error) => return error.clone(),
+        RecipeErrorKind::Range { what, value, range } => (*what, *value, *range),
+        RecipeErrorKind::Tile(error) => match error.kind() {
+            TileErrorKind::Range { what, value, range } => (*what, *value, *range),
+            _ => ("value of a node", f64::NAN, "one that its inputs allow"),
+        },
+        _ => ("value of a node", f64::NAN, "one that its inputs allow"),
+    };
+    let refused = RasterError::check_range(false, what, value, range);
+    refused.expect_err("it does not hold")
+}

@@ -1,0 +1,134 @@
+//! The values of nodes at many positions.
+
+use crate::{RecipeError, RecipeErrorKind};
+use dapple_color::LinearRgb;
+use dapple_raster::{Raster, RasterError};
+use dapple_tile::Map;
+use std::ops::Range;
+
+/// The values of a node: numbers or colors, with one value for each position.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Numbers.
+    Numbers(Vec<f32>),
+    /// Colors, linear.
+    Colors(Vec<LinearRgb>),
+}
+
+impl Values {
+    /// The number of positions.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Numbers(numbers) => numbers.len(),
+            Self::Colors(colors) => colors.len(),
+        }
+    }
+
+    /// Whether there is no position.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The numbers; none of colors, which a plan has kept from where numbers are needed.
+    pub(crate) fn numbers(&self) -> &[f32] {
+        match self {
+            Self::Numbers(numbers) => numbers,
+            Self::Colors(_) => &[],
+        }
+    }
+
+    /// The numbers; of colors, the luminance.
+    pub(crate) fn into_grays(self) -> Vec<f32> {
+        match self {
+            Self::Numbers(numbers) => numbers,
+            Self::Colors(colors) => colors.into_iter().map(LinearRgb::luminance).collect(),
+        }
+    }
+
+    /// The colors; of numbers, grays.
+    pub(crate) fn into_colors(self) -> Vec<LinearRgb> {
+        match self {
+            Self::Numbers(numbers) => numbers.into_iter().map(LinearRgb::gray).collect(),
+            Self::Colors(colors) => colors,
+        }
+    }
+
+    /// The values of some of the positions.
+    pub(crate) fn part(&self, range: Range<usize>) -> Self {
+        match self {
+            Self::Numbers(numbers) => Self::Numbers(numbers[range].to_vec()),
+            Self::Colors(colors) => Self::Colors(colors[range].to_vec()),
+        }
+    }
+
+    /// Adds the values of more positions, which are numbers or colors as these are.
+    pub(crate) fn append(&mut self, more: &Self) {
+        match self {
+            Self::Numbers(numbers) => numbers.extend_from_slice(more.numbers()),
+            Self::Colors(colors) => match more {
+                Self::Colors(more) => colors.extend_from_slice(more),
+                Self::Numbers(more) => colors.extend(more.iter().copied().map(LinearRgb::gray)),
+            },
+        }
+    }
+
+    /// Combines inputs from the first to the last, as colors if one of them has colors.
+    pub(crate) fn fold(
+        inputs: &[&Self],
+        combine: impl Fn(f32, f32) -> f32,
+        combine_colors: impl Fn(LinearRgb, LinearRgb) -> LinearRgb,
+    ) -> Self {
+        if Self::has_colors(inputs) {
+            let mut result = inputs[0].clone().into_colors();
+            for &input in &inputs[1..] {
+                let others = input.clone().into_colors();
+                let pairs = result.iter_mut().zip(others);
+                pairs.for_each(|(a, b)| *a = combine_colors(*a, b));
+            }
+            return Self::Colors(result);
+        }
+        let mut result = inputs[0].numbers().to_vec();
+        for &input in &inputs[1..] {
+            let pairs = result.iter_mut().zip(input.numbers());
+            pairs.for_each(|(a, &b)| *a = combine(*a, b));
+        }
+        Self::Numbers(result)
+    }
+
+    fn has_colors(inputs: &[&Self]) -> bool {
+        inputs.iter().any(|input| matches!(input, Self::Colors(_)))
+    }
+
+    /// The values as a raster of this size: numbers as they are, and the luminance of colors.
+    pub(crate) fn raster(&self, size: [u32; 2]) -> Result<Raster<f32>, RasterError> {
+        Raster::from_vec(size, self.clone().into_grays())
+    }
+
+    /// The inputs as maps of this size: all of colors, if one of them has colors.
+    pub(crate) fn maps(inputs: &[&Self], size: [u32; 2]) -> Result<Vec<Map>, RasterError> {
+        let as_colors = Self::has_colors(inputs);
+        let map = |values: &&Self| {
+            Ok(match values {
+                Self::Numbers(numbers) if !as_colors => {
+                    Map::Value(Raster::from_vec(size, numbers.clone())?)
+                }
+                values => Map::Color(Raster::from_vec(size, Self::clone(values).into_colors())?),
+            })
+        };
+        inputs.iter().map(map).collect()
+    }
+
+    /// The values of the only map of a result.
+    pub(crate) fn of_map(maps: Vec<Map>) -> Result<Self, RecipeError> {
+        match maps.into_iter().next() {
+            Some(Map::Value(raster)) => Ok(Self::Numbers(raster.into_pixels())),
+            Some(Map::Color(raster)) => Ok(Self::Colors(raster.into_pixels())),
+            Some(Map::Normal(_)) | None => {
+                let rule = "a blend gives back the kind of map that it was given";
+                Err(RecipeError::new(RecipeErrorKind::Conflict { rule }))
+            }
+        }
+    }
+}
