@@ -417,7 +417,7 @@ impl Block<'_> {
                     _ => put_gradients::<4>(tone, metric, found, out),
                 }
             }
-            Output::Values(..) => {}
+            Output::Values(..) | Output::Edges(..) => {}
         }
         for (lane, column) in found.columns.clone().enumerate() {
             if found.unknown >> lane & 1 == 1 {
