@@ -15,7 +15,6 @@ use crate::metric::{Additive, Exact, Longest, Measure, Powers, Squares};
 use crate::sink::{Tone, Values};
 use crate::{LIMIT, Metric};
 use core::ops::Range;
-use fearless_simd::dispatch;
 
 /// A distance that hardly any of the nearest points exceeds.
 #[derive(Clone, Copy, Debug)]
@@ -249,7 +248,7 @@ impl Block<'_> {
         let thinning = &mut memory.thinning;
         (thinning.depth, thinning.distance) = (plan.depth, plan.guess.distance);
         match metric {
-            Metric::Minkowski(p) => dispatch!(self.level, simd => {
+            Metric::Minkowski(p) => baseline!(simd => {
                 let measure = Powers(p);
                 list.cull(simd, Cull { measure, pixels: &moved, keep }, points);
             }),
@@ -274,7 +273,7 @@ impl Block<'_> {
         let plan = square.plan;
         match plan.metric {
             Metric::Minkowski(p) => {
-                dispatch!(self.level, simd => memory.candidates(simd, Powers(p), area, square));
+                baseline!(simd => memory.candidates(simd, Powers(p), area, square));
             }
             metric => {
                 dispatch!(self.level, simd => memory.candidates(simd, Exact(metric), area, square));
@@ -330,7 +329,7 @@ impl Block<'_> {
                 Metric::Manhattan => self.fill_values(Additive(metric), part, &rows, out),
                 Metric::Chebyshev => self.fill_values(Longest, part, &rows, out),
                 Metric::Minkowski(p) => {
-                    dispatch!(self.level, simd => rows.fill::<_, _, LIMIT>(simd, Powers(p), out))
+                    baseline!(simd => rows.fill::<_, _, LIMIT>(simd, Powers(p), out))
                 }
             };
         }
