@@ -159,6 +159,11 @@ impl Block<'_> {
             let is_widest = extent([LANES, 1]) as f32 * STEP >= 1.5;
             [[LANES, LANES / if is_widest { 4 } else { 2 }]; 2]
         });
+        // Where the kernel only finds one or two keys, more candidates cost less than more tiles.
+        let is_short = plan.depth <= 2 && matches!(outs[0], Output::Values(..));
+        if is_short && plan.deep_axis.is_none() && square == [TILE; 2] {
+            plan.tile = square;
+        }
         for area in all.parts(square) {
             self.square(&area, neighborhood, plan, outs, memory);
         }
