@@ -1,5 +1,6 @@
 //! The distance to the edge of the Voronoi cell at each position, as a texture.
 
+use crate::render::Output;
 use crate::{Axes, Metric, Plane, Space, Vector, Worley};
 use dapple_raster::glam::DVec2;
 use dapple_raster::{Field, RasterError, RasterViewMut, Window};
@@ -62,7 +63,8 @@ where
     ) -> Result<(), RasterError> {
         window.check_size(out.size())?;
         let picture = self.worley.feature_picture(plane, window);
-        picture.basis.render_edges(&picture, out)
+        picture.render(picture.bands(Some(out)).map(Output::Edges).collect());
+        Ok(())
     }
 }
 

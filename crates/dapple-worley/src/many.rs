@@ -14,7 +14,7 @@ use crate::metric::{Exact, Measure as _};
 use crate::places::{LANES, Places, Words, cells_by_distance, digit, load, store};
 use crate::{LIMIT, Metric, Worley};
 use dapple_hash::CellHashes;
-use fearless_simd::{Level, dispatch, f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
+use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
 
 /// The positions of a group.
 pub(crate) const GROUP: usize = 4 * LANES;
@@ -147,11 +147,13 @@ impl<const N: usize> Group<N> {
             return 0;
         }
         let search = Search::new(worley);
-        match self.depth {
+        let holds = match self.depth {
             1 => dispatch!(level, simd => self.search_with::<_, 1>(simd, search)),
             2 => dispatch!(level, simd => self.search_with::<_, 2>(simd, search)),
             _ => dispatch!(level, simd => self.search_with::<_, LIMIT>(simd, search)),
-        }
+        };
+        dispatch!(level, simd => self.finish_with(simd, search));
+        holds
     }
 
     #[inline(always)]
@@ -161,6 +163,22 @@ impl<const N: usize> Group<N> {
             return self.search_in_step::<S, K, 1>(simd, search);
         }
         self.search_in_step::<S, K, 4>(simd, search)
+    }
+
+    /// Looks up the nearest points that were found.
+    #[inline(always)]
+    fn finish_with<S: Simd>(&mut self, simd: S, search: Search<'_, N>) {
+        // The memory has registers past the last one, too; what is in them does not matter.
+        let registers = 0..self.len.div_ceil(LANES) * self.depth;
+        if const { <S::u32s as SimdBase<S>>::LEN < LANES } {
+            for first in registers {
+                self.finish::<S, 1>(simd, search, first);
+            }
+        } else {
+            for first in registers.step_by(4) {
+                self.finish::<S, 4>(simd, search, first);
+            }
+        }
     }
 
     /// The same, where hashes are made for `C` registers at a time.
@@ -183,10 +201,6 @@ impl<const N: usize> Group<N> {
         let mut holds = 0;
         for register in 0..n_registers {
             holds |= self.holds::<S, K>(simd, search, register) << (register * LANES);
-        }
-        // The memory has registers past the last one, too; what is in them does not matter.
-        for first in (0..n_registers * K).step_by(C) {
-            self.finish::<S, K, C>(simd, search, first);
         }
         holds & self.has_place
     }
@@ -364,17 +378,14 @@ impl<const N: usize> Group<N> {
     /// Looks up `C` registers of the nearest points, from one on: first all ranks of the first register, then of the
     /// second, and so on.
     #[inline(always)]
-    fn finish<S: Simd, const K: usize, const C: usize>(
-        &mut self,
-        simd: S,
-        search: Search<'_, N>,
-        first: usize,
-    ) {
+    fn finish<S: Simd, const C: usize>(&mut self, simd: S, search: Search<'_, N>, first: usize) {
         let lattice = search.lattice;
-        let mut places = [Places::load(simd, &self.cells, &self.steps, first / K); C];
+        // The depth is a power of two.
+        let (shift, ranks) = (self.depth.trailing_zeros(), self.depth - 1);
+        let mut places = [Places::load(simd, &self.cells, &self.steps, first >> shift); C];
         let [mut neighbors, mut index] = [[u32x16::splat(simd, 0); C]; 2];
         for i in 0..C {
-            let (register, rank) = ((first + i) / K, (first + i) % K);
+            let (register, rank) = ((first + i) >> shift, (first + i) & ranks);
             places[i] = Places::load(simd, &self.cells, &self.steps, register);
             let code = load(simd, &self.best[rank], register) & search.code_mask;
             neighbors[i] = code >> search.index_bits;
@@ -391,7 +402,7 @@ impl<const N: usize> Group<N> {
         let points = SixteenCells::new_each(simd, lattice, hashes);
         let points = SixteenCells::steps_each(points, index, lattice.jitter);
         for i in 0..C {
-            let (register, rank) = ((first + i) / K, (first + i) % K);
+            let (register, rank) = ((first + i) >> shift, (first + i) & ranks);
             let vector = vector(&cells[i].origins, &points[i]);
             self.points[rank].put(search.exact, register, vector, ids[i]);
         }

@@ -7,8 +7,8 @@
 //! ([`kernel`]; [`track`], where it matters which points they are). Slices of a volume that lie near one another share
 //! their candidates. Where a tile needs points further away than its neighborhood reaches, the
 //! neighborhood grows; where that would not be exact, single positions are searched. Where cells have few pixels, points
-//! are sorted by the pixels near to them ([`bins`]), and compared at all of these ([`splat`]). Distances to the edges of
-//! cells are a second pass over the nearest points ([`edge`]).
+//! are sorted by the pixels near to them ([`bins`]), and compared at all of these ([`splat`]). Where the distance to
+//! the edge of the Voronoi cell is asked for, the cells are drawn one by one ([`edge`]).
 //!
 //! What runs in registers are stages with nothing but memory between them, so that each is compiled only for what it
 //! depends on.
@@ -22,6 +22,7 @@ mod cull;
 mod edge;
 mod flat;
 mod kernel;
+mod planes;
 mod splat;
 mod square;
 mod table;
@@ -42,6 +43,9 @@ pub(crate) use basis::Basis;
 /// The pixels of a register.
 pub(crate) const LANES: usize = 16;
 
+/// The numbers of a register of `f64`.
+const F64_LANES: usize = LANES / 2;
+
 /// The most rows of a band.
 const BAND_ROWS: usize = 64;
 
@@ -50,7 +54,7 @@ const BLOCK_COLUMNS: usize = 128;
 
 /// A window of a plane through the basis.
 #[derive(Clone, Copy, Debug)]
-pub struct Picture<'a> {
+pub(crate) struct Picture<'a> {
     pub(crate) basis: &'a dyn Basis,
     pub(crate) section: Section,
     pub(crate) window: &'a Window,
@@ -66,6 +70,8 @@ pub(crate) enum Output<'a> {
     Features(Vec<FeatureRows<'a>>),
     /// Gradients of a texture, their parts one after the other.
     Gradients(Tone, Vec<&'a mut [f32]>),
+    /// Distances to the edges of Voronoi cells.
+    Edges(Vec<&'a mut [f32]>),
 }
 
 impl Output<'_> {
@@ -74,6 +80,15 @@ impl Output<'_> {
         match self {
             Self::Values(Values { tone, .. }, _) | Self::Gradients(tone, _) => tone.depth(),
             Self::Features(features) => features.len(),
+            Self::Edges(_) => 2,
+        }
+    }
+
+    /// The most columns of a block.
+    fn block_columns(&self) -> usize {
+        match self {
+            Self::Edges(_) => edge::COLUMNS,
+            _ => BLOCK_COLUMNS,
         }
     }
 
@@ -234,11 +249,12 @@ fn render_bands(
         let (together, others) = bands.split_at(n);
         let (out, others_out) = outs.split_at_mut(n);
         let n_columns = first.columns.places.len();
-        for start in (0..n_columns).step_by(BLOCK_COLUMNS) {
+        let width = out.first().map_or(BLOCK_COLUMNS, Output::block_columns);
+        for start in (0..n_columns).step_by(width) {
             let block = Block {
                 bands: together,
                 level,
-                range: start..n_columns.min(start + BLOCK_COLUMNS),
+                range: start..n_columns.min(start + width),
             };
             block.render(out, memory);
         }

@@ -22,19 +22,22 @@ where
     #[cfg_attr(doc, doc = include_str!("../docs/edge-distance.md"))]
     #[must_use]
     pub fn edge_distance(&self, position: impl Into<Vector<N>>) -> f32 {
-        let Some(place) = Place::new(position.into().into()) else {
-            return f32::NAN;
-        };
+        let place = Place::new(position.into().into());
+        place.map_or(f32::NAN, |place| self.edge_distance_at(&place))
+    }
+
+    /// The distance from a place to the nearest edge of its Voronoi cell.
+    pub(crate) fn edge_distance_at(&self, place: &Place<N>) -> f32 {
         let (metric, lattice) = (Metric::Euclidean, &self.lattice);
         let mut pair = [Hit::NONE; 2];
-        Axes::nearest(metric, lattice, simd::level(), &place, &mut pair);
+        Axes::nearest(metric, lattice, simd::level(), place, &mut pair);
         if pair[1].name.is_none() {
             return f32::INFINITY;
         }
         let [first, second] = pair.map(|hit| hit.vector.map(f64::from));
         // The plane halfway to a point at the distance d is at least (d − F1) / 2 away.
         let reach = length(first) + 2.0 * to_plane(first, second);
-        let hits = Axes::within(metric, lattice, &place, (reach * 1.000_001) as f32);
+        let hits = Axes::within(metric, lattice, place, (reach * 1.000_001) as f32);
         let mut all: Vec<_> = hits.iter().map(|hit| hit.vector.map(f64::from)).collect();
         if let Some(own) = all.iter().position(|&vector| vector == first) {
             all.swap_remove(own);

@@ -1,16 +1,14 @@
 //! What pictures need of a basis, whatever its number of axes.
 
-use super::Picture;
 use super::bins::{Bins, Grid};
-use super::edge::render_edges;
 use super::table::{CellBox, Table};
 use crate::doors::Doors as _;
 use crate::fixed::{FlatPlace, MOST_AXES, Place};
 use crate::search::Hit;
-use crate::{Axes, LIMIT, Metric, Space, Vector, Worley};
+use crate::{Axes, LIMIT, Metric, Space, Worley};
 use core::fmt;
-use dapple_raster::{RasterError, RasterViewMut, simd};
-use fearless_simd::{Level, dispatch};
+use dapple_raster::simd;
+use fearless_simd::Level;
 
 /// A basis as pictures see it: only hashes and the tables of feature points know the number of axes. Places and vectors
 /// have zeros along the axes that the basis has not.
@@ -30,15 +28,8 @@ pub trait Basis: Sync + fmt::Debug {
     /// The nearest points of a place, nearest first; at most four.
     fn nearest(&self, place: &FlatPlace, hits: &mut [Hit<MOST_AXES>]);
 
-    /// The distance from a position to the nearest edge of its Voronoi cell.
-    fn edge_distance(&self, position: [f64; MOST_AXES]) -> f32;
-
-    /// Fills a picture of the basis with such distances; its metric is Euclidean.
-    fn render_edges(
-        &self,
-        picture: &Picture<'_>,
-        out: RasterViewMut<'_, f32>,
-    ) -> Result<(), RasterError>;
+    /// The distance from a place to the nearest edge of its Voronoi cell.
+    fn edge_distance(&self, place: &FlatPlace) -> f32;
 }
 
 impl<const N: usize> Basis for Worley<N>
@@ -65,10 +56,7 @@ where
     }
 
     fn nearest(&self, place: &FlatPlace, hits: &mut [Hit<MOST_AXES>]) {
-        let place = Place {
-            cell: first(place.cell),
-            steps: first(place.steps),
-        };
+        let place = first_axes(place);
         let mut found = [Hit::NONE; LIMIT];
         let found = &mut found[..hits.len()];
         Axes::nearest(self.metric, &self.lattice, simd::level(), &place, found);
@@ -80,20 +68,20 @@ where
         }
     }
 
-    fn edge_distance(&self, position: [f64; MOST_AXES]) -> f32 {
-        self.edge_distance(Vector::<N>::from(first(position)))
+    fn edge_distance(&self, place: &FlatPlace) -> f32 {
+        self.edge_distance_at(&first_axes(place))
     }
+}
 
-    fn render_edges(
-        &self,
-        picture: &Picture<'_>,
-        out: RasterViewMut<'_, f32>,
-    ) -> Result<(), RasterError> {
-        render_edges::<N>(picture, out)
+/// A place in a space that has fewer axes.
+fn first_axes<const N: usize>(place: &FlatPlace) -> Place<N> {
+    Place {
+        cell: first(place.cell),
+        steps: first(place.steps),
     }
 }
 
 /// The parts along the axes that there are.
-pub(super) fn first<T: Copy, const N: usize>(parts: [T; MOST_AXES]) -> [T; N] {
+fn first<T: Copy, const N: usize>(parts: [T; MOST_AXES]) -> [T; N] {
     core::array::from_fn(|axis| parts[axis])
 }

@@ -5,6 +5,7 @@ use super::bins::Bins;
 use super::cull::{PixelBox, PointList};
 use super::flat::{FlatPoints, Thinning};
 use super::kernel::Candidate;
+use super::planes::{Neighbors, Planes};
 use super::splat::Splat;
 use super::square::{Guess, Plan};
 use super::table::{CellBox, Table};
@@ -53,6 +54,10 @@ pub(super) struct Memory {
     pub(super) thinning: Thinning,
     /// Pixels that need points further away.
     pub(super) unknown: Vec<Area>,
+    /// The planes about a feature point, and the distances to edges that are drawn already.
+    pub(super) neighbors: Neighbors,
+    pub(super) planes: Planes,
+    pub(super) values: Vec<f32>,
     pub(super) runs: Vec<Range<usize>>,
     /// The points in the order of the pixels that they are near to.
     pub(super) bins: Bins,
@@ -79,6 +84,9 @@ impl Memory {
             lookup: Lookup::new(),
             thinning: Thinning::new(),
             unknown: Vec::new(),
+            neighbors: Neighbors::new(),
+            planes: Planes::new(),
+            values: Vec::new(),
             runs: Vec::new(),
             bins: Bins::new(),
             lines: core::array::from_fn(|_| Vec::new()),
@@ -126,7 +134,7 @@ impl Memory {
     }
 
     /// Takes down where the columns of a block and the rows of its band lie, from the lower corner of some cells.
-    fn take_lines(&mut self, block: &Block<'_>, cells: &CellBox) {
+    pub(super) fn take_lines(&mut self, block: &Block<'_>, cells: &CellBox) {
         self.n_axes = cells.n_axes;
         let band = &block.bands[0];
         let steps = |axis: usize, (cell, steps): (i64, i32)| {
@@ -228,6 +236,10 @@ impl Block<'_> {
 
     /// Fills the pixels of slices that lie near one another.
     fn render_together(&self, outs: &mut [Output<'_>], memory: &mut Memory) {
+        if let Output::Edges(rows) = &mut outs[0] {
+            self.edges(rows, memory);
+            return;
+        }
         let Picture { basis, section, .. } = self.bands[0].picture;
         let metric = basis.metric();
         let is_values = matches!(outs[0], Output::Values(..));
@@ -280,7 +292,7 @@ impl Block<'_> {
     }
 
     /// The cell in the middle.
-    fn middle(&self) -> [i64; MOST_AXES] {
+    pub(super) fn middle(&self) -> [i64; MOST_AXES] {
         let mut middle = [0; MOST_AXES];
         let band = &self.bands[0];
         middle[0] = band.columns.places[self.range.start + self.range.len() / 2].0;
@@ -291,7 +303,7 @@ impl Block<'_> {
     }
 
     /// The cells that the block needs, if it can be filled from a table.
-    fn cells(&self, ring: i32) -> Option<CellBox> {
+    pub(super) fn cells(&self, ring: i32) -> Option<CellBox> {
         let band = &self.bands[0];
         let is_finite = band.columns.is_finite && band.rows.iter().all(|rows| rows.is_finite);
         if !is_finite || !band.picture.section.is_upright() {
@@ -356,6 +368,7 @@ impl Block<'_> {
                 let gradient = place.map_or([f32::NAN; MOST_AXES], |_| gradient);
                 rows[row][column * n..][..n].copy_from_slice(&gradient[..n]);
             }
+            Output::Edges(rows) => rows[row][column] = self.edge(column, row),
             Output::Features(features) => {
                 let hits = nearest(LIMIT);
                 for (hit, features) in hits.iter().zip(features) {

@@ -42,6 +42,17 @@ impl PixelBox {
         border
     }
 
+    /// The squared distance of a point from the box, in cells.
+    pub(super) fn distance_sq(&self, point: &[i32; MOST_AXES]) -> f32 {
+        let mut sum = 0.0;
+        for axis in 0..self.n_axes {
+            let steps = (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]);
+            let part = steps.max(0) as f32 * STEP;
+            sum += part * part;
+        }
+        sum
+    }
+
     /// The longest of its sides, in steps.
     pub(super) fn extent(&self) -> i32 {
         let mut extent = 0;

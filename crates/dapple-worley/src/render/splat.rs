@@ -15,7 +15,7 @@ use crate::Metric;
 use crate::fixed::{MOST_AXES, STEP, STEP_BITS};
 use crate::metric::{Additive, Exact, Longest, Measure, Powers};
 use crate::sink::{ValueLanes, Values};
-use fearless_simd::{Level, dispatch, f32x4, f32x16, i32x4, prelude::*};
+use fearless_simd::{Level, f32x4, f32x16, i32x4, prelude::*};
 
 /// By how much of a pixel a pixel may lie beside its place: well below what [`SURE`] leaves.
 const UNEVEN: f32 = 0.001;
@@ -145,7 +145,7 @@ impl Splat {
             let mut points = core::mem::take(&mut bins.near);
             match metric {
                 Metric::Minkowski(p) => {
-                    dispatch!(block.level, simd => bins.sort(simd, Powers(p), &mut points));
+                    baseline!(simd => bins.sort(simd, Powers(p), &mut points));
                 }
                 _ => dispatch!(block.level, simd => bins.sort(simd, Exact(metric), &mut points)),
             }
@@ -156,7 +156,7 @@ impl Splat {
             let mut points = core::mem::take(&mut bins.wide);
             match metric {
                 Metric::Minkowski(p) => {
-                    dispatch!(block.level, simd => bins.sort(simd, Powers(p), &mut points));
+                    baseline!(simd => bins.sort(simd, Powers(p), &mut points));
                 }
                 _ => dispatch!(block.level, simd => bins.sort(simd, Exact(metric), &mut points)),
             }
@@ -213,7 +213,7 @@ fn fill_block<const TILES: usize>(
         match runs.metric {
             Metric::Minkowski(p) => {
                 let measure = Powers(p);
-                dispatch!(level, simd => fill::<_, _, LIMIT, TILES, true>(simd, measure, runs, &mut tiles));
+                baseline!(simd => fill::<_, _, LIMIT, TILES, true>(simd, measure, runs, &mut tiles));
             }
             Metric::Chebyshev => fill_by_depth::<_, TILES, true>(level, Longest, runs, &mut tiles),
             metric if block.bands[0].rows.len() == 2 => {

@@ -15,7 +15,6 @@ use crate::metric::{Additive, Exact, Longest, Measure, Powers, Squares};
 use crate::sink::{Tone, Values};
 use crate::{LIMIT, Metric};
 use core::ops::Range;
-use fearless_simd::dispatch;
 
 /// A distance that hardly any of the nearest points exceeds.
 #[derive(Clone, Copy, Debug)]
@@ -160,6 +159,11 @@ impl Block<'_> {
             let is_widest = extent([LANES, 1]) as f32 * STEP >= 1.5;
             [[LANES, LANES / if is_widest { 4 } else { 2 }]; 2]
         });
+        // Where the kernel only finds one or two keys, more candidates cost less than more tiles.
+        let is_short = plan.depth <= 2 && matches!(outs[0], Output::Values(..));
+        if is_short && plan.deep_axis.is_none() && square == [TILE; 2] {
+            plan.tile = square;
+        }
         for area in all.parts(square) {
             self.square(&area, neighborhood, plan, outs, memory);
         }
@@ -249,7 +253,7 @@ impl Block<'_> {
         let thinning = &mut memory.thinning;
         (thinning.depth, thinning.distance) = (plan.depth, plan.guess.distance);
         match metric {
-            Metric::Minkowski(p) => dispatch!(self.level, simd => {
+            Metric::Minkowski(p) => baseline!(simd => {
                 let measure = Powers(p);
                 list.cull(simd, Cull { measure, pixels: &moved, keep }, points);
             }),
@@ -274,7 +278,7 @@ impl Block<'_> {
         let plan = square.plan;
         match plan.metric {
             Metric::Minkowski(p) => {
-                dispatch!(self.level, simd => memory.candidates(simd, Powers(p), area, square));
+                baseline!(simd => memory.candidates(simd, Powers(p), area, square));
             }
             metric => {
                 dispatch!(self.level, simd => memory.candidates(simd, Exact(metric), area, square));
@@ -330,7 +334,7 @@ impl Block<'_> {
                 Metric::Manhattan => self.fill_values(Additive(metric), part, &rows, out),
                 Metric::Chebyshev => self.fill_values(Longest, part, &rows, out),
                 Metric::Minkowski(p) => {
-                    dispatch!(self.level, simd => rows.fill::<_, _, LIMIT>(simd, Powers(p), out))
+                    baseline!(simd => rows.fill::<_, _, LIMIT>(simd, Powers(p), out))
                 }
             };
         }
@@ -417,7 +421,7 @@ impl Block<'_> {
                     _ => put_gradients::<4>(tone, metric, found, out),
                 }
             }
-            Output::Values(..) => {}
+            Output::Values(..) | Output::Edges(..) => {}
         }
         for (lane, column) in found.columns.clone().enumerate() {
             if found.unknown >> lane & 1 == 1 {

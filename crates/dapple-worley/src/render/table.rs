@@ -216,11 +216,6 @@ impl Table {
         }
     }
 
-    /// How many points it has.
-    pub(super) fn n_points(&self) -> usize {
-        self.starts.last().map_or(0, |&end| end as usize)
-    }
-
     /// A point, in steps from the lower corner of the box.
     pub(super) fn point(&self, index: usize) -> [i32; MOST_AXES] {
         let mut point = [0; MOST_AXES];
@@ -236,18 +231,15 @@ impl Table {
             .all(|axis| first[axis] >= 0 && (last[axis] as usize) < self.cells.side(axis))
     }
 
-    /// The points of the cells up to `ring` cells from that of a point, if the table has these cells.
+    /// The points of the cells that have places up to `reach` steps from a point along each axis, if the table has these
+    /// cells.
     pub(super) fn around<'a>(
         &self,
-        point: &[i32],
-        ring: i32,
+        point: &[i32; MOST_AXES],
+        reach: i32,
         runs: &'a mut Vec<Range<usize>>,
     ) -> Option<&'a [Range<usize>]> {
-        let mut cells = [[0; MOST_AXES]; 2];
-        for (axis, steps) in point.iter().enumerate() {
-            let cell = steps >> STEP_BITS;
-            [cells[0][axis], cells[1][axis]] = [cell - ring, cell + ring];
-        }
+        let cells = [-reach, reach].map(|way| point.map(|steps| (steps + way) >> STEP_BITS));
         if !self.has_cells(cells) {
             return None;
         }

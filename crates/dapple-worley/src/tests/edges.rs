@@ -2,8 +2,11 @@
 
 use super::bits::windows;
 use super::oracle::{SCATTERS, brute_force_vectors};
+use super::sheet::middle_ground;
+use crate::render::Output;
 use crate::{Axes, Plane, Space, Worley, WorleyError};
 use dapple_hash::Seed;
+use dapple_raster::simd::for_every_level;
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
 
@@ -15,22 +18,31 @@ fn picture_equals_distance<const N: usize>(
 where
     Axes: Space<N>,
 {
-    let mut raster = Raster::filled(window.size, -1.0)?;
-    worley
-        .edge_distances()
-        .render_plane(plane, window, raster.view_mut())?;
     let [width, height] = window.size;
-    for (column, row) in (0..height).flat_map(|row| (0..width).map(move |column| (column, row))) {
-        let at = plane.position(window.position(column, row));
-        let expected = worley.edge_distance(at);
-        let found = raster.row(row)[column as usize];
-        assert_eq!(
-            found.to_bits(),
-            expected.to_bits(),
-            "{found} for {expected} at {at:?}, {:?}, {window:?}",
-            worley.scatter
-        );
-    }
+    let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+    let positions: Vec<_> = pixels
+        .map(|(column, row)| plane.position(window.position(column, row)))
+        .collect();
+    let expected: Vec<_> = positions
+        .iter()
+        .map(|&at| worley.edge_distance(at))
+        .collect();
+    let edges = worley.edge_distances();
+    for_every_level(|level| {
+        let mut raster = Raster::filled(window.size, -1.0).unwrap();
+        let picture = edges.worley.feature_picture(plane, window);
+        let bands = picture.bands(Some(raster.view_mut()));
+        picture.render_at(level, bands.map(Output::Edges).collect());
+        let found = positions.iter().zip(raster.pixels()).zip(&expected);
+        for ((at, found), expected) in found {
+            assert_eq!(
+                found.to_bits(),
+                expected.to_bits(),
+                "{found} for {expected} at {at:?}, {:?}, {window:?}, {level:?}",
+                worley.scatter
+            );
+        }
+    });
     Ok(())
 }
 
@@ -61,6 +73,21 @@ fn edge_picture_equals_edge_distance_in_slices() -> Result<(), WorleyError> {
     }
     let plane = Plane::slice([0.0, 0.0, 2.5, 1e4].into());
     picture_equals_distance(&Worley::<4>::new(Seed(23)), &plane, &window)
+}
+
+/// Windows about places on an edge, from a whole cell down to a few steps.
+#[test]
+fn edge_picture_equals_edge_distance_on_edges() -> Result<(), WorleyError> {
+    for seed in 0..4 {
+        let worley = Worley::<2>::new(Seed(seed));
+        let at = DVec2::from(middle_ground(&worley, [0.3 + seed as f64; 2]));
+        for zoom in [2, 6, 9, 12, 16, 20] {
+            let extent = DVec2::new(1.0, -1.0) / f64::from(1 << zoom);
+            let window = Window::new(at - extent / 2.0, extent, [40, 18])?;
+            picture_equals_distance(&worley, &Plane::default(), &window)?;
+        }
+    }
+    Ok(())
 }
 
 #[test]

@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 /// A position that is as near to its nearest point as to the second one, to within a hair: on the way from `at` to
 /// another place with another nearest point.
-fn middle_ground<const N: usize>(worley: &Worley<N>, at: [f64; N]) -> [f64; N]
+pub(super) fn middle_ground<const N: usize>(worley: &Worley<N>, at: [f64; N]) -> [f64; N]
 where
     Axes: Space<N>,
 {
