@@ -33,7 +33,7 @@ use crate::fixed::{FlatPlace, MOST_AXES, split};
 use crate::plane::Section;
 use crate::sink::{Tone, Values};
 use block::{Block, Memory};
-use dapple_raster::{RasterViewMut, Window, simd};
+use dapple_raster::{RasterViewMut, Window, parallel, simd};
 use fearless_simd::Level;
 use glam::DVec2;
 use std::sync::Arc;
@@ -210,26 +210,9 @@ pub(crate) fn render_stack<'a>(level: Level, stack: Vec<(Picture<'a>, Vec<Output
             jobs.push((bands, outs));
         }
     }
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        use std::sync::{Mutex, PoisonError};
-        // Memory goes from job to job, since it takes time to be had anew.
-        let pool = Mutex::new(Vec::new());
-        let lock = || pool.lock().unwrap_or_else(PoisonError::into_inner);
-        jobs.into_par_iter().for_each(|(bands, outs)| {
-            let mut memory = lock().pop().unwrap_or_else(Memory::new);
-            render_bands(level, &bands, outs, &mut memory);
-            lock().push(memory);
-        });
-    }
-    #[cfg(not(feature = "rayon"))]
-    {
-        let mut memory = Memory::new();
-        for (bands, outs) in jobs {
-            render_bands(level, &bands, outs, &mut memory);
-        }
-    }
+    parallel::consume_with(jobs, Memory::new, |memory, _, (bands, outs)| {
+        render_bands(level, &bands, outs, memory);
+    });
 }
 
 /// Fills the same band of several pictures. Those next to one another that are slices of a volume are filled together.
