@@ -37,7 +37,7 @@ const POINTS_100K: Case = Case {
 const ORIENTED: Case = Case {
     case: "raster with orientations, 700 points",
     peer: "ours, without",
-    must: Must::CostAtMost(1.8),
+    must: Must::CostAtMost(2.5),
     note: "equation 4 with ε = 0.5 and a random orientation for each point",
     ..NAIVE
 };

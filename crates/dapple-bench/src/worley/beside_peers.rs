@@ -13,46 +13,46 @@ const F1_64: Case = Case {
     case: "2-D, 64 px per cell, F1",
     peer: "simdnoise cellular_2d",
     unit: Unit::NsPerPixel,
-    must: Must::Faster(11.0),
+    must: Must::Faster(7.5),
     note: "the peer has one feature point per cell, ours three on average, and its distances are squared",
 };
 
 const F2_MINUS_F1_64: Case = Case {
     case: "2-D, 64 px per cell, F2 − F1",
     peer: "simdnoise cellular2_2d",
-    must: Must::Faster(8.0),
+    must: Must::Faster(5.5),
     ..F1_64
 };
 
 const F2_MINUS_F1_16: Case = Case {
     case: "2-D, 16 px per cell, F2 − F1",
-    must: Must::Faster(4.0),
+    must: Must::Faster(2.2),
     ..F2_MINUS_F1_64
 };
 
 const F2_MINUS_F1_4: Case = Case {
     case: "2-D, 4 px per cell, F2 − F1",
-    must: Must::Faster(1.7),
+    must: Must::Faster(1.1),
     ..F2_MINUS_F1_64
 };
 
 const SPACE_64: Case = Case {
     case: "3-D, 64 px per cell, F2 − F1",
     peer: "simdnoise cellular2_3d",
-    must: Must::Faster(25.0),
+    must: Must::Faster(19.0),
     note: "as in the plane; the peer looks at 18 of the 27 places next to a position, see `src/peers/noise.rs`",
     ..F2_MINUS_F1_64
 };
 
 const SPACE_32: Case = Case {
     case: "3-D, 32 px per cell, F2 − F1",
-    must: Must::Faster(18.0),
+    must: Must::Faster(11.0),
     ..SPACE_64
 };
 
 const SPACE_4: Case = Case {
     case: "3-D, 4 px per cell, F2 − F1",
-    must: Must::Faster(2.3),
+    must: Must::Faster(1.5),
     ..SPACE_64
 };
 

@@ -202,7 +202,7 @@ impl Neighbors {
                     apart_sq += apart * apart;
                 }
                 let is_worse = (nearer * nearer).simd_gt(apart_sq * radius_sq);
-                matters = matters & !(is_worse & nearer.simd_gt(0.0));
+                matters &= !(is_worse & nearer.simd_gt(0.0));
             }
             let mut matters = matters.to_bitmask();
             while matters != 0 {
