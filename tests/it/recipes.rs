@@ -156,7 +156,9 @@ fn kinds_of_nodes_and_textures_are_named_by_their_tables_alone() {
     let matched = |text: &str| {
         // A variant of `Node` or `PupsNode`: a capital letter and a small one.
         let mut after = text.split("Node::").skip(1).map(str::as_bytes);
-        after.any(|name| name[0].is_ascii_uppercase() && name[1].is_ascii_lowercase())
+        after.any(|name| {
+            matches!(name, [first, second, ..] if first.is_ascii_uppercase() && second.is_ascii_lowercase())
+        })
     };
     let folders = [
         "dapple-recipe/src",
