@@ -1,10 +1,13 @@
 //! What the README of `dapple-recipe` says about recipes is so.
+#![expect(clippy::disallowed_methods, reason = "the workspace is made of files")]
 
 use dapple::color::LinearRgb;
 use dapple::raster::{Field, Raster};
 use dapple::recipe::{
     Bake, BakeOptions, Images, KINDS, MapKind, Picture, Plan, Recipe, RecipeError,
 };
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 const README: &str = include_str!("../../crates/dapple-recipe/README.md");
@@ -128,5 +131,49 @@ fn fur_has_no_bands_across_its_height() {
         let contrast = rows / height.statistics().deviation;
         // Rows of pixels that have nothing to do with each other have 1/16; hair is 2 pixels wide and has 0.07 to 0.10.
         assert!(contrast < 0.13, "{name}: rows differ by {contrast}");
+    }
+}
+
+/// The Rust files of a folder and of the folders in it.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let files = paths.flat_map(|path| {
+        if path.is_dir() {
+            sources(&path)
+        } else {
+            vec![path]
+        }
+    });
+    files
+        .filter(|path| path.extension().is_some_and(|ending| ending == "rs"))
+        .collect()
+}
+
+#[test]
+fn kinds_of_nodes_and_textures_are_named_by_their_tables_alone() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+    let matched = |text: &str| {
+        // A variant of `Node` or `PupsNode`: a capital letter and a small one.
+        let mut after = text.split("Node::").skip(1).map(str::as_bytes);
+        after.any(|name| {
+            matches!(name, [first, second, ..] if first.is_ascii_uppercase() && second.is_ascii_lowercase())
+        })
+    };
+    let folders = [
+        "dapple-recipe/src",
+        "dapple-pups/src",
+        "dapple-cli/src/commands/pups",
+    ];
+    for path in folders
+        .iter()
+        .flat_map(|folder| sources(&crates.join(folder)))
+    {
+        let text = fs::read_to_string(&path).expect("a text");
+        assert!(
+            !matched(&text),
+            "{} matches on a kind of node",
+            path.display()
+        );
     }
 }

@@ -14,6 +14,8 @@ mod orientations;
 mod reference;
 mod values;
 
+#[cfg(feature = "schema")]
+pub(crate) use groups::POINTS_PER_CELL;
 pub use groups::grouped_labels;
 pub use labels::{biased_labels, own_labels, random_labels};
 pub use orientations::{

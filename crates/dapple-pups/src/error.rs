@@ -14,7 +14,7 @@ dapple_raster::error! {
         NoPoints => "there is no control point";
         /// The graph, or a column of attributes, belongs to another number of points.
         Count {
-            /// What was counted.
+            /// The things that were counted.
             what: &'static str,
             /// How many there are.
             count: usize,

@@ -44,6 +44,9 @@ mod sink;
 mod assign;
 mod recipes;
 
+#[cfg(feature = "schema")]
+mod schema;
+
 pub use assign::{
     Orientations, ReferenceImage, angle_orientations, biased_labels, field_orientations,
     field_values, grouped_labels, outward_orientations, own_labels, palette_values, random_labels,

@@ -9,7 +9,7 @@
 //! progression from left to right belongs on a domain that does not wrap in x.
 //!
 //! To add a recipe, write a file that implements [`PupsRecipe`] for its options, and a line in the table of
-//! [`recipes!`](crate::recipes).
+//! [`recipes!`](crate::recipes!).
 
 mod label_texture;
 mod layers;

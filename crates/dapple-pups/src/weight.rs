@@ -28,6 +28,7 @@ use core::ops::{Add, Mul, Sub};
 /// assert_eq!(half, [0.5, 0.5]);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -44,6 +45,7 @@ pub enum AxialWeight {
     /// with the Chebyshev polynomial `T = T_n(1 − 2p)`, which swings between −1 and 1.
     Oscillating {
         /// The number `n` of dips along an axis, 1 to 16.
+        #[cfg_attr(feature = "schema", schemars(transform = { crate::options::DIPS }))]
         dips: u32,
         /// Their depth `d`, from 0 (the cubic) to below 1 (at 1 the weight would vanish inside of the support, and
         /// with it, possibly, the denominator). At most 0.99.

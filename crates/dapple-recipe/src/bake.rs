@@ -16,7 +16,7 @@ use crate::{Plan, RecipeError, Whole};
 use dapple_raster::Window;
 use heights::Heights;
 
-/// What is baked.
+/// The maps to bake, and their size.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BakeOptions {
     /// Columns and rows of the whole tile; 1024 × 1024 by default. There may be more pixels than a raster has.
@@ -137,7 +137,7 @@ impl<'a> Bake<'a> {
     ///
     /// # Errors
     ///
-    /// What a band refuses, and [`Raster`](crate::RecipeErrorKind::Raster) if a map has more pixels than a raster can have.
+    /// Those of a band, and [`Raster`](crate::RecipeErrorKind::Raster) if a map has more pixels than a raster can have.
     pub fn whole_maps(self) -> Result<Vec<(MapKind, MapRows)>, RecipeError> {
         let mut whole: Vec<(MapKind, MapRows)> = Vec::new();
         for band in self {

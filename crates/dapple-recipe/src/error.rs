@@ -35,13 +35,13 @@ pub struct Place {
     pub column: usize,
 }
 
-/// What is wrong.
+/// The reason why a recipe was refused.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RecipeErrorKind {
     /// The text is no TOML or JSON, or says something that a recipe does not have.
     Text {
-        /// What the reader said.
+        /// The message of the reader.
         message: String,
     },
     /// The recipe has another version of the schema than this crate.
@@ -71,7 +71,7 @@ pub enum RecipeErrorKind {
     },
     /// There are more nodes than the limit, or more of something else.
     Count {
-        /// What there is too much or too little of.
+        /// The things that were counted.
         what: &'static str,
         /// How many there are.
         count: usize,
@@ -85,7 +85,7 @@ pub enum RecipeErrorKind {
     },
     /// A number is outside of its range.
     Range {
-        /// What the number is.
+        /// The name of the number.
         what: &'static str,
         /// The number.
         value: f64,
@@ -94,7 +94,7 @@ pub enum RecipeErrorKind {
     },
     /// The recipe, up to this node, asks for more work than the limits allow: see [`PlanLimits`](crate::PlanLimits).
     TooMuch {
-        /// What there would be too much of.
+        /// The things of which there would be too many.
         what: &'static str,
         /// About how much there would be.
         value: f64,
@@ -113,7 +113,7 @@ pub enum RecipeErrorKind {
     },
     /// A node sees the whole tile, where only a part of it is at hand.
     Global {
-        /// What asks for parts, as the end of a sentence.
+        /// The circumstance, as the end of a sentence.
         during: &'static str,
     },
     /// The basis of cells was refused.
@@ -122,7 +122,7 @@ pub enum RecipeErrorKind {
     Pups(PupsError),
     /// Wavelet noise was refused.
     Wavelet(WaveletError),
-    /// What makes images repeat, or blends them, refused.
+    /// A method that makes images repeat, or blends them, refused.
     Tile(TileError),
     /// A ramp or a map was refused.
     Color(ColorError),
@@ -162,19 +162,19 @@ impl RecipeError {
         Self::check(range.holds(value), what, value, range.text)
     }
 
-    /// The same error at a place of the text.
+    /// This error, at a place of the text.
     pub(crate) fn at(mut self, place: Option<Place>) -> Self {
         self.content.place = place;
         self
     }
 
-    /// The same error in a node.
+    /// This error, in a node.
     pub(crate) fn within(mut self, node: &str) -> Self {
         self.content.node.get_or_insert_with(|| node.to_owned());
         self
     }
 
-    /// The same error with the valid word that is nearest to what was written, if one is near.
+    /// This error, with the valid word that is nearest to the written one, if one is near.
     pub(crate) fn meant<'a>(
         mut self,
         written: &str,
@@ -185,7 +185,7 @@ impl RecipeError {
         self
     }
 
-    /// What is wrong.
+    /// The reason.
     #[must_use]
     pub fn kind(&self) -> &RecipeErrorKind {
         &self.content.kind

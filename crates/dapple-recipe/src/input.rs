@@ -5,16 +5,16 @@ use dapple_color::LinearRgb;
 use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
 use serde::ser::{Serialize, Serializer};
 
-/// What a node, or a map of the material, is given.
+/// An input of a node, or of a map of the material.
 ///
 /// In a file: a number, a color such as `"#c08040"`, or the name of a node such as `"stones"`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
-    /// The same number everywhere.
+    /// A constant number.
     Number(f64),
-    /// The same color everywhere.
+    /// A constant color.
     Color(LinearRgb),
-    /// What the node of this name makes.
+    /// The values of the node of this name.
     Node(String),
 }
 

@@ -9,6 +9,8 @@ mod nodes;
 mod plan;
 mod recipe;
 mod rust;
+#[cfg(feature = "schema")]
+mod schema;
 mod text;
 mod values;
 mod words;

@@ -57,7 +57,7 @@ use crate::plan::{Builder, Step, Work};
 use crate::{Input, RecipeError};
 use serde::{Deserialize, Serialize};
 
-/// What every kind of node has.
+/// A kind of node.
 ///
 /// A node is a number at every position, or a color if [`build`](Self::build) makes a step of colors.
 pub(crate) trait NodeKind {
@@ -66,7 +66,7 @@ pub(crate) trait NodeKind {
         Vec::new()
     }
 
-    /// The image file that the node reads, with what becomes of its alpha where the node says so.
+    /// The image file that the node reads, with how its alpha is used where the node says so.
     fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
         None
     }
@@ -90,6 +90,7 @@ macro_rules! nodes {
         /// `corner_tiles`, `warp` and `blend` make a color where they are given one, and take a number beside it as a
         /// gray.
         #[derive(Clone, Debug, Serialize, Deserialize)]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         #[non_exhaustive]
         pub enum Node {
             $($(#[$doc])* #[serde(rename = $name)] $variant($options),)*
@@ -174,7 +175,7 @@ impl Node {
         Some(self.kind().image()?.0)
     }
 
-    /// What becomes of the alpha of that file, where the node says so.
+    /// How the alpha of that file is used, where the node says so.
     #[must_use]
     pub fn image_alpha(&self) -> Option<ImageAlpha> {
         self.kind().image()?.1

@@ -93,7 +93,7 @@ impl Recipe {
         files
     }
 
-    /// What becomes of the alpha of an image that the recipe names, where a node says so.
+    /// How the alpha of an image that the recipe names is used, where a node says so.
     ///
     /// # Errors
     ///
@@ -115,7 +115,7 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// What is wrong with the recipe, with the node in which it is: names that do not exist, circles, colors where numbers
+    /// Mistakes of the recipe, with the node in which they are: names that do not exist, circles, colors where numbers
     /// are needed, numbers out of range, and what the crates of the nodes refuse; [`TooMuch`](RecipeErrorKind::TooMuch)
     /// past the default [`PlanLimits`].
     pub fn new(recipe: &Recipe, images: &Images, time: f64) -> Result<Self, RecipeError> {
@@ -126,7 +126,7 @@ impl Plan {
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new), with other limits.
+    /// Those of [`new`](Self::new), with other limits.
     pub fn new_within(
         recipe: &Recipe,
         images: &Images,
@@ -162,7 +162,7 @@ impl Plan {
         self.extent
     }
 
-    /// The window that covers the tile with so many pixels. It may have more than a raster can.
+    /// The window that covers the tile with `size` pixels. It may have more than a raster can.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! What a recipe is.
+//! Recipes as data.
 
 use crate::{Input, Node};
 use dapple_color::NormalY;
@@ -41,29 +41,37 @@ pub const SCHEMA: u32 = 1;
 /// # Ok::<(), dapple_recipe::RecipeError>(())
 /// ```
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Recipe {
     /// The version of the schema: [`SCHEMA`].
+    #[cfg_attr(feature = "schema", schemars(extend("const" = SCHEMA)))]
     pub dapple: u32,
-    /// What it is called; names the files that are baked from it.
+    /// The name, which the files that are baked from it get.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
-    /// What it is, in a sentence.
+    /// A sentence about it.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub about: String,
     /// Where all of its chance comes from; 0 by default.
     #[serde(default)]
+    #[cfg_attr(feature = "schema", schemars(with = "u64"))]
     pub seed: Seed,
     /// The width and height of the tile, in units of the plane; 1 × 1 by default.
     #[serde(default = "default_extent")]
+    #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::EXTENT }))]
     pub extent: [f64; 2],
     /// Along which axes it repeats, x first; both by default.
     #[serde(default = "default_wrap")]
     pub wrap: [bool; 2],
     /// The nodes by their names.
     #[serde(default)]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(with = "std::collections::BTreeMap<String, Node>")
+    )]
     pub nodes: IndexMap<String, Node>,
-    /// What the maps are made of.
+    /// The inputs of the maps.
     pub material: Material,
 }
 
@@ -75,13 +83,15 @@ fn default_wrap() -> [bool; 2] {
     [true; 2]
 }
 
-/// What the maps of a recipe are made of.
+/// The inputs of the maps of a recipe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Material {
     /// The height, from 0 to 1; ½ by default. Files with whole numbers cut off what lies outside.
     pub height: Input,
     /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6; 0.1 by default.
+    #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::RELIEF }))]
     pub relief: f64,
     /// The color; the height as a gray by default.
     #[serde(alias = "basecolor", alias = "base_color")]
@@ -91,6 +101,10 @@ pub struct Material {
     /// From 0, no metal, to 1, all metal; 0 by default.
     pub metallic: Input,
     /// Where the green of normals points; up, as in OpenGL, by default.
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<NormalY>")
+    )]
     pub normal_y: NormalY,
     /// How far ambient occlusion looks, in units of the plane; a twentieth of the tile's shorter side by default.
     pub occlusion_radius: Option<f64>,

@@ -15,8 +15,9 @@ use clap::builder::PossibleValue;
 use dapple::pups::{AxialWeight, Orientations};
 use dapple::recipe::{ImageAlpha, Images, Node, PupsNode};
 use serde::{Serialize, Serializer};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::PathBuf;
+use std::slice;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -156,7 +157,8 @@ impl Kind {
 
     /// The texture with all its defaults, as data.
     fn defaults(self) -> Result<Value> {
-        Ok(serde_json::to_value(PupsNode::of_kind(self.in_recipes()))?)
+        let texture = PupsNode::of_kind(self.in_recipes());
+        Ok(texture.map_or(Ok(Value::Null), |texture| texture.to_json())?)
     }
 }
 
@@ -229,7 +231,7 @@ impl Args {
         if kind.in_recipes() == "points" && self.points.is_none() {
             return Err(usage("there are no control points").hint("give them with --points FILE"));
         }
-        Ok(serde_json::from_value(data)?)
+        Ok(PupsNode::from_json(&data)?)
     }
 
     /// The options of textures that the command line gives.
@@ -237,79 +239,31 @@ impl Args {
         let points = self.points.as_deref().map(points::read).transpose()?;
         let spacings = self.spacings.map(|Numbers(distances)| distances);
         let counts = self.points_per_cell.map(|Numbers(counts)| counts);
-        let all: [(&str, &[&str], Option<Value>); 14] = [
-            (
-                "--spacing",
-                &["spacing"],
-                number("--spacing", self.spacing)?,
-            ),
-            (
-                "--spacings",
-                &["distances"],
-                numbers("--spacings", spacings)?,
-            ),
-            (
-                "--octaves",
-                &["octaves", "layers", "iterations"],
-                self.octaves.map(Value::from),
-            ),
-            ("--gain", &["gain"], number("--gain", self.gain)?),
-            (
-                "--points-per-cell",
-                &["points_per_cell"],
-                counts.map(|counts| json!(counts)),
-            ),
-            (
-                "--probability",
-                &["probability"],
-                number("--probability", self.probability)?,
-            ),
-            (
-                "--literal",
-                &["spots"],
-                self.literal.then(|| json!("literal")),
-            ),
-            ("--points", &["points"], points.map(|points| json!(points))),
-            ("--hard", &["cells"], self.hard.then(|| json!("hard"))),
-            (
-                "--reference",
-                &["file"],
-                self.reference
-                    .as_deref()
-                    .map(|file| json!(file.to_string_lossy())),
-            ),
-            (
-                "--axis-scale",
-                &["axis_scale"],
-                number("--axis-scale", self.axis_scale)?,
-            ),
-            (
-                "--weight",
-                &["weight"],
-                self.weight.map(|weight| json!(weight)),
-            ),
-            (
+        let literal = self.literal.then_some("literal");
+        let hard = self.hard.then_some("hard");
+        let reference = self.reference.as_ref().map(|file| file.to_string_lossy());
+        let of_series = &["octaves", "layers", "iterations"];
+        let all = [
+            given("--spacing", &["spacing"], self.spacing)?,
+            given("--spacings", &["distances"], spacings)?,
+            given("--octaves", of_series, self.octaves)?,
+            given("--gain", &["gain"], self.gain)?,
+            given("--points-per-cell", &["points_per_cell"], counts)?,
+            given("--probability", &["probability"], self.probability)?,
+            given("--literal", &["spots"], literal)?,
+            given("--points", &["points"], points)?,
+            given("--hard", &["cells"], hard)?,
+            given("--reference", &["file"], reference)?,
+            given("--axis-scale", &["axis_scale"], self.axis_scale)?,
+            given("--weight", &["weight"], self.weight)?,
+            given(
                 "--orientations",
                 &["orientations"],
-                self.orientations
-                    .as_ref()
-                    .map(|orientations| json!(orientations)),
-            ),
-            (
-                "--strength",
-                &["strength"],
-                number("--strength", self.strength)?,
-            ),
+                self.orientations.as_ref(),
+            )?,
+            given("--strength", &["strength"], self.strength)?,
         ];
-        let given = all.into_iter().filter_map(|(option, names, value)| {
-            let value = value?;
-            Some(Given {
-                option,
-                names,
-                value,
-            })
-        });
-        Ok(given.collect())
+        Ok(all.into_iter().flatten().collect())
     }
 
     /// The image that the texture follows, if it follows one.
@@ -349,19 +303,26 @@ fn not_for(given: &Given, kind: Kind) -> Error {
         .hint(format!("it is for {}", others.join(", ")))
 }
 
-/// A number as data, which must be finite.
-fn number(option: &str, number: Option<f64>) -> Result<Option<Value>> {
-    let checked = |number: f64| match number.is_finite() {
-        true => Ok(json!(number)),
-        false => Err(usage(format!("{option} {number}: it must be finite"))),
+/// An option as data, if it is given. Its numbers must be finite.
+fn given(
+    option: &'static str,
+    names: &'static [&'static str],
+    value: Option<impl Serialize>,
+) -> Result<Option<Given>> {
+    let Some(value) = value else {
+        return Ok(None);
     };
-    number.map(checked).transpose()
-}
-
-/// Two numbers as data, which must be finite.
-fn numbers(option: &str, pair: Option<[f64; 2]>) -> Result<Option<Value>> {
-    for part in pair.into_iter().flatten() {
-        number(option, Some(part))?;
+    let value = serde_json::to_value(value)?;
+    // JSON has no form for what is not finite.
+    let parts = value
+        .as_array()
+        .map_or(slice::from_ref(&value), Vec::as_slice);
+    if parts.contains(&Value::Null) {
+        return Err(usage(format!("{option} must be finite")));
     }
-    Ok(pair.map(|pair| json!(pair)))
+    Ok(Some(Given {
+        option,
+        names,
+        value,
+    }))
 }

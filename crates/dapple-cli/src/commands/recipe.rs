@@ -16,22 +16,32 @@ Examples:
   dapple recipe giraffe -o my-giraffe.toml
   dapple recipe flagstone --rust
   dapple recipe flagstone -o flagstone.json
+  dapple recipe --schema -o recipe.schema.json
 
 A built-in recipe is printed as it was written, with its comments; change it and give the
 file to `dapple bake`. With --rust it becomes a Rust program that holds it as text and bakes it
-with the crate `dapple`.";
+with the crate `dapple`. With the first line `#:schema recipe.schema.json` in a recipe, editors that use
+Taplo complete and check it.";
 
-/// List the built-in recipes; print a recipe as TOML, JSON or Rust; check one of your own.
+/// List the built-in recipes; print a recipe as TOML, JSON or Rust, or the schema of all; check one of your own.
 #[derive(clap::Args, Debug, Serialize)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
     /// A built-in recipe, or a file in TOML or JSON; `-` is standard input.
-    #[arg(value_name = "RECIPE", required_unless_present = "list")]
+    #[arg(value_name = "RECIPE", required_unless_present_any = ["list", "schema", "reference"])]
     recipe: Option<String>,
 
     /// List the built-in recipes.
     #[arg(long, conflicts_with = "recipe")]
     list: bool,
+
+    /// Print the JSON Schema of recipes, for completion and checks in editors.
+    #[arg(long, conflicts_with_all = ["recipe", "list", "reference"])]
+    schema: bool,
+
+    /// Print a reference of all options of recipes, as Markdown.
+    #[arg(long, conflicts_with_all = ["recipe", "list"])]
+    reference: bool,
 
     /// Print a Rust program that bakes the recipe.
     #[arg(long, conflicts_with = "to")]
@@ -71,7 +81,18 @@ enum Text {
 /// Whatever went wrong.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let Some(name) = args.recipe.as_deref() else {
-        return list();
+        return match (args.schema, args.reference) {
+            (true, _) => {
+                let text = format!("{:#}\n", Recipe::schema());
+                let job = Job::new(context, "recipe", &args.files);
+                put_text(job, "recipe.schema", "json", &text, args)
+            }
+            (_, true) => {
+                let job = Job::new(context, "recipe", &args.files);
+                put_text(job, "recipe", "md", &Recipe::reference(), args)
+            }
+            _ => list(),
+        };
     };
     let (mut recipe, folder) = read_recipe(name)?;
     if args.check {

@@ -86,6 +86,7 @@ pub fn field_orientations(points: &PointSet, field: impl Fn(DVec2) -> DVec3) -> 
 /// # Ok::<(), dapple_pups::PupsError>(())
 /// ```
 #[derive(Clone, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -99,11 +100,11 @@ pub enum Orientations {
     /// Independent random ones: [`random_orientations`].
     Random,
     /// One orientation for all points.
-    Same(DVec3),
+    Same(#[cfg_attr(feature = "schema", schemars(with = "[f64; 3]"))] DVec3),
     /// Away from a center, in units of the domain: [`outward_orientations`].
-    AwayFrom(DVec2),
+    AwayFrom(#[cfg_attr(feature = "schema", schemars(with = "[f64; 2]"))] DVec2),
     /// In the plane, at an angle in radians: [`angle_orientations`].
-    Angle(Varying),
+    Angle(#[cfg_attr(feature = "schema", schemars(with = "crate::schema::Variable"))] Varying),
     /// Any function of the position: [`field_orientations`].
     #[cfg_attr(feature = "serde", serde(skip))]
     Field(Arc<dyn Fn(DVec2) -> DVec3 + Send + Sync>),

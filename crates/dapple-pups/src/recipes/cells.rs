@@ -8,8 +8,9 @@ use dapple_graph::delaunay;
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
-/// What [`cells`] are to be like.
+/// Options of [`cells`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -17,10 +18,12 @@ use dapple_points::Domain;
 )]
 pub struct CellsOptions {
     /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
     /// How far apart the control points are; at least 0.1 by default, in units of the domain.
     pub spacing: Spacing,
     /// How many control points a cell has, from the least to the most, 1 to 16; `[1, 1]` by default, as in figure 9a.
+    #[cfg_attr(feature = "schema", schemars(transform = { crate::assign::POINTS_PER_CELL }))]
     pub points_per_cell: [u32; 2],
     /// How the control points are weighted; with random orientations by default.
     pub net: NetOptions,

@@ -12,8 +12,9 @@ use crate::{
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
-/// What [`cellular_noise`] is to be like.
+/// Options of [`cellular_noise`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -21,17 +22,22 @@ use dapple_points::Domain;
 )]
 pub struct CellularNoiseOptions {
     /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
     /// How far apart the control points of the first layer are; at least 0.4 by default, in units of the domain.
     pub spacing: Spacing,
     /// How many layers there are, 1 to 16; 4 by default.
+    #[cfg_attr(feature = "schema", schemars(transform = { super::octaves::COUNT }))]
     pub layers: u32,
     /// By how much the spacing is divided from layer to layer, above 1 and at most 16; 2 by default.
+    #[cfg_attr(feature = "schema", schemars(transform = { super::octaves::LACUNARITY }))]
     pub lacunarity: f64,
     /// The amplitude of a layer as a multiple of the one before, above 0 and at most 1; ½ by default.
     #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
+    #[cfg_attr(feature = "schema", schemars(transform = { super::octaves::GAIN }))]
     pub gain: f64,
     /// How many control points a cell has, from the least to the most, 1 to 16; `[1, 1]` by default.
+    #[cfg_attr(feature = "schema", schemars(transform = { crate::assign::POINTS_PER_CELL }))]
     pub points_per_cell: [u32; 2],
     /// How the control points are weighted; with random orientations by default.
     pub net: NetOptions,
@@ -57,7 +63,7 @@ impl Default for CellularNoiseOptions {
 ///
 /// # Errors
 ///
-/// As [`cells`]; [`Range`](crate::PupsErrorKind::Range) for options outside of their ranges.
+/// Those of [`cells`]; [`Range`](crate::PupsErrorKind::Range) for options outside of their ranges.
 ///
 /// # Examples
 ///

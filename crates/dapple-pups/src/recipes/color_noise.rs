@@ -10,8 +10,9 @@ use crate::{
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
-/// What [`color_noise`] is to be like.
+/// Options of [`color_noise`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -19,6 +20,7 @@ use dapple_points::Domain;
 )]
 pub struct ColorNoiseOptions {
     /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
     /// How far apart the control points are; at least 0.1 by default, in units of the domain.
     pub spacing: Spacing,

@@ -7,8 +7,9 @@ use dapple_hash::Seed;
 use dapple_points::Domain;
 use dapple_raster::Varying;
 
-/// What a [`cow`] is to be like.
+/// Options of [`cow`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -16,10 +17,12 @@ use dapple_raster::Varying;
 )]
 pub struct CowOptions {
     /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
     /// How far apart the control points are; at least 0.1 by default, in units of the domain.
     pub spacing: Spacing,
     /// How probable it is that a control point gets label 1, between 0 and 1; ½ by default.
+    #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Variable"))]
     pub probability: Varying,
     /// The values of the labels 0 and 1; black (0) and white (1) by default.
     pub values: [f32; 2],

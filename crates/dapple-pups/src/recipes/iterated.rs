@@ -17,8 +17,9 @@ use core::f64::consts::SQRT_2;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointSet, nested_poisson_disk};
 
-/// What [`iterated_reference`] is to be like.
+/// Options of [`iterated_reference`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -26,10 +27,12 @@ use dapple_points::{Domain, PointSet, nested_poisson_disk};
 )]
 pub struct IteratedOptions {
     /// Where the control points lie, which the image covers; the paper's torus `[-1, 1]²` by default.
+    #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
     /// How far apart the control points of the first iteration are; at least 0.1 by default, in units of the domain.
     pub spacing: Spacing,
     /// How many iterations there are, 1 to 16; 4 by default.
+    #[cfg_attr(feature = "schema", schemars(transform = { COUNT }))]
     pub iterations: u32,
     /// Whether an iteration's points contain the last's; they do not by default.
     pub points: IterationPoints,
@@ -41,6 +44,7 @@ pub struct IteratedOptions {
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/iteration-points.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

@@ -133,7 +133,7 @@ impl LabelTexture {
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new).
+    /// Those of [`new`](Self::new).
     pub fn with_values(self, values: Vec<f32>) -> Result<Self, PupsError> {
         Self::new(self.pups, self.labels, values)
     }
@@ -142,7 +142,7 @@ impl LabelTexture {
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new).
+    /// Those of [`new`](Self::new).
     pub fn with_vectors<const N: usize>(
         self,
         values: Vec<[f32; N]>,
@@ -176,7 +176,7 @@ impl<const N: usize> VectorLabelTexture<N> {
     ///
     /// # Errors
     ///
-    /// As [`LabelTexture::new`].
+    /// Those of [`LabelTexture::new`].
     pub fn new(pups: Pups, labels: Vec<u32>, values: Vec<[f32; N]>) -> Result<Self, PupsError> {
         check(&pups, &labels, values.len(), values.as_flattened())?;
         Ok(Self {

@@ -40,7 +40,7 @@ impl<F> Layers<F> {
         &self.layers
     }
 
-    /// What each layer is multiplied with.
+    /// The factor of each layer.
     #[must_use]
     pub fn amplitudes(&self) -> &[f32] {
         &self.amplitudes

@@ -1,5 +1,7 @@
 //! How the recipes weight their control points.
 
+#[cfg(feature = "schema")]
+use crate::options::{AXIS_SCALE, STRENGTH};
 use crate::{AxialWeight, Orientation, Orientations, Pups, PupsError, PupsOptions};
 use dapple_graph::{Graph, delaunay};
 use dapple_hash::Seed;
@@ -7,6 +9,7 @@ use dapple_points::PointSet;
 
 /// How a recipe connects and weights its control points: [`PupsOptions`] before the points are known.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -16,6 +19,7 @@ pub struct NetOptions {
     /// The length of every axis as a multiple of its edge: above ½, at most 16; 1 by default.
     ///
     #[cfg_attr(doc, doc = include_str!("../../docs/axis-scale.md"))]
+    #[cfg_attr(feature = "schema", schemars(transform = { AXIS_SCALE }))]
     pub axis_scale: f64,
     /// How the weight falls off along an axis; equation 1 by default.
     pub weight: AxialWeight,
@@ -24,6 +28,7 @@ pub struct NetOptions {
     /// ε of equation 4, how strongly orientations shift weights, in `[0, 1)`; 0.5 by default.
     ///
     #[cfg_attr(doc, doc = include_str!("../../docs/strength.md"))]
+    #[cfg_attr(feature = "schema", schemars(transform = { STRENGTH }))]
     pub strength: f64,
 }
 
@@ -52,7 +57,7 @@ impl NetOptions {
     ///
     /// # Errors
     ///
-    /// As [`with_graph`](Self::with_graph), and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
+    /// Those of [`with_graph`](Self::with_graph), and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
     pub fn pups(&self, points: &PointSet, seed: Seed) -> Result<Pups, PupsError> {
         self.with_graph(points, &delaunay(points)?, seed)
     }
@@ -61,7 +66,7 @@ impl NetOptions {
     ///
     /// # Errors
     ///
-    /// As [`Pups::new`], and [`Range`](crate::PupsErrorKind::Range) for orientations that are not finite.
+    /// Those of [`Pups::new`], and [`Range`](crate::PupsErrorKind::Range) for orientations that are not finite.
     pub fn with_graph(
         &self,
         points: &PointSet,

@@ -4,8 +4,9 @@ use crate::{NetOptions, PupsError, PupsField, PupsRecipe, Spacing, Texture, rand
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
-/// What [`noise`] is to be like.
+/// Options of [`noise`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -13,6 +14,7 @@ use dapple_points::Domain;
 )]
 pub struct NoiseOptions {
     /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
     /// How far apart the control points are; at least 0.1 by default, in units of the domain.
     pub spacing: Spacing,

@@ -45,7 +45,7 @@ impl Octave {
         &self.texture
     }
 
-    /// What positions are multiplied with: 1, or a power of two if octaves are rescaled.
+    /// The factor of positions: 1, or a power of two if octaves are rescaled.
     #[must_use]
     pub fn scale(&self) -> f64 {
         self.scale

@@ -14,8 +14,9 @@ use crate::{
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
-/// What [`octaves`] and [`turbulence`] are to be like.
+/// Options of [`octaves`] and [`turbulence`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -23,16 +24,20 @@ use dapple_points::Domain;
 )]
 pub struct OctavesOptions {
     /// Where the control points lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
     /// How far apart the control points of the first octave are; at least 0.1 by default, in units of the domain.
     pub spacing: Spacing,
     /// How many octaves there are, 1 to 16; 4 by default.
+    #[cfg_attr(feature = "schema", schemars(transform = { COUNT }))]
     pub octaves: u32,
     /// By how much the spacing is divided from octave to octave, above 1 and at most 16; 2 by default. A power of two if
     /// octaves are rescaled.
+    #[cfg_attr(feature = "schema", schemars(transform = { LACUNARITY }))]
     pub lacunarity: f64,
     /// The amplitude of an octave as a multiple of the one before, above 0 and at most 1; ½ by default.
     #[cfg_attr(feature = "serde", serde(alias = "persistence"))]
+    #[cfg_attr(feature = "schema", schemars(transform = { GAIN }))]
     pub gain: f64,
     /// Where the octaves come from; separate points by default, as in the paper.
     pub source: OctaveSource,
@@ -40,8 +45,9 @@ pub struct OctavesOptions {
     pub net: NetOptions,
 }
 
-/// What a [`turbulence`] is to be like: the same as [`octaves`].
+/// Options of [`turbulence`], which are those of [`octaves`].
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -53,6 +59,7 @@ pub struct TurbulenceOptions(pub OctavesOptions);
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/octave-source.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -131,7 +138,7 @@ pub fn octaves(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, P
 ///
 /// # Errors
 ///
-/// As [`octaves`].
+/// Those of [`octaves`].
 pub fn turbulence(options: &OctavesOptions, seed: Seed) -> Result<Layers<Octave>, PupsError> {
     Ok(octaves(options, seed)?.folded())
 }

@@ -14,8 +14,9 @@ use dapple_points::Domain;
 use dapple_raster::{Ramp, Varying};
 use glam::DVec2;
 
-/// What [`cow_progression`] and [`giraffe_progression`] are to be like.
+/// Options of [`cow_progression`] and [`giraffe_progression`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -23,6 +24,7 @@ use glam::DVec2;
 )]
 pub struct ProgressionOptions {
     /// Where the control points lie; the square `[-1, 1]²`, which wraps along y only, by default.
+    #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
     /// How far apart points are at the left and at the right, in units of the domain, with equal ratios over equal
     /// lengths in between; `[0.2, 0.025]` by default.
@@ -31,8 +33,9 @@ pub struct ProgressionOptions {
     pub net: NetOptions,
 }
 
-/// What a [`cow_progression`] is to be like.
+/// Options of [`cow_progression`].
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -40,8 +43,9 @@ pub struct ProgressionOptions {
 )]
 pub struct CowProgressionOptions(pub ProgressionOptions);
 
-/// What a [`giraffe_progression`] is to be like.
+/// Options of [`giraffe_progression`].
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -49,8 +53,9 @@ pub struct CowProgressionOptions(pub ProgressionOptions);
 )]
 pub struct GiraffeProgressionOptions(pub ProgressionOptions);
 
-/// What a [`label_ramp`] is to be like.
+/// Options of [`label_ramp`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -58,6 +63,7 @@ pub struct GiraffeProgressionOptions(pub ProgressionOptions);
 )]
 pub struct LabelRampOptions {
     /// Where the control points lie; the square `[-1, 1]²`, which wraps along y only, by default.
+    #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
     /// How far apart the control points are; at least 0.05 by default, in units of the domain.
     pub spacing: Spacing,
@@ -94,7 +100,7 @@ impl Default for LabelRampOptions {
 ///
 /// # Errors
 ///
-/// As [`cow`].
+/// Those of [`cow`].
 ///
 /// # Examples
 ///
@@ -118,7 +124,7 @@ pub fn cow_progression(
 ///
 /// # Errors
 ///
-/// As [`space_giraffe`].
+/// Those of [`space_giraffe`].
 pub fn giraffe_progression(
     options: &ProgressionOptions,
     seed: Seed,
@@ -132,7 +138,7 @@ pub fn giraffe_progression(
 ///
 /// # Errors
 ///
-/// As [`cow`].
+/// Those of [`cow`].
 pub fn label_ramp(options: &LabelRampOptions, seed: Seed) -> Result<LabelTexture, PupsError> {
     let cow_options = CowOptions {
         domain: options.domain,

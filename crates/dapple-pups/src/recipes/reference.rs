@@ -7,8 +7,9 @@ use crate::{
 use dapple_hash::Seed;
 use dapple_points::Domain;
 
-/// What [`reference_texture`] is to be like.
+/// Options of [`reference_texture`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -16,6 +17,7 @@ use dapple_points::Domain;
 )]
 pub struct ReferenceOptions {
     /// Where the control points lie, which the image covers; the paper's torus `[-1, 1]²` by default.
+    #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
     /// How far apart the control points are; at least 0.05 by default, in units of the domain.
     pub spacing: Spacing,

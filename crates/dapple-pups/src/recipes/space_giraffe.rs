@@ -35,8 +35,9 @@ use dapple_points::{Domain, PointIdx, PointSet};
 use glam::DVec2;
 use spot::Spot;
 
-/// What a [`space_giraffe`] is to be like.
+/// Options of [`space_giraffe`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -44,10 +45,12 @@ use spot::Spot;
 )]
 pub struct SpaceGiraffeOptions {
     /// Where the spot centers lie and the texture repeats; the paper's torus `[-1, 1]²` by default.
+    #[cfg_attr(feature = "schema", schemars(with = "crate::schema::Tile"))]
     pub domain: Domain,
     /// How far apart the centers are; at least 0.2 by default, in units of the domain.
     pub spacing: Spacing,
     /// How many pairs of points stand around a center, from the least to the most, 3 to 256; `[10, 20]` by default.
+    #[cfg_attr(feature = "schema", schemars(transform = { PAIRS }))]
     pub pairs: [u32; 2],
     /// How the radii around a spot are drawn; one whole spot about each center by default.
     pub spots: Spots,
@@ -63,6 +66,7 @@ const PAIRS: Range = range!(from 3 to 256);
 ///
 #[cfg_attr(doc, doc = include_str!("../../docs/spots.md"))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -194,7 +198,7 @@ impl PupsRecipe for SpaceGiraffeOptions {
     }
 
     fn expected_points(&self) -> f64 {
-        // A spot has its center, and at most so many pairs.
+        // A spot has its center, and at most the larger number of pairs.
         let of_spot = 1.0 + 2.0 * f64::from(self.pairs[1]);
         self.spacing.expected_points(self.domain) * of_spot
     }

@@ -35,7 +35,7 @@ struct Rows {
 pub(super) struct Margined {
     pub(super) raster: Option<Raster<f32>>,
     pub(super) halo: [u32; 2],
-    /// What other maps are made of, too, in the band itself.
+    /// Values of steps that other maps need too, in the band itself.
     pub(super) shared: Box<Known>,
 }
 

@@ -65,7 +65,7 @@ impl MapKind {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// What the map is called in file names and on the command line.
+    /// The name of the map in file names and on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -306,7 +306,7 @@ impl Around<'_> {
     }
 }
 
-/// What is made before the maps that need it.
+/// The values that several maps of a band need.
 fn foreseen(raster: Option<&Raster<f32>>) -> Result<&Raster<f32>, RecipeError> {
     raster.ok_or_else(|| {
         let rule = "a map was not foreseen";

@@ -1,11 +1,11 @@
-//! What becomes of the alpha of an image that is used without it.
+//! How an image with alpha is used where no alpha is needed.
 
 use crate::input::hex_from_color;
 use dapple_color::LinearRgb;
 use serde::de::{Deserialize, Deserializer, Error, Unexpected};
 use serde::ser::{Serialize, Serializer};
 
-/// What becomes of the alpha of an image. In a file: `"drop"`, or `"over:#rrggbb"`.
+/// How an image with alpha is used where no alpha is needed. In a file: `"drop"`, or `"over:#rrggbb"`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ImageAlpha {
     /// The colors are used without it.

@@ -9,30 +9,37 @@ use serde::{Deserialize, Serialize};
 
 /// The sum of all inputs, numbers or colors; at least one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Add(pub Vec<Input>);
 
 /// The first number less the second.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Subtract(pub [Input; 2]);
 
 /// The product of all inputs, numbers or colors (part by part); at least one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Multiply(pub Vec<Input>);
 
 /// The first number over the second; 0 where that is 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Divide(pub [Input; 2]);
 
 /// The smallest of all numbers; at least one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Minimum(pub Vec<Input>);
 
 /// The largest of all numbers; at least one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Maximum(pub Vec<Input>);
 
 /// A number without its sign.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Absolute(pub Input);
 
 impl NodeKind for Add {

@@ -8,15 +8,24 @@ use serde::{Deserialize, Serialize};
 
 /// Layers blended by weights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Blended {
     /// The layers, at least one.
     pub layers: Vec<BlendedLayer>,
     /// How weights become shares; as given by default.
     #[serde(default)]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<Weighting>")
+    )]
     pub weighting: Weighting,
     /// How layers are mixed by their shares; linear by default. The others see the whole tile.
     #[serde(default)]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<Mixing>")
+    )]
     pub mixing: Mixing,
     /// The blend tile of `weighting = { mask = … }`, from 0 to 1: a number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -25,6 +34,7 @@ pub struct Blended {
 
 /// A layer of a blend.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BlendedLayer {
     /// A number or a color.
@@ -85,7 +95,7 @@ impl NodeKind for Blended {
     }
 }
 
-/// What a blend knows beside its inputs: those of its layers, their weights, the heights of those that have one, and the
+/// How layers are blended. The inputs are those of the layers, their weights, the heights of those that have one, and the
 /// mask.
 #[derive(Clone, Debug)]
 struct Layers {

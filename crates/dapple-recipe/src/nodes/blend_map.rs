@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 /// A map from 0 to 1, each value as often as any other, that is low in the cracks of a texture: where another one shows
 /// first. It sees the whole tile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BlendMapOf {
     /// A number, or a color, of which the luminance counts.

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// How far along a direction a position is: `(position − center) · along`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Coordinate {
     /// Where it is 0, in units of the plane; the origin by default.

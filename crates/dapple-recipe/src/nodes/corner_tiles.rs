@@ -12,12 +12,14 @@ use serde::{Deserialize, Serialize};
 ///
 /// [`CornerTiles`]: dapple_tile::CornerTiles
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CornerTilesOf {
     /// Two to four numbers or colors, which repeat: each piece is as large as all of them, made smaller.
     pub inputs: Vec<Input>,
     /// How many pieces there are along each axis, x first; `[4, 4]` by default. They have a whole number of pixels.
     #[serde(default = "four")]
+    #[cfg_attr(feature = "schema", schemars(transform = { super::disturb::COPIES }))]
     pub copies: [u32; 2],
     /// The share of the side of a piece that cuts may take, above 0 and at most 1; ½ by default.
     #[serde(default = "half")]

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// How far from a center a position is, in units of the plane; from the nearest of its repeats where the recipe repeats.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Distance {
     /// The center, in units of the plane.

@@ -12,12 +12,14 @@ use serde::{Deserialize, Serialize};
 ///
 /// [`Disturbance`]: dapple_tile::Disturbance
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Disturbed {
     /// A number or a color, which repeats: each copy is all of it, made smaller.
     pub input: Input,
     /// How many copies there are along each axis, x first; `[4, 4]` by default. They have a whole number of pixels.
     #[serde(default = "four")]
+    #[cfg_attr(feature = "schema", schemars(transform = { COPIES }))]
     pub copies: [u32; 2],
     /// How many pixels along each border of a copy stay as they are; 4 by default.
     #[serde(default = "frozen")]

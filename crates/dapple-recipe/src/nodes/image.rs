@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 
 /// An image, laid over the tile and read between its pixels; past its edges it repeats, or goes on, as the recipe does.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ImageNode {
     /// The file, as it is asked for; the command takes it from the folder of the recipe.
     pub file: String,
-    /// What becomes of its alpha when it is read; by default a partly transparent image is refused.
+    /// How its alpha is used; by default a partly transparent image is refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alpha: Option<ImageAlpha>,
 }

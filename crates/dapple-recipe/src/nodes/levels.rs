@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// A range stretched to another: how most textures become heights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Levels {
     /// The number.
@@ -15,10 +16,10 @@ pub struct Levels {
     /// The range that is stretched; 0 to 1 by default. Its ends may lie either way round, but must differ.
     #[serde(default = "unit")]
     pub from: [f32; 2],
-    /// What it becomes; 0 to 1 by default.
+    /// The range that the result has at the ends of `from`; 0 to 1 by default.
     #[serde(default = "unit")]
     pub to: [f32; 2],
-    /// What lies in between; a line by default.
+    /// The curve between the ends; a line by default.
     #[serde(default)]
     pub curve: LevelsCurve,
 }
@@ -29,8 +30,9 @@ fn unit() -> [f32; 2] {
 
 const END: Range = range!(finite);
 
-/// What lies between the ends of a range. All but the first stay at its ends outside of it.
+/// The curve between the ends of a range. All but the first stay at its ends outside of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum LevelsCurve {

@@ -8,15 +8,20 @@ use serde::{Deserialize, Serialize};
 
 /// A texture with the borders of another, so that both fit beside each other: see [`MatchBorders`]. It sees the whole tile.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Framed {
     /// A number or a color.
     pub input: Input,
-    /// What the borders are of: a number or a color.
+    /// The texture that the borders are taken from: a number or a color.
     pub border: Input,
     /// How far from a border the texture changes, and which part of the other becomes it, as in [`MatchBorders`]. Lengths
     /// are in pixels of the bake.
     #[serde(default)]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<MatchBorders>")
+    )]
     pub options: MatchBorders,
 }
 

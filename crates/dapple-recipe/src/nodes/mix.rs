@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// A part of the way from one input to another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Mix {
     /// The number or color at 0.

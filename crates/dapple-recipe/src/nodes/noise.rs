@@ -10,17 +10,21 @@ use serde::{Deserialize, Serialize};
 
 /// Octaves of noise with values from 0 to 1.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Fractal {
-    /// What an octave is; PUPs by default.
+    /// The noise of an octave; PUPs by default.
     pub basis: FractalBasis,
     /// About how many bumps there are per unit of the plane in the first octave; 8 by default. For gradients and
     /// wavelets, these are their cells.
+    #[cfg_attr(feature = "schema", schemars(transform = { FREQUENCY }))]
     pub frequency: f64,
     /// How many octaves, 1 to 16, each twice as fine as the one before; 4 by default.
+    #[cfg_attr(feature = "schema", schemars(transform = { OCTAVES }))]
     pub octaves: u32,
     /// The amplitude of an octave as a multiple of the one before, above 0 and at most 1; ½ by default.
     #[serde(alias = "persistence")]
+    #[cfg_attr(feature = "schema", schemars(transform = { GAIN }))]
     pub gain: f64,
     /// The name by which it draws, instead of its own, or a seed.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -39,8 +43,9 @@ impl Default for Fractal {
     }
 }
 
-/// What an octave of noise is.
+/// The noise of an octave.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum FractalBasis {

@@ -8,11 +8,13 @@ use serde::{Deserialize, Serialize};
 
 /// A number to a power.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Power {
     /// The number; below 0 it counts as 0.
     pub input: Input,
     /// The exponent, above 0.
+    #[cfg_attr(feature = "schema", schemars(transform = { EXPONENT }))]
     pub exponent: f32,
 }
 

@@ -8,11 +8,16 @@ use serde::{Deserialize, Serialize};
 
 /// A cross-section: how high a bump is where a number has a value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ProfileOf {
     /// The number; 0 is in the middle of the bump.
     pub input: Input,
     /// The cross-section, such as `{ channels = { width = 0.1 } }` or `{ spots = { radius = 0.3 } }`.
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<Profile>")
+    )]
     pub shape: Profile,
 }
 

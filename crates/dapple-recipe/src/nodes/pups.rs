@@ -9,6 +9,11 @@ use serde::{Deserialize, Serialize};
 
 /// A texture after an image, which covers the tile. Of a color image the luminance counts.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(bound = "T: schemars::JsonSchema + Default + Serialize")
+)]
 #[serde(
     deny_unknown_fields,
     bound(deserialize = "T: Default + Deserialize<'de>")
@@ -16,17 +21,17 @@ use serde::{Deserialize, Serialize};
 pub struct Referenced<T> {
     /// The file, as it is asked for.
     pub file: String,
-    /// What becomes of its alpha when it is read; by default a partly transparent image is refused.
+    /// How its alpha is used; by default a partly transparent image is refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alpha: Option<ImageAlpha>,
-    /// What the texture is to be like.
+    /// The options of the texture.
     #[serde(default)]
     pub options: T,
 }
 
-/// What every texture of `dapple-pups` is as a node.
+/// A texture of `dapple-pups` as a node.
 trait Texture {
-    /// The image that the texture follows, with what becomes of its alpha.
+    /// The image that the texture follows, with how its alpha is used.
     fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
         None
     }
@@ -106,6 +111,7 @@ macro_rules! node {
         ///
         /// Its domain is the tile of the recipe and is not to be given.
         #[derive(Clone, Debug, Serialize, Deserialize)]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         #[non_exhaustive]
         pub enum PupsNode {
             $(#[doc = $about] #[serde(rename = $name)] $variant($options),)*

@@ -8,27 +8,45 @@ use serde::{Deserialize, Serialize};
 
 /// Colors for numbers: a palette, or colors of one's own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Ramped {
     /// The number.
     pub input: Input,
     /// A palette; not beside `colors`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<Palette>")
+    )]
     pub palette: Option<Palette>,
     /// Colors in sRGB, such as `["#204060", "#ffffff"]`; not beside `palette`.
     #[serde(default, skip_serializing_if = "Vec::is_empty", with = "colors")]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<crate::ColorOf>"))]
     pub colors: Vec<LinearRgb>,
     /// The number at which each color is; at equal distances from 0 to 1 by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub positions: Vec<f32>,
     /// The space in which two colors are mixed; Oklab by default.
     #[serde(default)]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<RampSpace>")
+    )]
     pub space: RampSpace,
-    /// What lies between two colors; a line by default.
+    /// How colors change between two stops; linearly by default.
     #[serde(default)]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<Interpolation>")
+    )]
     pub interpolation: Interpolation,
-    /// What lies outside; the color at the end by default.
+    /// How the ramp continues past its ends; with the color at the end by default.
     #[serde(default)]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<Outside>")
+    )]
     pub outside: Outside,
 }
 

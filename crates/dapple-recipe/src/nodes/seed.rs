@@ -1,11 +1,11 @@
-//! What nodes draw by.
+//! Seeds of nodes.
 
 use core::fmt;
 use dapple_hash::Seed;
 use serde::de::{Deserialize, Deserializer, Error, Visitor};
 use serde::ser::{Serialize, Serializer};
 
-/// What a node draws by, instead of its own name: two nodes with the same one see the same chance.
+/// The seed of a node in place of its own name: two nodes with one seed draw the same random numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NodeSeed {
     /// A seed, whatever that of the recipe is.

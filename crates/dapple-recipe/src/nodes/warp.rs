@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Another node at positions that are shifted by `amount · (x, y)`.
 #[doc(alias = "domain warping")]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Warp {
     /// The node that is asked elsewhere. No node that it is made of may see the whole tile.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// A wave of a number, from 0 to 1: veins of a sum of coordinates and noise, rings of a distance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Wave {
     /// The number.
@@ -32,6 +33,7 @@ const FINITE: Range = range!(finite);
 
 /// The form of a wave.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Waveform {
@@ -62,7 +64,7 @@ impl NodeKind for Wave {
 }
 
 impl Waveform {
-    /// The height of the wave, from 0 to 1, after so many waves.
+    /// The height of the wave, from 0 to 1, at `t` waves from its start.
     fn at(self, t: f64) -> f64 {
         let t = t - t.floor();
         match self {

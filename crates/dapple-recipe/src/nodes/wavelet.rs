@@ -10,10 +10,12 @@ use serde::{Deserialize, Serialize};
 
 /// Wavelet noise: nearly normal values with mean 0 and, for a single band, variance 1.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct WaveletNode {
     /// Cells per unit of the plane, in the coarsest band; 8 by default. Along an axis on which the recipe repeats, the tile
     /// must be an even whole number of cells, from 4 on.
+    #[cfg_attr(feature = "schema", schemars(transform = { crate::plan::FREQUENCY }))]
     pub frequency: f64,
     /// The weight of each band, coarsest first, each twice as fine as the one before; a single 1 by default.
     pub weights: Vec<f32>,
@@ -51,7 +53,7 @@ impl NodeKind for WaveletNode {
     }
 }
 
-/// Wavelet noise with bands of these weights, the coarsest of which has so many cells per unit of the plane.
+/// Wavelet noise with bands of these weights; `frequency` is the cells per unit of the plane of the coarsest.
 pub(super) fn noise(
     plan: &Builder<'_>,
     seed: Seed,

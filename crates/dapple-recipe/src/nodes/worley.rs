@@ -18,18 +18,31 @@ use std::sync::Arc;
 ///
 /// Distances are in cells. Along an axis on which the recipe repeats, the tile must be a whole number of cells.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct WorleyNode {
     /// Cells per unit of the plane, one number or one for each axis; 1 by default.
     pub frequency: Frequency,
-    /// What is shown; F1 by default.
+    /// The value of a position; F1 by default.
     pub value: WorleyValue,
     /// How distances are measured; Euclidean by default.
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<Metric>")
+    )]
     pub metric: Metric,
     /// How many feature points a cell has, and where; Poisson by default.
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<Scatter>")
+    )]
     pub scatter: Scatter,
     /// A fractal sum instead of a single texture. Its first octave has the frequency.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "crate::schema::traced::<Octaves>")
+    )]
     pub octaves: Option<Octaves>,
     /// The range of values that becomes 0 to 1; none by default, which gives the distances themselves.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -44,6 +57,7 @@ pub struct WorleyNode {
 
 /// A slice of the basis in four dimensions, whose fourth axis is time: the pictures of a loop join.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
     /// How many cells a loop goes along the fourth axis, at least 1.
@@ -63,7 +77,7 @@ impl Default for Frequency {
     }
 }
 
-/// What of the nearest feature points is shown.
+/// The value that a position has by its nearest feature points.
 ///
 /// In a file: `"f1"`, `"f2_minus_f1"` and so on, `"cell_value"`, `"edge_distance"`, or the four coefficients of F1 to F4.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! What a node finds in the plan that it becomes a step of: the tile, its seed, its inputs.
+//! Making steps of nodes: the tile, the seed and the inputs that a node asks for.
 
 use super::step::{Global, Local, Step, Tile};
 use super::work::{Work, WorkSum};
@@ -60,7 +60,7 @@ impl<'a> Builder<'a> {
         self.time
     }
 
-    /// What lies past the edges of the tile.
+    /// How the tile continues past its edges.
     pub(crate) fn wrap(&self) -> [Wrap; 2] {
         wrap(self.recipe.wrap)
     }
@@ -213,7 +213,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// What lies past the edges of a tile that repeats along some axes.
+/// How a tile that repeats along some axes continues past its edges.
 pub(super) fn wrap(repeats: [bool; 2]) -> [Wrap; 2] {
     repeats.map(|repeats| if repeats { Wrap::Repeat } else { Wrap::Clamp })
 }

@@ -73,11 +73,11 @@ impl NodeColors {
     ///
     /// # Errors
     ///
-    /// What a node refuses that the color is made of, such as a blend whose weights are below 0.
+    /// Those of the nodes that the color is made of, such as a blend whose weights are below 0.
     pub fn sample(&self, position: DVec2) -> Result<LinearRgb, RecipeError> {
         let values = one(&self.steps, Places::Positions(&[position]), self.step)?;
-        let color = Arc::unwrap_or_clone(values).into_colors().pop();
-        Ok(color.expect("a value for each position"))
+        // There is a value for each position.
+        Ok(Arc::unwrap_or_clone(values).into_colors()[0])
     }
 
     /// The colors at the pixel centers of a window.
@@ -101,7 +101,7 @@ fn one(steps: &[Step], places: Places<'_>, step: usize) -> Result<Arc<Values>, R
     Ok(values.swap_remove(0))
 }
 
-/// What a node refused, as an error of fields.
+/// The error of a node as an error of fields.
 fn refused(error: &RecipeError) -> RasterError {
     let (what, value, range) = match error.kind() {
         RecipeErrorKind::Raster(error) => return error.clone(),

@@ -1,4 +1,4 @@
-//! The steps of a plan: what makes the values of a node, or of a constant.
+//! The steps of a plan, each of which makes the values of a node or of a constant.
 
 use super::Picture;
 use crate::{RecipeError, Values};
@@ -10,7 +10,7 @@ use glam::DVec2;
 use std::fmt;
 use std::sync::Arc;
 
-/// What makes the values of a node. Inputs are the indices of earlier steps.
+/// A source of values. Inputs are the indices of earlier steps.
 pub(crate) enum Step {
     Number(f32),
     Color(LinearRgb),

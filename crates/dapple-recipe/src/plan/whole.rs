@@ -9,7 +9,7 @@ use dapple_raster::{Raster, Window, Wrap};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// What sees the whole tile, for a picture of one size: as many pixels for each such step.
+/// The values of all steps that see the whole tile, for a picture of one size: a value for each pixel and step.
 #[derive(Clone, Debug, Default)]
 pub struct Whole {
     /// The tile as a window; none where no step sees it.
@@ -66,7 +66,7 @@ impl Plan {
         }
     }
 
-    /// Evaluates what sees the whole tile, for a picture of so many pixels.
+    /// Evaluates the steps that see the whole tile, for a picture of `size` pixels.
     ///
     /// # Errors
     ///
@@ -123,12 +123,12 @@ impl Global {
     /// The pixels of the inputs: those of the picture, or where it is made of smaller copies, of one of them.
     fn window_of_inputs(&self, window: &Window) -> Result<Window, RecipeError> {
         let mut size = window.size;
-        for axis in 0..2 {
-            let pixels = f64::from(size[axis]) / f64::from(self.copies[axis]);
+        for (side, copies) in size.iter_mut().zip(self.copies) {
+            let pixels = f64::from(*side) / f64::from(copies);
             let what = "number of pixels along a side of a copy";
             let range = "a whole number (size of the bake over copies)";
             RecipeError::check(pixels.fract() == 0.0, what, pixels, range)?;
-            size[axis] /= self.copies[axis];
+            *side /= copies;
         }
         let [across, down] = self.copies.map(f64::from);
         Ok(Window {

@@ -69,7 +69,7 @@ fn check(what: &'static str, value: f64, limit: u64) -> Result<(), RecipeError> 
     Ok(())
 }
 
-/// What making the step of a node takes.
+/// The work of making the step of a node.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Work {
     /// Control points to be placed and connected.

@@ -1,0 +1,112 @@
+//! Schemas of options that have more than one form as data, and of those that are not ours.
+
+use crate::{Range, Spacing};
+use core::ops::Bound;
+use schemars::transform::Transform;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use std::borrow::Cow;
+
+/// The domain of a texture, which recipes of materials know from their tile.
+pub(crate) struct Tile;
+
+/// A number that may depend on the position.
+pub(crate) struct Variable;
+
+impl JsonSchema for Tile {
+    fn schema_name() -> Cow<'static, str> {
+        "Tile".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "Not to be given: in a recipe it is the tile.",
+            "type": "object",
+            "deprecated": true,
+        })
+    }
+}
+
+/// A ramp of a number, as data.
+#[derive(JsonSchema)]
+#[schemars(rename = "Ramp", deny_unknown_fields)]
+#[expect(dead_code, reason = "only its schema is wanted")]
+struct RampTable {
+    /// Where the ramp starts, in units of the plane.
+    from: [f64; 2],
+    /// Where it ends.
+    to: [f64; 2],
+    /// The number at the start and before it.
+    start: f64,
+    /// The number at the end and past it.
+    end: f64,
+}
+
+/// A table with one entry.
+fn table(name: &str, inner: &Schema) -> Schema {
+    json_schema!({
+        "type": "object", "properties": { name: inner },
+        "required": [name], "additionalProperties": false
+    })
+}
+
+impl JsonSchema for Variable {
+    fn schema_name() -> Cow<'static, str> {
+        "Variable".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let number = json_schema!({ "type": "number" });
+        let ramp = generator.subschema_for::<RampTable>();
+        json_schema!({
+            "description": "A number that is the same everywhere, or one that changes along a line: linearly, or by \
+                equal ratios over equal lengths.",
+            "anyOf": [number, table("constant", &number), table("ramp", &ramp), table("geometric_ramp", &ramp)],
+        })
+    }
+}
+
+impl JsonSchema for Spacing {
+    fn schema_name() -> Cow<'static, str> {
+        "Spacing".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let variable = generator.subschema_for::<Variable>();
+        let count = json_schema!({ "type": "integer", "minimum": 1 });
+        json_schema!({
+            "description": "The smallest distance of two points in units of the plane, points per area, or about how \
+                many points there are.",
+            "anyOf": [
+                { "type": "number", "exclusiveMinimum": 0 },
+                table("distance", &variable),
+                table("density", &variable),
+                table("count", &count),
+            ]
+        })
+    }
+}
+
+impl Transform for Range {
+    /// Adds the range to the schema of a number, or of a list of numbers.
+    fn transform(&mut self, schema: &mut Schema) {
+        if let Some(items) = schema
+            .get_mut("items")
+            .and_then(|items| items.try_into().ok())
+        {
+            return self.transform(items);
+        }
+        for (bound, included, excluded) in [
+            (self.least, "minimum", "exclusiveMinimum"),
+            (self.most, "maximum", "exclusiveMaximum"),
+        ] {
+            match bound {
+                Bound::Included(number) => schema.insert(included.to_owned(), number.into()),
+                Bound::Excluded(number) => schema.insert(excluded.to_owned(), number.into()),
+                Bound::Unbounded => None,
+            };
+        }
+        if let (Bound::Excluded(_), Some(_)) = (self.least, schema.get("minimum")) {
+            schema.remove("minimum");
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! The schema of recipes as a reference for people, in Markdown.
+
+use core::fmt::Write as _;
+use serde_json::{Map, Value};
+
+const HEAD: &str = "\
+# Options of recipes
+
+Every option of a recipe, with its kind, its range and its default. This page is made of the same types that recipes are
+read into, by `dapple recipe --reference`; `dapple recipe --schema` gives the same as JSON Schema, for editors. What nodes are
+for is in the [README](../README.md).
+";
+
+/// The reference of a schema of recipes.
+pub(super) fn reference(schema: &Value) -> String {
+    let reference = Reference {
+        types: &schema["$defs"],
+    };
+    let mut page = HEAD.to_owned();
+    page += "\n## The recipe\n";
+    reference.options(&mut page, schema);
+    page += "\n## The material\n";
+    reference.options(&mut page, &schema["$defs"]["Material"]);
+    reference.kinds(&mut page, "Nodes", "Node");
+    reference.kinds(&mut page, "Textures of `pups`", "PupsNode");
+    reference.types(&mut page);
+    page
+}
+
+/// The types of a schema by their names.
+struct Reference<'a> {
+    types: &'a Value,
+}
+
+impl Reference<'_> {
+    /// A section for each kind of a table with one entry.
+    fn kinds(&self, page: &mut String, title: &str, name: &str) {
+        let _ = write!(page, "\n## {title}\n");
+        for kind in list(&self.types[name]["oneOf"]) {
+            let Some((name, inner)) = object(&kind["properties"]).next() else {
+                continue;
+            };
+            let _ = write!(page, "\n### `{name}`\n\n{}\n", text(kind));
+            let table = self.followed(inner);
+            if table["properties"].is_object() {
+                self.options(page, table);
+            } else {
+                let _ = write!(page, "\nIt is {}.\n", self.form(inner));
+            }
+        }
+    }
+
+    /// The table of the options of a type.
+    fn options(&self, page: &mut String, table: &Value) {
+        page.push_str("\n| option | what it is | form | default |\n|---|---|---|---|\n");
+        for (name, option) in self.written(table) {
+            let needed = list(&table["required"]).any(|needed| needed == name);
+            let default = match &option["default"] {
+                _ if needed => "needed".to_owned(),
+                Value::Null => String::new(),
+                default => format!("`{}`", in_toml(default)),
+            };
+            let (about, form) = (text(option), self.form(option));
+            let _ = writeln!(page, "| `{name}` | {about} | {form} | {default} |");
+        }
+    }
+
+    /// The types that options have, beside those of nodes.
+    fn types(&self, page: &mut String) {
+        page.push_str("\n## Forms\n");
+        for name in FORMS {
+            let form = &self.types[name];
+            let _ = write!(page, "\n### {name}\n\n{}\n", text(form));
+            if form["properties"].is_object() {
+                self.options(page, form);
+            } else {
+                let _ = write!(page, "\nIt is {}.\n", self.form(form));
+            }
+        }
+    }
+
+    /// The type that a schema refers to, or the schema itself.
+    fn followed<'b>(&'b self, schema: &'b Value) -> &'b Value {
+        name_of(schema).map_or(schema, |name| self.followed(&self.types[name]))
+    }
+
+    /// The options of a table that people are to write, by their names.
+    fn written<'b>(&'b self, table: &'b Value) -> impl Iterator<Item = (&'b str, &'b Value)> {
+        let all = object(&table["properties"]);
+        all.filter(|(_, option)| {
+            option["deprecated"] != true && self.followed(option)["deprecated"] != true
+        })
+    }
+
+    /// The form of a value, in words.
+    fn form(&self, schema: &Value) -> String {
+        if let Some(name) = name_of(schema) {
+            if let Some((_, link)) = SECTIONS.iter().find(|(section, _)| *section == name) {
+                return (*link).to_owned();
+            }
+            return match FORMS.contains(&name) {
+                true => format!("[{name}](#{})", name.to_lowercase()),
+                false => self.form(&self.types[name]),
+            };
+        }
+        let any = list(&schema["anyOf"]).chain(list(&schema["oneOf"]));
+        let any: Vec<_> = any.filter(|any| any["type"] != "null").collect();
+        if !any.is_empty() {
+            let forms: Vec<_> = any.into_iter().map(|any| self.form(any)).collect();
+            return forms.join(", or ");
+        }
+        if !schema["const"].is_null() {
+            return format!("`{}`", in_toml(&schema["const"]));
+        }
+        let words: Vec<_> = list(&schema["enum"])
+            .map(|word| format!("`{word}`"))
+            .collect();
+        if !words.is_empty() {
+            return words.join(", ");
+        }
+        self.form_of_type(schema)
+    }
+
+    fn form_of_type(&self, schema: &Value) -> String {
+        let range = range(schema);
+        match kind(schema) {
+            "number" => format!("number{range}"),
+            "integer" => format!("whole number{range}"),
+            "boolean" => "`true` or `false`".to_owned(),
+            "string" => match schema["pattern"].as_str() {
+                Some(pattern) if pattern.starts_with("^#") => "color".to_owned(),
+                Some("^[^#]") => "name".to_owned(),
+                _ => "text".to_owned(),
+            },
+            "array" => match schema["minItems"].as_u64() {
+                Some(n) => format!("list of {n}: {}", self.form(&schema["items"])),
+                None => format!("list: {}", self.form(&schema["items"])),
+            },
+            _ if schema["additionalProperties"].is_object() => {
+                format!(
+                    "table of names, each with a {}",
+                    self.form(&schema["additionalProperties"])
+                )
+            }
+            _ => self.form_of_table(schema),
+        }
+    }
+
+    fn form_of_table(&self, schema: &Value) -> String {
+        let inner = self.written(schema);
+        let inner = inner.map(|(name, inner)| format!("{name} = {}", self.form(inner)));
+        let inner: Vec<_> = inner.collect();
+        match inner.is_empty() {
+            true => "table".to_owned(),
+            false => format!("{{ {} }}", inner.join(", ")),
+        }
+    }
+}
+
+/// The forms that have a section of their own.
+const FORMS: [&str; 7] = [
+    "Input",
+    "NodeSeed",
+    "Spacing",
+    "Variable",
+    "Ramp",
+    "NetOptions",
+    "AxialWeight",
+];
+
+/// The types that are sections before that, with links to them.
+const SECTIONS: [(&str, &str); 3] = [
+    ("Material", "[the material](#the-material)"),
+    ("Node", "[node](#nodes)"),
+    (
+        "PupsNode",
+        "one of the [textures of `pups`](#textures-of-pups)",
+    ),
+];
+
+/// The name of the type that a schema refers to.
+fn name_of(schema: &Value) -> Option<&str> {
+    schema["$ref"].as_str()?.strip_prefix("#/$defs/")
+}
+
+/// The kind of a value; that of an option which may be left out is the one beside `null`.
+fn kind(schema: &Value) -> &str {
+    let kinds = list(&schema["type"]).filter_map(Value::as_str);
+    let beside_null = kinds.into_iter().find(|&kind| kind != "null");
+    beside_null.or(schema["type"].as_str()).unwrap_or("table")
+}
+
+/// The range of a number, behind its kind.
+fn range(schema: &Value) -> String {
+    let part = |key: &str, word: &str| {
+        let number = schema[key].as_f64()?;
+        // The largest number of an integer type is not a limit worth printing.
+        (number < 4e9).then(|| format!(" {word} {}", in_toml(&schema[key])))
+    };
+    let least = part("minimum", "from").or_else(|| part("exclusiveMinimum", "above"));
+    let most = part("maximum", "to").or_else(|| part("exclusiveMaximum", "below"));
+    least.unwrap_or_default() + &most.unwrap_or_default()
+}
+
+/// The description of a schema, in one line.
+fn text(schema: &Value) -> String {
+    let text = schema["description"].as_str().unwrap_or_default();
+    text.replace('|', "\\|")
+}
+
+/// A default as TOML has it.
+fn in_toml(value: &Value) -> String {
+    match value {
+        Value::Array(all) => {
+            let all: Vec<_> = all.iter().map(in_toml).collect();
+            format!("[{}]", all.join(", "))
+        }
+        Value::Object(all) if all.is_empty() => "{}".to_owned(),
+        Value::Object(all) => {
+            // The domain of a texture is not to be given.
+            let all = all.iter().filter(|(name, _)| *name != "domain");
+            let all = all.map(|(name, value)| format!("{name} = {}", in_toml(value)));
+            format!("{{ {} }}", all.collect::<Vec<_>>().join(", "))
+        }
+        Value::Number(number) => {
+            let number = number.as_f64().unwrap_or(f64::NAN);
+            let is_long = number.abs() >= 1e5;
+            if is_long {
+                format!("{number:e}")
+            } else {
+                number.to_string()
+            }
+        }
+        value => value.to_string(),
+    }
+}
+
+fn list(value: &Value) -> impl Iterator<Item = &Value> {
+    value.as_array().into_iter().flatten()
+}
+
+fn object(value: &Value) -> impl Iterator<Item = (&str, &Value)> {
+    let entries = value.as_object().into_iter().flat_map(Map::iter);
+    entries.map(|(name, value)| (name.as_str(), value))
+}
