@@ -23,7 +23,7 @@ use dapple::synth::{
 };
 use std::f64::consts::TAU;
 
-/// A torus around the y axis with the radii 1 and 0.4, of 48 by 24 squares.
+/// A torus around the y axis with the radii 0.7 and 0.28, of 48 by 24 squares.
 fn ring() -> Result<mesh::Mesh, MeshError> {
     let [columns, rows] = [48, 24];
     let turn = |part: u32, of: u32| TAU * f64::from(part) / f64::from(of);
@@ -32,7 +32,8 @@ fn ring() -> Result<mesh::Mesh, MeshError> {
     for row in 0..rows {
         for column in 0..columns {
             let out = rotation(DVec3::Z, turn(row, rows)) * DVec3::X;
-            positions.push(rotation(DVec3::Y, turn(column, columns)) * (DVec3::X + 0.4 * out));
+            positions
+                .push(rotation(DVec3::Y, turn(column, columns)) * (0.7 * DVec3::X + 0.28 * out));
             let [a, b] = [at(column, row), at(column + 1, row)];
             let [c, d] = [at(column + 1, row + 1), at(column, row + 1)];
             faces.extend([[a, b, c], [a, c, d]]);
@@ -52,15 +53,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         })
     })?;
     let exemplar = Exemplar::new(&stripes, Edges::Cut)?;
-    let outside = Direction {
-        at: DVec3::X * 1.4,
+    let down = [DVec3::X, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Z].map(|out| Direction {
+        at: 0.98 * out,
         vector: DVec3::NEG_Y,
-    };
+    });
     let sites = HierarchyOptions {
-        n_sites: 6_000,
+        n_sites: 12_000,
         ..HierarchyOptions::default()
     };
-    let (ring, texture) = synthesize(ring()?, &exemplar, &[outside], &sites, &Options::default())?;
+    let (ring, texture) = synthesize(ring()?, &exemplar, &down, &sites, &Options::default())?;
 
     // The texture map: the triangles of the mesh, packed into a square with room for mip levels.
     let atlas = Atlas::by_area(ring.surface(), 1024)?;
@@ -88,7 +89,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Material::matte(color)
     };
     let shape = Shape::mesh(Mesh::from_mesh(ring.surface().mesh().clone()));
-    let scene = Scene::new(Camera::look_at(DVec3::new(4.0, 1.0, 2.6), DVec3::ZERO).with_fov(0.5))
+    let scene = Scene::new(Camera::look_at(DVec3::new(3.6, 2.6, 2.4), DVec3::ZERO).with_fov(0.5))
         .with_object(Object::new(shape, look))
         .with_light(Light::directional(
             DVec3::new(1.0, 1.0, 1.0),

@@ -447,9 +447,10 @@ fn file_that_makes_the_crate_gltf_panic_is_refused() {
     let ::gltf::Gltf { document, .. } = ::gltf::Gltf::from_slice(&bytes).expect("it passes");
     let read = std::panic::AssertUnwindSafe(|| {
         let primitives = document.meshes().flat_map(|mesh| mesh.primitives());
-        primitives
-            .map(|primitive| primitive.reader(|_| Some(&bytes)).read_indices().is_some())
-            .count()
+        let has_indices = |primitive: &::gltf::Primitive<'_>| {
+            primitive.reader(|_| Some(&bytes)).read_indices().is_some()
+        };
+        primitives.filter(has_indices).count()
     });
     let panicked = std::panic::catch_unwind(read).is_err();
     assert!(panicked, "the crate reads it: it may serve by now");
