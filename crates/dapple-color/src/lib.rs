@@ -8,7 +8,7 @@
 //! surface bends ([`curvature`]). Lengths are in units of the plane, so that the resolution does not change the maps:
 //!
 //! ```
-//! use dapple_color::{OcclusionOptions, ambient_occlusion};
+//! use dapple_color::{HeightPlane, OcclusionOptions, ambient_occlusion};
 //! use dapple_raster::{Raster, Window};
 //!
 //! // A groove along the middle of the unit square, with walls of 45 degrees.

@@ -85,6 +85,11 @@ impl OcclusionOptions {
     fn rays(&self, size: [u32; 2]) -> Result<Vec<Ray>, ColorError> {
         self.plane.check("strength of the occlusion")?;
         let pixel = self.plane.pixel(size);
+        // The number of such pixels in a unit is infinite, and so would be a ray.
+        if !pixel.recip().is_finite() {
+            let extent = self.plane.extent;
+            return Err(ColorError::new(ColorErrorKind::Extent { extent }));
+        }
         plane::check_radius("radius of the occlusion", self.radius, pixel)?;
         // Written so that what is not a number is refused too.
         if !(0.0..=1.0).contains(&self.fade) {

@@ -109,7 +109,7 @@ fn add_pair(sums: &mut [f32], [a, b]: [&[f32]; 2], weight: f32) {
 mod tests {
     use super::{blur, weights};
     use dapple_hash::{Seed, hash2, unit_f32};
-    use dapple_raster::{Raster, Wrap, parallel};
+    use dapple_raster::{Raster, Wrap};
 
     const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
 

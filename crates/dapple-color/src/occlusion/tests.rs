@@ -245,6 +245,24 @@ fn bad_options_are_refused() {
 }
 
 #[test]
+fn pixels_of_which_a_unit_has_infinitely_many_are_refused() {
+    let options = OcclusionOptions {
+        radius: 2.8e-309,
+        ..HeightPlane {
+            extent: DVec2::new(1.9e-308, 2.2e139),
+            ..HeightPlane::default()
+        }
+        .into()
+    };
+    assert_eq!(options.halo([7, 5]), [1, 1]);
+    let refused = ambient_occlusion(&rubble([7, 5]), &options).unwrap_err();
+    assert!(
+        matches!(refused.kind(), ColorErrorKind::Extent { .. }),
+        "{refused}"
+    );
+}
+
+#[test]
 fn levels_and_threads_do_not_change_a_bit() {
     let height = rubble([67, 45]);
     let options = OcclusionOptions {

@@ -14,8 +14,11 @@ dapple::raster::named! {
     /// How copies become unlike.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum Name {
+        /// One tile: each copy keeps its border and has another piece of the tile inside.
         Disturb = "disturb",
+        /// Two to four tiles: pieces of them by random colors at their corners.
         Corners = "corners",
+        /// Any number of tiles: all get the border of the first.
         Borders = "borders",
     }
 }

@@ -3,26 +3,84 @@
 use crate::error::{Hint, usage};
 use crate::words::Word;
 use anyhow::Result;
-use dapple::raster::Named;
 use dapple::tile::{
     Basis, Crossfade, Feather, Method, Pixels, SoftCut, SplineProject, WrapGradient,
 };
 use dapple::wavelet::{Degree, Phase};
 use serde::Serialize;
 
-dapple::raster::named! {
-    /// How an image is made to repeat.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    enum Name {
-        Auto = "auto",
-        Periodic = "periodic",
-        Poisson = "poisson",
-        SoftCut = "soft-cut",
-        Spline = "spline",
-        PeriodicSpline = "periodic-spline",
-        Feather = "feather",
-        Mirror = "mirror",
-    }
+/// A method of the command line.
+struct Row {
+    name: &'static str,
+    /// Its help.
+    about: &'static str,
+    /// The options that it takes, without `--`.
+    options: &'static [&'static str],
+    /// The method with its options, for images of a size.
+    make: fn(&MethodArgs, [u32; 2]) -> Method,
+}
+
+/// All methods.
+const METHODS: [Row; 7] = [
+    Row {
+        name: "periodic",
+        about: "The periodic part of the image, of the same size",
+        options: &[],
+        make: |_, _| Method::Periodic,
+    },
+    Row {
+        name: "poisson",
+        about: "The image with nearly its gradients and another one across the wrap",
+        options: &["wrap-gradient"],
+        make: |args, _| Method::Poisson(args.wrap_gradient.unwrap_or_default()),
+    },
+    Row {
+        name: SOFT_CUT,
+        about: "A margin over the opposite side, cut along the line of least difference",
+        options: &["margin", "half-width", "crossfade"],
+        make: |args, size| Method::SoftCut(args.soft_cut(size)),
+    },
+    Row {
+        name: "spline",
+        about: "The blend tile of Du, Wang and Meng",
+        options: PROJECT_OPTIONS,
+        make: |args, _| Method::SplineProject(args.project()),
+    },
+    Row {
+        name: "periodic-spline",
+        about: "First periodic, then spline",
+        options: PROJECT_OPTIONS,
+        make: |args, _| Method::PeriodicThenProject(args.project()),
+    },
+    Row {
+        name: "feather",
+        about: "A crossfade",
+        options: &["margin", "crossfade"],
+        make: |args, _| Method::Feather(args.feather()),
+    },
+    Row {
+        name: "mirror",
+        about: "The image beside its mirror image, twice as large",
+        options: &[],
+        make: |_, _| Method::Mirror,
+    },
+];
+
+/// The name of the default method.
+const SOFT_CUT: &str = "soft-cut";
+
+/// The name for the best of all methods.
+const AUTO: &str = "auto";
+
+/// The options of splines.
+const PROJECT_OPTIONS: &[&str] = &["levels", "basis", "phase", "pixels"];
+
+/// Reads the name of a method.
+fn method() -> Word<&'static str> {
+    let auto = Word::none().or(AUTO, "The best of all by the seam report", AUTO);
+    METHODS
+        .iter()
+        .fold(auto, |words, row| words.or(row.name, row.about, row.name))
 }
 
 /// A method with its options.
@@ -32,6 +90,22 @@ pub(super) struct Candidate {
     pub(super) method: Method,
     /// How many pixels apart the boundaries of a tile are that are like its wrap.
     pub(super) lattice: [u32; 2],
+}
+
+impl Candidate {
+    fn new(name: String, method: Method) -> Self {
+        let lattice = match method {
+            Method::SplineProject(project) | Method::PeriodicThenProject(project) => {
+                1_u32.checked_shl(project.levels).unwrap_or(1)
+            }
+            _ => 1,
+        };
+        Self {
+            name,
+            method,
+            lattice: [lattice; 2],
+        }
+    }
 }
 
 /// Reads the functions that a tile is made of.
@@ -51,8 +125,8 @@ fn default_margin(size: [u32; 2]) -> u32 {
 #[command(next_help_heading = "Method")]
 pub(super) struct MethodArgs {
     /// The method.
-    #[arg(long, value_parser = Word::<Name>::all(), default_value_t = Name::SoftCut)]
-    method: Name,
+    #[arg(long, value_parser = method(), default_value = SOFT_CUT)]
+    method: &'static str,
 
     /// soft-cut, feather: how wide the two sides lie over each other, in pixels, from 1 to half of the side. By default 32
     /// for soft-cut, or a quarter of the shorter side if that is less; without it, feather mixes the image with itself moved by half.
@@ -92,64 +166,43 @@ pub(super) struct MethodArgs {
 impl MethodArgs {
     /// The method with its options for images of a size, or all of them if the best shall be found.
     pub(super) fn candidates(&self, size: [u32; 2]) -> Vec<Candidate> {
-        if !self.is_auto() {
-            return vec![self.candidate(self.method, size)];
-        }
-        let names = Name::ALL.iter().copied();
         // Poisson with zero is the periodic part.
-        let named = names.filter(|name| !matches!(name, Name::Auto | Name::Poisson));
-        let named = named.map(|name| self.candidate(name, size));
+        let is_wanted = |row: &&Row| match self.is_auto() {
+            true => row.name != "poisson",
+            false => row.name == self.method,
+        };
+        let wanted = METHODS.iter().filter(is_wanted);
+        let mut candidates: Vec<_> = wanted
+            .map(|row| Candidate::new(row.name.to_owned(), (row.make)(self, size)))
+            .collect();
+        if !self.is_auto() {
+            return candidates;
+        }
         let margin = default_margin(size);
         let crossfade = Crossfade::default();
-        let more = [
-            (
-                "poisson --wrap-gradient extrapolate".to_owned(),
-                Method::Poisson(WrapGradient::Extrapolate),
-            ),
-            (
-                format!("feather --margin {margin}"),
-                Method::Feather(Feather::Margin { margin, crossfade }),
-            ),
-        ];
-        let more = more.map(|(name, method)| Candidate {
-            name,
-            method,
-            lattice: [1; 2],
-        });
-        named.chain(more).collect()
+        candidates.push(Candidate::new(
+            "poisson --wrap-gradient extrapolate".to_owned(),
+            Method::Poisson(WrapGradient::Extrapolate),
+        ));
+        candidates.push(Candidate::new(
+            format!("feather --margin {margin}"),
+            Method::Feather(Feather::Margin { margin, crossfade }),
+        ));
+        candidates
     }
 
     /// Whether the best of all methods is to be found.
     pub(super) fn is_auto(&self) -> bool {
-        self.method == Name::Auto
+        self.method == AUTO
     }
 
-    fn candidate(&self, name: Name, size: [u32; 2]) -> Candidate {
-        let method = match name {
-            Name::Periodic => Method::Periodic,
-            Name::Poisson => Method::Poisson(self.wrap_gradient.unwrap_or_default()),
-            Name::Auto | Name::SoftCut => Method::SoftCut(self.soft_cut(size)),
-            Name::Spline => Method::SplineProject(self.project()),
-            Name::PeriodicSpline => Method::PeriodicThenProject(self.project()),
-            Name::Feather => Method::Feather(match self.margin {
-                None => Feather::HalfShift,
-                Some(margin) => Feather::Margin {
-                    margin,
-                    crossfade: self.crossfade(),
-                },
-            }),
-            Name::Mirror => Method::Mirror,
-        };
-        let lattice = match method {
-            Method::SplineProject(project) | Method::PeriodicThenProject(project) => {
-                1_u32.checked_shl(project.levels).unwrap_or(1)
-            }
-            _ => 1,
-        };
-        Candidate {
-            name: name.to_string(),
-            method,
-            lattice: [lattice; 2],
+    fn feather(&self) -> Feather {
+        match self.margin {
+            None => Feather::HalfShift,
+            Some(margin) => Feather::Margin {
+                margin,
+                crossfade: self.crossfade(),
+            },
         }
     }
 
@@ -184,26 +237,29 @@ impl MethodArgs {
     ///
     /// If there is one.
     pub(super) fn check_used(&self) -> Result<()> {
-        use Name::{Feather, PeriodicSpline, Poisson, SoftCut, Spline};
-        let splines = &[Spline, PeriodicSpline][..];
         let given = [
-            ("margin", self.margin.is_some(), &[SoftCut, Feather][..]),
-            ("half-width", self.half_width.is_some(), &[SoftCut]),
-            ("crossfade", self.crossfade.is_some(), &[SoftCut, Feather]),
-            ("wrap-gradient", self.wrap_gradient.is_some(), &[Poisson]),
-            ("levels", self.levels.is_some(), splines),
-            ("basis", self.basis.is_some(), splines),
-            ("phase", self.phase.is_some(), splines),
-            ("pixels", self.pixels.is_some(), splines),
+            ("margin", self.margin.is_some()),
+            ("half-width", self.half_width.is_some()),
+            ("crossfade", self.crossfade.is_some()),
+            ("wrap-gradient", self.wrap_gradient.is_some()),
+            ("levels", self.levels.is_some()),
+            ("basis", self.basis.is_some()),
+            ("phase", self.phase.is_some()),
+            ("pixels", self.pixels.is_some()),
         ];
-        for (option, is_given, methods) in given {
-            if is_given && !methods.contains(&self.method) {
-                let names: Vec<_> = methods.iter().map(|method| method.name()).collect();
+        for (option, _) in given.into_iter().filter(|(_, is_given)| *is_given) {
+            let takes_it = |row: &&Row| row.options.contains(&option);
+            let names: Vec<_> = METHODS
+                .iter()
+                .filter(takes_it)
+                .map(|row| row.name)
+                .collect();
+            if !names.contains(&self.method) {
                 let message = format!("--{option} has no effect on this method");
                 return Err(usage(message).hint(format!("add --method {}", names.join(" or "))));
             }
         }
-        if self.method == Feather && self.crossfade.is_some() && self.margin.is_none() {
+        if self.method == "feather" && self.crossfade.is_some() && self.margin.is_none() {
             return Err(usage("--crossfade has no effect without a margin").hint("add --margin PX"));
         }
         Ok(())

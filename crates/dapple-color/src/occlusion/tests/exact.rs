@@ -1,7 +1,7 @@
 //! Occlusion beside a plain oracle, and view factors that are known.
 
 use super::{in_pixels, options, rubble};
-use crate::{OcclusionOptions, ambient_occlusion};
+use crate::{HeightPlane, OcclusionOptions, ambient_occlusion};
 use dapple_raster::glam::DVec2;
 use dapple_raster::{Raster, Window, Wrap};
 
@@ -134,8 +134,13 @@ fn the_inside_of_a_bowl_sees_half_of_the_sky() {
 
 /// The part of the sky that a pixel sees, in `f64`: every ray is walked on its own.
 fn oracle(height: &Raster<f32>, options: &OcclusionOptions, at: [i64; 2]) -> f64 {
-    let pixel = options.extent / DVec2::new(height.width().into(), height.height().into());
-    let z = |x: i64, y: i64| options.strength * f64::from(*height.at(x, y, options.wrap));
+    let HeightPlane {
+        strength,
+        extent,
+        wrap,
+    } = options.plane;
+    let pixel = extent / DVec2::new(height.width().into(), height.height().into());
+    let z = |x: i64, y: i64| strength * f64::from(*height.at(x, y, wrap));
     let here = z(at[0], at[1]);
     let slope = DVec2::new(
         (z(at[0] + 1, at[1]) - z(at[0] - 1, at[1])) / (2.0 * pixel.x),
