@@ -16,7 +16,7 @@ use dapple_points::{
 use dapple_pups::{
     CowOptions, OctavesOptions, Pups, SpaceGiraffeOptions, cow, space_giraffe, turbulence,
 };
-use dapple_raster::{Field, Ramp, Raster, Varying, Window, glam::DVec2};
+use dapple_raster::{Field, Named, Ramp, Raster, Varying, Window, glam::DVec2};
 use dapple_tile::{
     Blend, CornerTiles, Layer, Map, Method, Mixing, Seamless, SoftCut, Weighting, blend_by_tile,
     rank_equalize, repeat,
@@ -120,7 +120,7 @@ fn color_normal_map() -> anyhow::Result<Vec<u8>> {
 }
 
 fn color_palettes() -> anyhow::Result<Vec<u8>> {
-    let ramps: Vec<ColorRamp> = Palette::ALL.into_iter().map(Palette::ramp).collect();
+    let ramps: Vec<ColorRamp> = Palette::ALL.iter().map(|palette| palette.ramp()).collect();
     color(&Raster::from_fn(
         [SIZE, 8 * ramps.len() as u32],
         |column, row| ramps[row as usize / 8].at(column as f32 / (SIZE - 1) as f32),
