@@ -16,7 +16,7 @@ use dapple_points::{
 use dapple_pups::{
     CowOptions, OctavesOptions, Pups, SpaceGiraffeOptions, cow, space_giraffe, turbulence,
 };
-use dapple_raster::{Field, Named as _, Ramp, Raster, Varying, Window, glam::DVec2};
+use dapple_raster::{Field, Named, Ramp, Raster, Varying, Window, glam::DVec2};
 use dapple_tile::{
     Blend, CornerTiles, Layer, Map, Method, Mixing, Seamless, SoftCut, Weighting, blend_by_tile,
     rank_equalize, repeat,

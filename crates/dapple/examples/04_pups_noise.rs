@@ -11,7 +11,7 @@ use dapple::hash::Seed;
 use dapple::image::{Depth, write_color_png, write_normal_png};
 use dapple::points::Domain;
 use dapple::pups::{OctavesOptions, octaves};
-use dapple::raster::{Field, Window, Wrap, glam::DVec2};
+use dapple::raster::{Field, Window, glam::DVec2};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Control points at least 0.2 apart in the first octave; each further one is twice as fine and half as strong.
