@@ -60,8 +60,8 @@ impl Neighbors {
         }
     }
 
-    /// Takes the neighbors of a point of a table up to `reach` cells away; `runs` have all of these. Tells whether no other
-    /// point is in the same place.
+    /// Takes the neighbors of a point of a table up to `reach` cells away; `runs` have all of these. Tells whether no
+    /// other point is in the same place.
     #[inline(always)]
     pub(super) fn find<S: Simd>(
         &mut self,
@@ -202,7 +202,7 @@ impl Neighbors {
                     apart_sq += apart * apart;
                 }
                 let is_worse = (nearer * nearer).simd_gt(apart_sq * radius_sq);
-                matters = matters & !(is_worse & nearer.simd_gt(0.0));
+                matters &= !(is_worse & nearer.simd_gt(0.0));
             }
             let mut matters = matters.to_bitmask();
             while matters != 0 {
