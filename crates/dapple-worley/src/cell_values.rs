@@ -4,8 +4,8 @@ use crate::{FeatureView, Plane, Worley2};
 use dapple_raster::glam::DVec2;
 use dapple_raster::{Field, Raster, RasterError, RasterViewMut, Window};
 
-/// A random number in `[0, 1)` for each Voronoi cell: [`Feature::cell_value`](crate::Feature::cell_value) of the nearest
-/// feature point.
+/// A random number in `[0, 1)` for each Voronoi cell: [`Feature::cell_value`](crate::Feature::cell_value) of the
+/// nearest feature point.
 ///
 /// # Examples
 ///

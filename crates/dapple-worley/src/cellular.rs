@@ -92,13 +92,13 @@ where
         self.render_slices(window, vec![(*plane, out)])
     }
 
-    /// The same for several planes, such as the slices of a volume. Those next to one another share what they look at, so
-    /// they are filled faster together than one by one, most of all if they are near one another.
+    /// The same for several planes, such as the slices of a volume. Those next to one another share what they look at,
+    /// so they are filled faster together than one by one, most of all if they are near one another.
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window; no view
-    /// has been changed then.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window; no
+    /// view has been changed then.
     ///
     /// # Examples
     ///
@@ -156,9 +156,9 @@ where
         })
     }
 
-    /// The same texture with its values mapped so that about 0 to 1 is their range: from a table of measured ranges, for
-    /// [the combinations that have a name](Combination::NAMED), the default density, and every metric but Minkowski's.
-    /// One value in a thousand lies below 0, and one above 1.
+    /// The same texture with its values mapped so that about 0 to 1 is their range: from a table of measured ranges,
+    /// for [the combinations that have a name](Combination::NAMED), the default density, and every metric but
+    /// Minkowski's. One value in a thousand lies below 0, and one above 1.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/normalized.md"))]
     ///

@@ -1,7 +1,7 @@
 //! Where the code for two, three and four axes is compiled: here, and in no crate that uses it.
 //!
-//! A function with the number of axes as a parameter is compiled again in every crate that calls it. So the public ones are
-//! thin, and what takes long goes through these functions, which have no parameter.
+//! A function with the number of axes as a parameter is compiled again in every crate that calls it. So the public ones
+//! are thin, and what takes long goes through these functions, which have no parameter.
 
 use crate::fixed::Place;
 use crate::lattice::Lattice;

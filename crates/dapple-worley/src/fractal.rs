@@ -1,9 +1,9 @@
 //! Fractal sums: the same texture at several scales, on top of each other.
 //!
-//! Worley sums `G_n(x) = Σ 2^-i F_n(2^i x)` for `i` from 0 to 5, of `F_n` and of their combinations ("A Cellular Texture
-//! Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). His octaves are literally one field,
-//! which shows where they agree: at the origin all have the same center. So we give each octave a seed of its own, unless
-//! one asks for the paper's sum: [`Octaves::paper`].
+//! Worley sums `G_n(x) = Σ 2^-i F_n(2^i x)` for `i` from 0 to 5, of `F_n` and of their combinations ("A Cellular
+//! Texture Basis Function", SIGGRAPH 1996, <https://doi.org/10.1145/237170.237267>). His octaves are literally one
+//! field, which shows where they agree: at the origin all have the same center. So we give each octave a seed of its
+//! own, unless one asks for the paper's sum: [`Octaves::paper`].
 //!
 //! With a period, octave `i` repeats after `lacunarity^i` times as many of its own cells, so that the sum repeats with
 //! the period of the first octave and no octave more often.
@@ -271,8 +271,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window; no view
-    /// has been changed then.
+    /// [`SizeMismatch`](dapple_raster::RasterErrorKind::SizeMismatch) if a view has another size than the window; no
+    /// view has been changed then.
     pub fn render_slices(
         &self,
         window: &Window,

@@ -95,14 +95,15 @@ fn sign(part: f32) -> f32 {
 }
 
 // A metric is the sum, or the largest, of one *term* for each axis. That is the *key* of a vector, which is compared in
-// place of the distance: the squared distance, for the Euclidean metric. Keys are never below zero, and they do not shrink
-// when a difference grows; `looseness` says how far rounding may break that.
+// place of the distance: the squared distance, for the Euclidean metric. Keys are never below zero, and they do not
+// shrink when a difference grows; `looseness` says how far rounding may break that.
 impl Metric {
     /// What a key is multiplied by before it serves as a bound.
     #[inline]
     pub(crate) fn looseness(self) -> f32 {
         match self {
-            // `powf` is good to an ulp or two, so larger differences can have smaller powers by as much; this is 80 ulps.
+            // `powf` is good to an ulp or two, so larger differences can have smaller powers by as much; this is 80
+            // ulps.
             Self::Minkowski(_) => 1.000_01,
             _ => 1.0,
         }

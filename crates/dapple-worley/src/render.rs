@@ -1,14 +1,14 @@
 //! Many positions at once: a window of a plane.
 //!
 //! The window is cut into bands of rows, which threads share out, and blocks of columns. The feature points of a block
-//! and its neighborhood are made once ([`table`]). Only they know how many axes there are ([`basis`]). For each square of
-//! up to 64 × 64 pixels, and then for each of its tiles ([`square`]), those that may be among the nearest are picked out:
-//! the candidates ([`cull`], [`flat`], then [`candidates`]). Only these are compared at the pixels of the tile, sixteen side by side
-//! ([`kernel`]; [`track`], where it matters which points they are). Slices of a volume that lie near one another share
-//! their candidates. Where a tile needs points further away than its neighborhood reaches, the
-//! neighborhood grows; where that would not be exact, single positions are searched. Where cells have few pixels, points
-//! are sorted by the pixels near to them ([`bins`]), and compared at all of these ([`splat`]). Where the distance to
-//! the edge of the Voronoi cell is asked for, the cells are drawn one by one ([`edge`]).
+//! and its neighborhood are made once ([`table`]). Only they know how many axes there are ([`basis`]). For each square
+//! of up to 64 × 64 pixels, and then for each of its tiles ([`square`]), those that may be among the nearest are picked
+//! out: the candidates ([`cull`], [`flat`], then [`candidates`]). Only these are compared at the pixels of the tile,
+//! sixteen side by side ([`kernel`]; [`track`], where it matters which points they are). Slices of a volume that lie
+//! near one another share their candidates. Where a tile needs points further away than its neighborhood reaches, the
+//! neighborhood grows; where that would not be exact, single positions are searched. Where cells have few pixels,
+//! points are sorted by the pixels near to them ([`bins`]), and compared at all of these ([`splat`]). Where the
+//! distance to the edge of the Voronoi cell is asked for, the cells are drawn one by one ([`edge`]).
 //!
 //! What runs in registers are stages with nothing but memory between them, so that each is compiled only for what it
 //! depends on.

@@ -67,8 +67,9 @@ impl Default for Scatter {
 }
 
 impl Scatter {
-    /// The default density. Worley found his program fastest at about 3, and so is this one: with as many feature points
-    /// in a picture of F2 − F1, in 2-D and 3-D, 1 takes 1.4 to 2 times as long, 2 up to 1.3 times, and 4 to 8 between
+    /// The default density. Worley found his program fastest at about 3, and so is this one: with as many feature
+    /// points in a picture of F2 − F1, in 2-D and 3-D, 1 takes 1.4 to 2 times as long, 2 up to 1.3 times, and 4 to 8
+    /// between
     /// 0.9 and 1.4 times.
     pub const DENSITY: f64 = 3.0;
 

@@ -3,7 +3,7 @@
 use super::area::Area;
 use super::bins::Bins;
 use super::cull::{PixelBox, PointList};
-use super::flat::{FlatPoints, Thinning};
+use super::flat::{Dominance, FlatPoints};
 use super::kernel::Candidate;
 use super::planes::{Neighbors, Planes};
 use super::splat::Splat;
@@ -51,7 +51,7 @@ pub(super) struct Memory {
     pub(super) tile: FlatPoints,
     pub(super) candidates: Vec<Candidate>,
     pub(super) lookup: Lookup,
-    pub(super) thinning: Thinning,
+    pub(super) dominance: Dominance,
     /// Pixels that need points further away.
     pub(super) unknown: Vec<Area>,
     /// The planes about a feature point, and the distances to edges that are drawn already.
@@ -82,7 +82,7 @@ impl Memory {
             tile: FlatPoints::new(),
             candidates: Vec::new(),
             lookup: Lookup::new(),
-            thinning: Thinning::new(),
+            dominance: Dominance::new(),
             unknown: Vec::new(),
             neighbors: Neighbors::new(),
             planes: Planes::new(),
@@ -212,8 +212,8 @@ impl Block<'_> {
         bands.iter().take_while(is_near).count().max(1)
     }
 
-    /// The greatest n of `F_n` that the inner loops find: one, two or four; those that tell which points they are, two or
-    /// four.
+    /// The greatest n of `F_n` that the inner loops find: one, two or four; those that tell which points they are, two
+    /// or four.
     fn depth(out: &Output<'_>) -> usize {
         match (out, out.depth()) {
             (Output::Values(..), 1) => 1,

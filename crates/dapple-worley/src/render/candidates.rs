@@ -22,11 +22,11 @@ impl Memory {
         square: &Square,
     ) {
         let (plan, low) = (&square.plan, &square.pixels.low);
-        if plan.thins() {
+        if plan.culls_dominated() {
             let cuboid = self.cuboid(area, square);
-            let thinning = &mut self.thinning;
+            let dominance = &mut self.dominance;
             self.tile
-                .thin(simd, plan.metric, &self.square, &cuboid, thinning);
+                .take_undominated(simd, plan.metric, &self.square, &cuboid, dominance);
         } else {
             let pixels = self.pixel_box(area);
             let mut moved = pixels;
@@ -110,8 +110,8 @@ impl Memory {
         }
     }
 
-    /// Makes the terms of the rows of a tile in the slice at some steps from the lower corner of a square; they go along the
-    /// second axis.
+    /// Makes the terms of the rows of a tile in the slice at some steps from the lower corner of a square; they go
+    /// along the second axis.
     #[inline(always)]
     pub(super) fn slice_terms<S: Simd>(
         &mut self,

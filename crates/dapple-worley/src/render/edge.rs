@@ -1,16 +1,16 @@
 //! Pictures of the distance to the edge of the Voronoi cell.
 //!
 //! The cells with pixels in a block are drawn one by one. Between the feature point of a cell and each other one there
-//! is a plane halfway ([`planes`](super::planes)). The distance from such a plane, below zero beyond it, is linear along
-//! a row of pixels. The smallest of these distances is the distance to the edge, and it is above zero in the cell only:
-//! so no pixel needs to know its nearest point first, and a cell may be drawn larger than it is.
+//! is a plane halfway ([`planes`](super::planes)). The distance from such a plane, below zero beyond it, is linear
+//! along a row of pixels. The smallest of these distances is the distance to the edge, and it is above zero in the cell
+//! only: so no pixel needs to know its nearest point first, and a cell may be drawn larger than it is.
 //!
-//! For each cell, the nearest planes give an outline of it, and with that a ball that its pixels lie in. Planes that are
-//! further than another from all of the ball are left out, which leaves about as many as the cell has edges.
+//! For each cell, the nearest planes give an outline of it, and with that a ball that its pixels lie in. Planes that
+//! are further than another from all of the ball are left out, which leaves about as many as the cell has edges.
 //!
-//! Distances are computed in `f64`. A pixel is drawn only where their rounding leaves no doubt which `f32` is the nearest
-//! to its value, and that no point is as near as its own by the `f32` keys that [`Worley::edge_distance`] compares. The
-//! few others are searched on their own.
+//! Distances are computed in `f64`. A pixel is drawn only where their rounding leaves no doubt which `f32` is the
+//! nearest to its value, and that no point is as near as its own by the `f32` keys that [`Worley::edge_distance`]
+//! compares. The few others are searched on their own.
 //!
 //! [`Worley::edge_distance`]: crate::Worley::edge_distance
 
@@ -30,8 +30,8 @@ pub(super) const COLUMNS: usize = 256;
 /// From one row of values to the next; a row may end anywhere in a register.
 const STRIDE: usize = COLUMNS + LANES;
 
-/// How far away neighbors of a point are looked for, times the guess of how far the nearest are from any place: first so
-/// far, then farther if that was not far enough.
+/// How far away neighbors of a point are looked for, times the guess of how far the nearest are from any place: first
+/// so far, then farther if that was not far enough.
 const REACHES: [f32; 2] = [1.7, 2.6];
 
 /// The longest way to a neighbor, in cells: from one and a half times as far, ways are exact in `f32`.
@@ -332,8 +332,8 @@ struct Sight {
 
 impl Sight {
     /// Distances of the planes are sums of products with normals, where nothing that counts is above half of the
-    /// reach; fewer than sixteen roundings, those of [`Worley::edge_distance`](crate::Worley::edge_distance) among them,
-    /// are each of at most 2⁻⁵³ of that.
+    /// reach; fewer than sixteen roundings, those of [`Worley::edge_distance`](crate::Worley::edge_distance) among
+    /// them, are each of at most 2⁻⁵³ of that.
     ///
     /// A key of the search is the square of a distance to five roundings at most, each of 2⁻²⁴ of it. Squares of two
     /// distances differ by twice the distance between the points, times that from the plane.

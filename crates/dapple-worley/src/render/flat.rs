@@ -1,12 +1,12 @@
 //! Candidates as points of the picture's plane, and those that are nearer than others in a whole rectangle of pixels.
 //!
-//! The axes across the picture add the same to the keys of a point at all pixels. So a point is flat: a column, a row, and
-//! the rest.
+//! The axes across the picture add the same to the keys of a point at all pixels. So a point is flat: a column, a row,
+//! and the rest.
 //!
-//! Where terms are added up, what a point is nearer than another is a sum over the axes, and along each axis it grows or
-//! shrinks all the way, since terms are convex. So its smallest value in a rectangle is the sum of the smaller ones of
-//! two ends. If that is above zero, the one point is *preferred* to the other: it is nearer in the whole rectangle. A
-//! point to which `K` others are preferred is not among the `K` nearest of any pixel.
+//! Where terms are added up, what a point is nearer than another is a sum over the axes, and along each axis it grows
+//! or shrinks all the way, since terms are convex. So its smallest value in a rectangle is the sum of the smaller ones
+//! of two ends. If that is above zero, the one point *dominates* the other: it is nearer in the whole rectangle.
+//! A point that `K` others dominate is not among the `K` nearest of any pixel.
 //!
 //! This leaves about half of the points that are left by bounds for each point alone.
 
@@ -26,23 +26,23 @@ pub(super) struct Cuboid {
     pub(super) is_deep: bool,
 }
 
-/// Which points are not taken.
+/// Which points are left out.
 #[derive(Debug)]
-pub(super) struct Thinning {
-    /// Those to which so many others are preferred,
+pub(super) struct Dominance {
+    /// Those that so many others dominate,
     pub(super) depth: usize,
-    /// if those others are about this near to the middle of the rectangle: farther ones are preferred to few.
+    /// if those others are about this near to the middle of the rectangle: farther ones dominate few.
     pub(super) distance: f32,
     /// Memory for those others.
-    rivals: Rivals,
+    dominators: Dominators,
 }
 
-impl Thinning {
+impl Dominance {
     pub(super) fn new() -> Self {
         Self {
             depth: 0,
             distance: 0.0,
-            rivals: Rivals::new(),
+            dominators: Dominators::new(),
         }
     }
 
@@ -56,8 +56,8 @@ impl Thinning {
 }
 
 /// What is to spare of the largest key of a point: there are fewer than 64 roundings in its key, in that of another
-/// point, and in what compares them, and none of them is of more than 2⁻²⁴ of that. (Another point with larger terms is
-/// not preferred in any case.)
+/// point, and in what compares them, and none of them is of more than 2⁻²⁴ of that. (Another point with larger terms
+/// does not dominate in any case.)
 const SPARE: f32 = 128.0 / (1 << 24) as f32;
 
 /// Sixteen points, as seen from a rectangle.
@@ -91,9 +91,9 @@ impl<S: Simd> Seen<S> {
     }
 }
 
-/// Points that may be preferred to others.
+/// Points that may dominate others.
 #[derive(Debug)]
-struct Rivals {
+struct Dominators {
     len: usize,
     /// Along the three axes, their terms at the low and at the high end.
     ends: [[Vec<f32>; 2]; 3],
@@ -101,7 +101,7 @@ struct Rivals {
     rest: Vec<f32>,
 }
 
-impl Rivals {
+impl Dominators {
     fn new() -> Self {
         let ends = || [Vec::new(), Vec::new()];
         Self {
@@ -140,9 +140,9 @@ impl Rivals {
         self.len += mask.to_bitmask().count_ones() as usize;
     }
 
-    /// How many are preferred to each of sixteen points.
+    /// How many dominate each of sixteen points.
     #[inline(always)]
-    fn preferred<S: Simd, const DEEP: bool>(&self, seen: &Seen<S>) -> u32x16<S> {
+    fn count<S: Simd, const DEEP: bool>(&self, seen: &Seen<S>) -> u32x16<S> {
         let mut number = u32x16::splat(seen.far.simd, 0);
         let n = self.len;
         let [[left, right], [top, bottom], [front, back]] = &self.ends;
@@ -151,12 +151,12 @@ impl Rivals {
         let (front, back) = (&front[..n], &back[..n]);
         let [across, down, deep] = seen.ends;
         let lowered = seen.rest - seen.far * SPARE;
-        for rival in 0..n {
-            let across = (across[0] - left[rival]).min(across[1] - right[rival]);
-            let down = (down[0] - top[rival]).min(down[1] - bottom[rival]);
-            let mut nearer = across + down + (lowered - rest[rival]);
+        for index in 0..n {
+            let across = (across[0] - left[index]).min(across[1] - right[index]);
+            let down = (down[0] - top[index]).min(down[1] - bottom[index]);
+            let mut nearer = across + down + (lowered - rest[index]);
             if DEEP {
-                nearer += (deep[0] - front[rival]).min(deep[1] - back[rival]);
+                nearer += (deep[0] - front[index]).min(deep[1] - back[index]);
             }
             number = nearer.simd_gt(0.0).select(number + 1, number);
         }
@@ -175,8 +175,8 @@ pub(super) struct PictureAxes {
 #[derive(Debug)]
 pub(super) struct FlatPoints {
     pub(super) len: usize,
-    /// Their coordinates along the axes of the columns and of the rows, in cells from some corner that is less than 8 cells
-    /// away, and so exact. There is room for a register more.
+    /// Their coordinates along the axes of the columns and of the rows, in cells from some corner that is less than 8
+    /// cells away, and so exact. There is room for a register more.
     pub(super) x: Vec<f32>,
     pub(super) y: Vec<f32>,
     /// The same along the axis across several slices.
@@ -217,8 +217,8 @@ impl FlatPoints {
         }
     }
 
-    /// Takes all of a list, whose coordinates are counted from the lower corner of some pixels. The rows of the picture go
-    /// along `row_axis`, and several slices lie along `deep_axis`.
+    /// Takes all of a list, whose coordinates are counted from the lower corner of some pixels. The rows of the picture
+    /// go along `row_axis`, and several slices lie along `deep_axis`.
     #[inline(always)]
     pub(super) fn flatten<S: Simd, M: Measure>(
         &mut self,
@@ -253,48 +253,48 @@ impl FlatPoints {
         }
     }
 
-    /// Takes some of the points that are seen from a cuboid. Only for metrics whose terms are added up.
+    /// Takes the points that fewer than `depth` others dominate in a cuboid. Only for metrics whose terms are added up.
     #[inline(always)]
-    pub(super) fn thin<S: Simd>(
+    pub(super) fn take_undominated<S: Simd>(
         &mut self,
         simd: S,
         metric: Metric,
         points: &Self,
         cuboid: &Cuboid,
-        thinning: &mut Thinning,
+        dominance: &mut Dominance,
     ) {
         if cuboid.is_deep {
-            self.thin_deep::<S, true>(simd, metric, points, cuboid, thinning);
+            self.take_undominated_axes::<S, true>(simd, metric, points, cuboid, dominance);
         } else {
-            self.thin_deep::<S, false>(simd, metric, points, cuboid, thinning);
+            self.take_undominated_axes::<S, false>(simd, metric, points, cuboid, dominance);
         }
     }
 
-    /// As [`thin`](Self::thin), where it is known whether there are several slices.
+    /// As [`take_undominated`](Self::take_undominated), where it is known whether there are several slices.
     #[inline(always)]
-    fn thin_deep<S: Simd, const DEEP: bool>(
+    fn take_undominated_axes<S: Simd, const DEEP: bool>(
         &mut self,
         simd: S,
         metric: Metric,
         points: &Self,
         cuboid: &Cuboid,
-        thinning: &mut Thinning,
+        dominance: &mut Dominance,
     ) {
         self.clear(points.len, points.wants_numbers);
-        let nearby = thinning.nearby(metric, cuboid);
-        let rivals = &mut thinning.rivals;
-        rivals.clear(points.len);
+        let nearby = dominance.nearby(metric, cuboid);
+        let dominators = &mut dominance.dominators;
+        dominators.clear(points.len);
         for start in (0..points.len).step_by(LANES) {
             let seen = Seen::new::<DEEP>(Exact(metric), cuboid, points.lanes(simd, start));
             let is_there = lanes_before(simd, points.len - start);
-            rivals.push::<S, DEEP>(&seen, seen.far.simd_le(nearby) & is_there);
+            dominators.push::<S, DEEP>(&seen, seen.far.simd_le(nearby) & is_there);
         }
         for start in (0..points.len).step_by(LANES) {
             let lanes = points.lanes(simd, start);
             let seen = Seen::new::<DEEP>(Exact(metric), cuboid, lanes);
-            let matters = rivals
-                .preferred::<S, DEEP>(&seen)
-                .simd_lt(thinning.depth as u32);
+            let matters = dominators
+                .count::<S, DEEP>(&seen)
+                .simd_lt(dominance.depth as u32);
             let mask = matters & lanes_before(simd, points.len - start);
             let to = self.len..self.len + LANES;
             let [x, y, z, rest] = lanes;

@@ -9,8 +9,8 @@ use fearless_simd::{f32x16, prelude::*};
 /// The most columns and rows of a tile: two registers.
 pub(super) const TILE: usize = 2 * LANES;
 
-/// What a point that may be among the nearest adds to the keys of a tile: the terms of the columns, and those of all other
-/// axes together for each row. What follows the last column or row means nothing.
+/// What a point that may be among the nearest adds to the keys of a tile: the terms of the columns, and those of all
+/// other axes together for each row. What follows the last column or row means nothing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     pub(super) columns: [f32; TILE],

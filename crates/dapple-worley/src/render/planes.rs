@@ -60,8 +60,8 @@ impl Neighbors {
         }
     }
 
-    /// Takes the neighbors of a point of a table up to `reach` cells away; `runs` have all of these. Tells whether no other
-    /// point is in the same place.
+    /// Takes the neighbors of a point of a table up to `reach` cells away; `runs` have all of these. Tells whether no
+    /// other point is in the same place.
     #[inline(always)]
     pub(super) fn find<S: Simd>(
         &mut self,

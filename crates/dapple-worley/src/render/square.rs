@@ -1,7 +1,7 @@
 //! Squares of up to 64 × 64 pixels and their tiles of up to 32 × 32: from candidates to values.
 //!
-//! The candidates of a square are picked from the table, and those of each of its tiles from them. Where a key reaches the
-//! edge of the neighborhood that the candidates come from, the pixels are filled again from a larger one.
+//! The candidates of a square are picked from the table, and those of each of its tiles from them. Where a key reaches
+//! the edge of the neighborhood that the candidates come from, the pixels are filled again from a larger one.
 
 use super::area::Area;
 use super::block::{Block, Memory};
@@ -83,7 +83,7 @@ impl Plan {
     }
 
     /// Whether points that are never among the nearest of a rectangle are left out.
-    pub(super) fn thins(&self) -> bool {
+    pub(super) fn culls_dominated(&self) -> bool {
         self.row_axis.is_some() && self.metric.is_exact_sum()
     }
 }
@@ -250,8 +250,8 @@ impl Block<'_> {
         let whole = plan.cuboid(&moved);
         let has_tiles = area.is_larger(plan.tile);
         let (list, square, tile) = (&mut memory.list, &mut memory.square, &mut memory.tile);
-        let thinning = &mut memory.thinning;
-        (thinning.depth, thinning.distance) = (plan.depth, plan.guess.distance);
+        let dominance = &mut memory.dominance;
+        (dominance.depth, dominance.distance) = (plan.depth, plan.guess.distance);
         match metric {
             Metric::Minkowski(p) => baseline!(simd => {
                 let measure = Powers(p);
@@ -260,11 +260,11 @@ impl Block<'_> {
             _ => dispatch!(self.level, simd => {
                 let measure = Exact(metric);
                 list.cull(simd, Cull { measure, pixels: &moved, keep }, points);
-                if let Some(rows) = plan.row_axis.filter(|_| plan.thins()) {
+                if let Some(rows) = plan.row_axis.filter(|_| plan.culls_dominated()) {
                     let slices = plan.deep_axis;
                     square.flatten(simd, measure, list, &moved, PictureAxes { rows, slices });
                     if has_tiles {
-                        tile.thin(simd, metric, square, &whole, thinning);
+                        tile.take_undominated(simd, metric, square, &whole, dominance);
                         core::mem::swap(tile, square);
                     }
                 }
@@ -324,7 +324,8 @@ impl Block<'_> {
         }
     }
 
-    /// Fills one or two registers of columns of a tile, up to the first row with a key beyond the limit, which it returns.
+    /// Fills one or two registers of columns of a tile, up to the first row with a key beyond the limit, which it
+    /// returns.
     fn fill_part(&self, part: Part<'_>, out: &mut Output<'_>, memory: &Memory) -> usize {
         let metric = part.square.plan.metric;
         if let Output::Values(values, out) = out {

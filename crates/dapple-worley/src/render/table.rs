@@ -231,8 +231,8 @@ impl Table {
             .all(|axis| first[axis] >= 0 && (last[axis] as usize) < self.cells.side(axis))
     }
 
-    /// The points of the cells that have places up to `reach` steps from a point along each axis, if the table has these
-    /// cells.
+    /// The points of the cells that have places up to `reach` steps from a point along each axis, if the table has
+    /// these cells.
     pub(super) fn around<'a>(
         &self,
         point: &[i32; MOST_AXES],

@@ -92,8 +92,8 @@ pub(super) struct Found {
 }
 
 impl TrackedRows<'_> {
-    /// Finds the `K` nearest points row by row, and returns the row from which on keys reach the limit: the end, if none
-    /// does.
+    /// Finds the `K` nearest points row by row, and returns the row from which on keys reach the limit: the end, if
+    /// none does.
     #[inline(always)]
     pub(super) fn fill<S: Simd, M: Measure, const K: usize>(
         &self,
