@@ -1,6 +1,6 @@
 //! Kinds of values that have names: one table for recipes, the command line and documentation.
 
-/// A kind of which every value has a name, made by [`named!`](crate::named).
+/// A kind of which every value has a name, made by the macro `named!`.
 pub trait Named: Copy + PartialEq + 'static {
     /// All values, in the order of their definition.
     const ALL: &'static [Self];
