@@ -39,8 +39,9 @@ pub(crate) fn arctangent<S: Simd>(simd: S, x: f32x16<S>) -> f32x16<S> {
 #[cfg(test)]
 mod tests {
     use super::arctangent;
+    use dapple_raster::simd::dispatch;
     use dapple_raster::simd::for_every_level;
-    use fearless_simd::{Level, dispatch, f32x16, prelude::*};
+    use fearless_simd::{Level, f32x16, prelude::*};
 
     fn angles(level: Level, tangents: [f32; 16]) -> [f32; 16] {
         dispatch!(level, simd => arctangent(simd, f32x16::from_slice(simd, &tangents)).into())

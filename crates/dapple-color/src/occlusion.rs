@@ -25,8 +25,9 @@
 //! nothing, and the tangent plane beside it is level, as in a normal map.
 
 use crate::{ColorError, ColorErrorKind, HeightPlane, plane};
+use dapple_raster::simd::dispatch;
 use dapple_raster::{Raster, simd};
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 use lines::Heights;
 use rays::Ray;
 use sky::see_row;

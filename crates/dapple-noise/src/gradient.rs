@@ -12,8 +12,9 @@
 use crate::gradients::gradient;
 use crate::lines::Lines;
 use dapple_hash::{CellHash, CellHashes, Seed};
+use dapple_raster::simd::dispatch;
 use dapple_raster::{Field, Fractal, FractalShape, RasterError, RasterViewMut, Window};
-use fearless_simd::{Level, dispatch, prelude::*, u32x16};
+use fearless_simd::{Level, prelude::*, u32x16};
 use glam::DVec2;
 
 /// How many corners are hashed at once.

@@ -84,8 +84,9 @@ fn polynomials<S: Simd, V: SimdFloat<S, Element = f32>, const DEGREE: usize, con
 #[cfg(test)]
 mod tests {
     use super::powers;
+    use dapple_raster::simd::dispatch;
     use dapple_raster::simd::for_every_level;
-    use fearless_simd::{dispatch, prelude::*};
+    use fearless_simd::prelude::*;
 
     fn powers_of(level: fearless_simd::Level, pairs: &[(f32, f32)]) -> Vec<f32> {
         let one =

@@ -14,8 +14,9 @@ use crate::tile::Tiles;
 use crate::weight::AxialWeight;
 use core::ops::Range;
 use dapple_raster::Window;
+use dapple_raster::simd::dispatch;
 use dapple_raster::{parallel, simd};
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{Level, prelude::*};
 use glam::DVec2;
 
 /// How many numbers a band is summed in, at most, so that they stay in the second cache of a core: 512 KiB.

@@ -9,7 +9,8 @@ use crate::profile::{Cubic, Profile, minus_u};
 use crate::shift::shift_weights;
 use crate::weight::AxialWeight;
 use dapple_raster::simd;
-use fearless_simd::{dispatch, f32x4, f32x8, prelude::*};
+use dapple_raster::simd::dispatch;
+use fearless_simd::{f32x4, f32x8, prelude::*};
 use glam::DVec2;
 
 /// What takes the records and the weights of a group of candidates.

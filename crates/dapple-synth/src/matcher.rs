@@ -19,8 +19,9 @@ mod tree;
 
 use basis::Basis;
 use dapple_raster::simd;
+use dapple_raster::simd::dispatch;
 use distance::{LANES, PaddedRows};
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{Level, prelude::*};
 use lattice::Lattice;
 use margin::Margin;
 use search::Search;

@@ -6,7 +6,8 @@ use crate::ends::{Halving, Line};
 use crate::kernel::two_scale;
 use crate::{Border, SplineFilter, WaveletError, WaveletErrorKind};
 use dapple_raster::parallel;
-use fearless_simd::{Level, Simd, dispatch};
+use dapple_raster::simd::dispatch;
+use fearless_simd::{Level, Simd};
 
 /// A filter that doubles a line.
 #[derive(Clone, Debug)]

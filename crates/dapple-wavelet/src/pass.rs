@@ -5,8 +5,9 @@
 //! pass reads or writes single values with the stride of a row, which would cost more than the filter.
 
 use crate::recursion::{Lanes, LineFilter};
+use dapple_raster::simd::dispatch;
 use dapple_raster::{parallel, simd};
-use fearless_simd::{Level, dispatch, f32x8, prelude::*};
+use fearless_simd::{Level, f32x8, prelude::*};
 
 /// How many lines are filtered side by side.
 const LANES: usize = 8;

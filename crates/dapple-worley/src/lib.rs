@@ -39,9 +39,6 @@
     reason = "an index goes through several arrays at once, and closures of iterators are not inlined into SIMD code"
 )]
 
-#[macro_use]
-mod levels;
-
 mod space;
 
 mod worley;

@@ -14,6 +14,7 @@ use crate::metric::{Exact, Measure as _};
 use crate::places::{LANES, Places, Words, cells_by_distance, digit, load, store};
 use crate::{LIMIT, Metric, Worley};
 use dapple_hash::CellHashes;
+use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16, u64x8};
 
 /// The positions of a group.

@@ -11,6 +11,7 @@ use crate::places::{LANES, cells_by_distance, digit};
 use crate::search::{self, Hit, Name, border, hit};
 use crate::{LIMIT, Metric};
 use dapple_hash::CellHashes;
+use dapple_raster::simd::dispatch;
 use fearless_simd::{Level, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 
 /// The nearest points of a place, nearest first; at most four.

@@ -7,7 +7,8 @@
 //! boxes of such offsets, and for a box only those subcells that are covered from everywhere in the box.
 
 use super::grid::{Grid, HALO};
-use fearless_simd::{Level, dispatch, f32x8, prelude::*};
+use dapple_raster::simd::dispatch;
+use fearless_simd::{Level, f32x8, prelude::*};
 
 /// Subcells along a side of a cell.
 pub(crate) const SIDE: usize = 8;

@@ -10,7 +10,8 @@ use super::mask::{Coverage, REACH, SIDE, select};
 use super::sheet::{HIGHEST_PROPOSAL, POINT, Rivals, Sheet, SheetRows};
 use core::ops::Range;
 use dapple_hash::Seed;
-use fearless_simd::{Level, dispatch, prelude::*};
+use dapple_raster::simd::dispatch;
+use fearless_simd::{Level, prelude::*};
 
 /// A place that a cell would like to have a point at.
 #[derive(Clone, Copy, Debug)]

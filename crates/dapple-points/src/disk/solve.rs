@@ -9,7 +9,8 @@ use super::sheet::{GIVEN, POINT, Sheet, domain_rows};
 use super::slice::{Band, cover, dart_chances};
 use dapple_hash::Seed;
 use dapple_raster::parallel;
-use fearless_simd::{Level, dispatch};
+use dapple_raster::simd::dispatch;
+use fearless_simd::Level;
 use glam::DVec2;
 
 /// Rows of cells in a band: few enough to keep several cores busy, many enough that little is done twice.

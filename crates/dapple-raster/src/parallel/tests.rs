@@ -1,3 +1,5 @@
+//! Every number, item and chunk is taken once, whatever the number of threads.
+
 use super::{consume, for_each, for_each_chunk, for_each_chunk_with, for_each_mut, map, sort};
 use std::sync::atomic::{AtomicU32, Ordering};
 

@@ -10,7 +10,8 @@
 use dapple_hash::{Seed, hash1, unit_f64};
 use dapple_raster::parallel;
 use dapple_raster::simd;
-use fearless_simd::{dispatch, f32x16, prelude::*};
+use dapple_raster::simd::dispatch;
+use fearless_simd::{f32x16, prelude::*};
 
 /// Directions that are rotated together: the lanes of a register.
 pub(crate) const LANES: usize = 16;

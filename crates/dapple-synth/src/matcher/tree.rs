@@ -13,7 +13,7 @@ use super::lattice::Lattice;
 use super::margin;
 use dapple_raster::parallel;
 use dapple_raster::simd;
-use fearless_simd::dispatch;
+use dapple_raster::simd::dispatch;
 
 /// Pairs of directions after which the rows of a leaf are looked at again.
 pub(crate) const STEP: usize = 4;

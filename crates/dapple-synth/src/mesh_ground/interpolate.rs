@@ -9,7 +9,8 @@ use crate::ground::{Colors, Samples};
 use crate::sites::weights;
 use core::array;
 use core::ops::Range;
-use fearless_simd::{Level, dispatch, f32x8, prelude::*, u32x8};
+use dapple_raster::simd::dispatch;
+use fearless_simd::{Level, f32x8, prelude::*, u32x8};
 
 /// Below this sum of weights the nearest site counts alone.
 const WEIGHT_MIN: f32 = 1e-4;

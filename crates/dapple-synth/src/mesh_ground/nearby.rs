@@ -5,7 +5,8 @@
 
 use crate::cells::Cells;
 use crate::{Hierarchy, Sites};
-use fearless_simd::{Level, dispatch, f32x8, prelude::*};
+use dapple_raster::simd::dispatch;
+use fearless_simd::{Level, f32x8, prelude::*};
 use glam::{DVec3, Vec3};
 
 /// The side of a cell in spacings.

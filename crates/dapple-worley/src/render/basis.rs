@@ -8,6 +8,7 @@ use crate::search::Hit;
 use crate::{Axes, LIMIT, Metric, Space, Worley};
 use core::fmt;
 use dapple_raster::simd;
+use dapple_raster::simd::dispatch;
 use fearless_simd::Level;
 
 /// A basis as pictures see it: only hashes and the tables of feature points know the number of axes. Places and vectors

@@ -22,6 +22,7 @@ use super::{BAND_ROWS, LANES, Picture};
 use crate::Metric;
 use crate::fixed::{MOST_AXES, STEP, STEPS};
 use core::ops::Range;
+use dapple_raster::simd::dispatch;
 use fearless_simd::{f32x16, f64x8, i32x16, prelude::*};
 
 /// The most columns of a block: fewer cells lie across the borders of wide blocks.

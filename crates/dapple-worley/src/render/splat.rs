@@ -15,6 +15,7 @@ use crate::Metric;
 use crate::fixed::{MOST_AXES, STEP, STEP_BITS};
 use crate::metric::{Additive, Exact, Longest, Measure, Powers};
 use crate::sink::{ValueLanes, Values};
+use dapple_raster::simd::{baseline, dispatch};
 use fearless_simd::{Level, f32x4, f32x16, i32x4, prelude::*};
 
 /// By how much of a pixel a pixel may lie beside its place: well below what [`SURE`] leaves.

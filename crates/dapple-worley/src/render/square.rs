@@ -15,6 +15,7 @@ use crate::metric::{Additive, Exact, Longest, Measure, Powers, Squares};
 use crate::sink::{Tone, Values};
 use crate::{LIMIT, Metric};
 use core::ops::Range;
+use dapple_raster::simd::{baseline, dispatch};
 
 /// A distance that hardly any of the nearest points exceeds.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,7 @@
 //! Tests of what the search is made of.
 
 use super::*;
+use dapple_raster::simd::dispatch;
 
 #[test]
 fn sums_of_squares_never_exceed_the_threshold() {
