@@ -50,14 +50,7 @@ mod frame;
 mod overlap;
 
 mod fourier;
-mod periodic;
-mod poisson;
 mod sines;
-mod spline_project;
-
-mod feather;
-mod mirror;
-mod soft_cut;
 
 mod report;
 
@@ -86,19 +79,15 @@ pub use corner::CornerTiles;
 pub use crossfade::Crossfade;
 pub use disturb::Disturbance;
 pub use error::{TileError, TileErrorKind};
-pub use feather::Feather;
 pub use map::Map;
 pub use match_borders::{BorderSource, MatchBorders};
-pub use poisson::WrapGradient;
 pub use pyramid::Pyramid;
 pub use rank::rank_equalize;
 pub use repeat::{repeat, repeat_into};
 pub use report::{
     ChannelReport, DetailKept, Fault, Seam, SeamOptions, SeamRatio, SeamReport, SeamReports,
 };
-pub use seamless::{Method, Seamless};
-pub use soft_cut::SoftCut;
-pub use spline_project::{Basis, Pixels, SplineProject};
+pub use seamless::*;
 pub use weighting::Weighting;
 
 pub use dapple_color as color;

@@ -1,10 +1,20 @@
 //! The front door: an image in, a tile out, by one of several methods.
 
+mod feather;
+mod mirror;
+mod periodic;
+mod poisson;
+mod soft_cut;
+mod spline_project;
+
 use crate::map::{check_planes, color_from_planes, color_planes};
-use crate::{Feather, Map, SoftCut, SplineProject, TileError, TileErrorKind, WrapGradient};
-use crate::{feather, mirror, periodic, poisson, soft_cut, spline_project};
+use crate::{Map, TileError, TileErrorKind};
 use dapple_color::LinearRgb;
 use dapple_raster::Raster;
+pub use feather::Feather;
+pub use poisson::WrapGradient;
+pub use soft_cut::SoftCut;
+pub use spline_project::{Basis, Pixels, SplineProject};
 
 /// How an image is made to repeat.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

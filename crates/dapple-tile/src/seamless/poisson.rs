@@ -9,11 +9,11 @@
 //! Along an axis that does not repeat, the image ends as it likes.
 //!
 //! Inside, the source meets the field already; what is left is the error across the wrap. So the result is the source
-//! less the smooth part of [`periodic`](crate::periodic), with that error in place of the jump. With
+//! less the smooth part of [`periodic`](super::periodic), with that error in place of the jump. With
 //! [`WrapGradient::Zero`] error and jump are the same, and so are both methods, bit for bit.
 
+use super::periodic::{border, jumps, without_jumps};
 use crate::TileError;
-use crate::periodic::{border, jumps, without_jumps};
 use dapple_raster::Raster;
 
 dapple_raster::named! {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::fourier::BAND;
-use crate::periodic::Smooth;
+use crate::seamless::periodic::Smooth;
 use crate::{Method, Seamless};
 use proptest::prelude::*;
 
