@@ -5,6 +5,7 @@ mod docs;
 mod examples;
 mod figures;
 mod golden;
+mod how_to_add;
 mod periods;
 mod readme;
 mod recipe_code;

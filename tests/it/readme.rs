@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 const README: &str = include_str!("../../README.md");
 
-fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 

@@ -36,6 +36,9 @@ pub enum Metric {
 const LARGEST_EXPONENT: f32 = 10.0;
 
 impl Metric {
+    /// The names of the metrics without an exponent, as recipes and the command have them.
+    pub const NAMES: [&'static str; 3] = ["euclidean", "manhattan", "chebyshev"];
+
     pub(crate) fn check(self) -> Result<Self, WorleyError> {
         match self {
             Self::Minkowski(p) if !(1.0..=LARGEST_EXPONENT).contains(&p) => {
@@ -154,6 +157,32 @@ impl Metric {
     #[inline]
     pub(crate) fn tightened(self, bound: f32) -> f32 {
         bound / self.looseness()
+    }
+}
+
+/// The loops that draw with a metric.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kernel {
+    /// Those of [`Squares`].
+    Squares,
+    /// Those of [`Additive`].
+    Sum,
+    /// Those of [`Longest`].
+    Longest,
+    /// Those of [`Powers`], which take so long that they are compiled for the least processor only.
+    Powers(f32),
+}
+
+impl Metric {
+    /// The loops that draw with this metric.
+    #[inline]
+    pub(crate) fn kernel(self) -> Kernel {
+        match self {
+            Self::Euclidean => Kernel::Squares,
+            Self::Manhattan => Kernel::Sum,
+            Self::Chebyshev => Kernel::Longest,
+            Self::Minkowski(p) => Kernel::Powers(p),
+        }
     }
 }
 

@@ -64,7 +64,7 @@ pub(crate) struct Args {
     period: Option<Extent>,
 
     /// How distances are measured: by the straight line, along the axes, or by the longer of the two.
-    #[arg(long, value_name = "METRIC", default_value = "euclidean", value_parser = Word::<Metric>::of(&METRICS), help_heading = "Texture")]
+    #[arg(long, value_name = "METRIC", default_value = "euclidean", value_parser = Word::<Metric>::of(&Metric::NAMES), help_heading = "Texture")]
     metric: Metric,
 
     /// The exponent of the Minkowski metric, from 1 to 10; takes the place of --metric.
@@ -141,9 +141,6 @@ pub(crate) struct Args {
     #[serde(skip)]
     image: ImageArgs,
 }
-
-/// The metrics without an exponent: the straight line, along the axes, and the longer of the two.
-const METRICS: [&str; 3] = ["euclidean", "manhattan", "chebyshev"];
 
 /// Draws the cells.
 ///

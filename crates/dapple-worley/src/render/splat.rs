@@ -13,7 +13,7 @@ use super::{BLOCK_COLUMNS, LANES};
 use crate::LIMIT;
 use crate::Metric;
 use crate::fixed::{MOST_AXES, STEP, STEP_BITS};
-use crate::metric::{Additive, Exact, Longest, Measure, Powers};
+use crate::metric::{Additive, Exact, Kernel, Longest, Measure, Powers};
 use crate::sink::{ValueLanes, Values};
 use dapple_raster::simd::{baseline, dispatch};
 use fearless_simd::{Level, f32x4, f32x16, i32x4, prelude::*};
@@ -144,8 +144,8 @@ impl Splat {
         let rows = &lines[self.row_axis];
         if tiles == NEAR {
             let mut points = core::mem::take(&mut bins.near);
-            match metric {
-                Metric::Minkowski(p) => {
+            match metric.kernel() {
+                Kernel::Powers(p) => {
                     baseline!(simd => bins.sort(simd, Powers(p), &mut points));
                 }
                 _ => dispatch!(block.level, simd => bins.sort(simd, Exact(metric), &mut points)),
@@ -155,8 +155,8 @@ impl Splat {
             bins.near = points;
         } else {
             let mut points = core::mem::take(&mut bins.wide);
-            match metric {
-                Metric::Minkowski(p) => {
+            match metric.kernel() {
+                Kernel::Powers(p) => {
                     baseline!(simd => bins.sort(simd, Powers(p), &mut points));
                 }
                 _ => dispatch!(block.level, simd => bins.sort(simd, Exact(metric), &mut points)),
@@ -211,16 +211,20 @@ fn fill_block<const TILES: usize>(
             unknown: &mut unknown[..n_tiles],
         };
         let level = block.level;
-        match runs.metric {
-            Metric::Minkowski(p) => {
+        match runs.metric.kernel() {
+            Kernel::Powers(p) => {
                 let measure = Powers(p);
                 baseline!(simd => fill::<_, _, LIMIT, TILES, true>(simd, measure, runs, &mut tiles));
             }
-            Metric::Chebyshev => fill_by_depth::<_, TILES, true>(level, Longest, runs, &mut tiles),
-            metric if block.bands[0].rows.len() == 2 => {
-                fill_by_depth::<_, TILES, false>(level, Additive(metric), runs, &mut tiles);
+            Kernel::Longest => fill_by_depth::<_, TILES, true>(level, Longest, runs, &mut tiles),
+            _ if block.bands[0].rows.len() == 2 => {
+                let measure = Additive(runs.metric);
+                fill_by_depth::<_, TILES, false>(level, measure, runs, &mut tiles);
             }
-            metric => fill_by_depth::<_, TILES, true>(level, Additive(metric), runs, &mut tiles),
+            _ => {
+                let measure = Additive(runs.metric);
+                fill_by_depth::<_, TILES, true>(level, measure, runs, &mut tiles);
+            }
         }
         if !is_whole {
             for (pixels, out) in whole_tiles.iter().zip(&mut *out) {

@@ -11,7 +11,7 @@ use super::kernel::{Rows, TILE};
 use super::track::{Found, TrackedRows};
 use super::{Basis, LANES, Output};
 use crate::fixed::{MOST_AXES, STEP, STEPS};
-use crate::metric::{Additive, Exact, Longest, Measure, Powers, Squares};
+use crate::metric::{Additive, Exact, Kernel, Longest, Measure, Powers, Squares};
 use crate::sink::{Tone, Values};
 use crate::{LIMIT, Metric};
 use core::ops::Range;
@@ -253,8 +253,8 @@ impl Block<'_> {
         let (list, square, tile) = (&mut memory.list, &mut memory.square, &mut memory.tile);
         let dominance = &mut memory.dominance;
         (dominance.depth, dominance.distance) = (plan.depth, plan.guess.distance);
-        match metric {
-            Metric::Minkowski(p) => baseline!(simd => {
+        match metric.kernel() {
+            Kernel::Powers(p) => baseline!(simd => {
                 let measure = Powers(p);
                 list.cull(simd, Cull { measure, pixels: &moved, keep }, points);
             }),
@@ -277,12 +277,13 @@ impl Block<'_> {
     /// Fills the pixels of a tile from the candidates of its square.
     fn tile(&self, area: &Area, square: &Square, outs: &mut [Output<'_>], memory: &mut Memory) {
         let plan = square.plan;
-        match plan.metric {
-            Metric::Minkowski(p) => {
+        match plan.metric.kernel() {
+            Kernel::Powers(p) => {
                 baseline!(simd => memory.candidates(simd, Powers(p), area, square));
             }
-            metric => {
-                dispatch!(self.level, simd => memory.candidates(simd, Exact(metric), area, square));
+            _ => {
+                let exact = Exact(plan.metric);
+                dispatch!(self.level, simd => memory.candidates(simd, exact, area, square));
             }
         }
         let is_values = matches!(outs[0], Output::Values(..));
@@ -331,18 +332,18 @@ impl Block<'_> {
         let metric = part.square.plan.metric;
         if let Output::Values(values, out) = out {
             let rows = self.rows_of(part, values, memory);
-            return match metric {
-                Metric::Euclidean => self.fill_values(Squares, part, &rows, out),
-                Metric::Manhattan => self.fill_values(Additive(metric), part, &rows, out),
-                Metric::Chebyshev => self.fill_values(Longest, part, &rows, out),
-                Metric::Minkowski(p) => {
+            return match metric.kernel() {
+                Kernel::Squares => self.fill_values(Squares, part, &rows, out),
+                Kernel::Sum => self.fill_values(Additive(metric), part, &rows, out),
+                Kernel::Longest => self.fill_values(Longest, part, &rows, out),
+                Kernel::Powers(p) => {
                     baseline!(simd => rows.fill::<_, _, LIMIT>(simd, Powers(p), out))
                 }
             };
         }
-        match metric {
-            Metric::Chebyshev => self.fill_tracked(Longest, part, out, memory),
-            metric => self.fill_tracked(Additive(metric), part, out, memory),
+        match metric.kernel() {
+            Kernel::Longest => self.fill_tracked(Longest, part, out, memory),
+            _ => self.fill_tracked(Additive(metric), part, out, memory),
         }
     }
 
