@@ -1,13 +1,13 @@
 //! Options as data: written and read again, they are the same, and their names are those that files hold.
 
-use crate::{Combination, Metric, Octaves, Profile, RadialCells, Scatter};
+use dapple_worley::{Combination, Metric, Octaves, Profile, RadialCells, Scatter};
 use serde::{Serialize, de::DeserializeOwned};
 
 fn is_kept<T: Serialize + DeserializeOwned + PartialEq + core::fmt::Debug>(option: T, text: &str) {
     let written = serde_json::to_string(&option).expect("options can be written");
     assert_eq!(written, text, "{option:?}");
     let read: T = serde_json::from_str(&written).expect("what was written can be read");
-    assert_eq!(read, option);
+    assert_eq!(read, option, "{text}");
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! What holds for every metric, scatter, period and seed.
 
 use super::doors::{RANKS, agrees_with_oracle, reach_of, sample_by_every_door};
-use crate::{
-    Axes, Cellular, Combination, FeatureView, Metric, Plane, Scatter, Space, Vector, Worley,
-};
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
+use dapple_worley::{
+    Axes, Cellular, Combination, FeatureView, Metric, Plane, Scatter, Space, Vector, Worley,
+};
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 
@@ -552,7 +552,7 @@ fn positions_just_below_a_whole_number_are_those_of_the_last_step_or_of_the_numb
             .flat_map(|worley| [0.0, 1.0, -1.0, 3.0, 4_294_967_296.0].map(|whole| (worley, whole)))
         {
             let below = f64::next_down(whole);
-            let step = f64::from(crate::RESOLUTION);
+            let step = f64::from(dapple_worley::RESOLUTION);
             // Rounded down to a step, unless the way from the lower corner of its cell is rounded to a whole cell.
             let rounded = if below - below.floor() < 1.0 {
                 whole - step

@@ -3,8 +3,8 @@
 //! Seeds are fixed, so every test always passes or always fails. The bounds are those that true randomness exceeds one
 //! time in 10^4.
 
-use crate::{Axes, Metric, Scatter, Space, Vector, Worley, WorleyError};
 use dapple_hash::{Seed, hash1, unit_f64};
+use dapple_worley::{Axes, Metric, Scatter, Space, Vector, Worley, WorleyError};
 
 /// The quantile of the normal distribution for one in 10^4.
 const QUANTILE: f64 = 3.719;
@@ -394,7 +394,7 @@ fn unclamped_scatter_has_no_direction() -> Result<(), WorleyError> {
     let scatter = Scatter::Unclamped { density: 2.0 };
     let n = 60_000;
     let worley = Worley::<2>::new(Seed(78)).with_scatter(scatter)?;
-    let texture = worley.combine(crate::Combination::F1);
+    let texture = worley.combine(dapple_worley::Combination::F1);
     let ways: Vec<_> = (0..n)
         .map(|index| texture.gradient(anywhere::<2>(index)))
         .collect();

@@ -1,9 +1,9 @@
 //! Textures at many scattered positions beside one position at a time.
 
 use super::oracle::{METRICS, SCATTERS, position};
-use crate::{Combination, OctaveSeeds, Octaves, Worley, Worley2, WorleyError};
 use dapple_hash::Seed;
 use dapple_raster::Field;
+use dapple_worley::{Combination, OctaveSeeds, Octaves, Worley, Worley2, WorleyError};
 use glam::DVec2;
 
 /// Positions near and far, a few on borders of cells, and some without a place: no whole number of groups.

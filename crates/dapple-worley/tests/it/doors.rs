@@ -1,9 +1,10 @@
 //! One position through every door, and beside the oracle.
 
 use super::oracle::brute_force;
-use crate::fixed::STEP;
-use crate::{Axes, Combination, Feature, FeatureView, Plane, Space, Vector, Worley, WorleyError};
 use dapple_raster::{Raster, Window};
+use dapple_worley::{
+    Axes, Combination, Feature, FeatureView, Plane, RESOLUTION, Space, Vector, Worley, WorleyError,
+};
 use glam::DVec2;
 
 pub(super) const RANKS: [Combination; 4] = [
@@ -158,8 +159,8 @@ fn leads_to_its_point<const N: usize>(
     let corner = at.map(f64::floor);
     let local: [f64; N] = core::array::from_fn(|axis| {
         // A position is rounded down to steps.
-        let steps = ((at[axis] - corner[axis]) / f64::from(STEP)).floor();
-        steps * f64::from(STEP) - vector[axis]
+        let steps = ((at[axis] - corner[axis]) / f64::from(RESOLUTION)).floor();
+        steps * f64::from(RESOLUTION) - vector[axis]
     });
     let cell = core::array::from_fn(|axis| corner[axis] as i64 + local[axis].floor() as i64);
     let offset: [f64; N] = local.map(|part| part - part.floor());

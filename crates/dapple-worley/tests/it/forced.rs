@@ -5,8 +5,8 @@
 
 use super::doors::{agrees_with_oracle, reach_of, sample_by_every_door};
 use super::oracle::position;
-use crate::{Axes, Feature, Metric, Scatter, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
+use dapple_worley::{Axes, Feature, Metric, Scatter, Space, Vector, Worley, WorleyError};
 
 /// How many cells away a feature point is, along its furthest axis.
 fn cells_away<const N: usize>(at: [f64; N], feature: &Feature<Vector<N>>) -> i64

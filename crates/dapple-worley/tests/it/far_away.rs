@@ -2,12 +2,12 @@
 
 use super::doors::{RANKS, agrees_with_oracle, sample_by_every_door};
 use super::oracle::{METRICS, SCATTERS};
-use crate::{
+use dapple_hash::Seed;
+use dapple_raster::{Field, Raster, Window};
+use dapple_worley::{
     Axes, Combination, FeatureView, Octaves, Plane, Radial, RadialCells, Space, Vector, Worley,
     WorleyError,
 };
-use dapple_hash::Seed;
-use dapple_raster::{Field, Raster, Window};
 use glam::{DVec2, DVec3};
 
 /// Walks along the first axis in steps of 1/64 and compares F1 to F4 with those of the step before.

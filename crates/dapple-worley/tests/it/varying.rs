@@ -2,9 +2,9 @@
 
 use super::doors::{RANKS, agrees_with_oracle, sample_by_every_door};
 use super::oracle::{METRICS, position};
-use crate::{Axes, Plane, Scatter, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
+use dapple_worley::{Axes, Plane, Scatter, Space, Vector, Worley, WorleyError};
 use glam::DVec2;
 
 /// From the least density to the largest and back, several times within 40 cells, and cut off at both ends.

@@ -4,11 +4,11 @@
 //! lines that a failing test shows.
 
 use super::oracle::{METRICS, SCATTERS};
-use crate::{
+use dapple_hash::Seed;
+use dapple_worley::{
     Axes, Combination, Feature, FeatureSet, Metric, OctaveSeeds, Octaves, Radial, RadialCells,
     Scatter, Space, Vector, Worley, WorleyError,
 };
-use dapple_hash::Seed;
 
 fn line<const N: usize>(features: &[Feature<Vector<N>>; 4]) -> String
 where
@@ -116,7 +116,7 @@ fn value_stability_cell_points() -> Result<(), WorleyError> {
         Axes: Space<N>,
     {
         let points = worley.cell_points(cell).into_iter().take(2);
-        let line = |point: crate::CellPoint<Vector<N>>| {
+        let line = |point: dapple_worley::CellPoint<Vector<N>>| {
             let offset: [f64; N] = point.offset.into();
             // Steps of a cell.
             let steps = offset.map(|part| (part * f64::from(1 << 21)).to_string());

@@ -1,11 +1,11 @@
 //! Pictures where points are thinned, and where slices are filled together.
 
-use crate::{
+use dapple_hash::Seed;
+use dapple_raster::{Field, Raster, RasterErrorKind, Window};
+use dapple_worley::{
     Axes, Combination, FeatureView, Metric, Octaves, Plane, Scatter, Space, Vector, Worley,
     Worley2, Worley3, Worley4, WorleyError,
 };
-use dapple_hash::Seed;
-use dapple_raster::{Field, Raster, RasterErrorKind, Window};
 use glam::{DVec2, DVec3, DVec4};
 
 /// A position that is as near to its nearest point as to the second one, to within a hair: on the way from `at` to

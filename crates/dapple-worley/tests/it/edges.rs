@@ -3,11 +3,10 @@
 use super::bits::windows;
 use super::oracle::{SCATTERS, brute_force_vectors};
 use super::sheet::middle_ground;
-use crate::render::Output;
-use crate::{Axes, Plane, Space, Worley, WorleyError};
 use dapple_hash::Seed;
 use dapple_raster::simd::for_every_level;
 use dapple_raster::{Raster, Window};
+use dapple_worley::{Axes, Plane, Space, Worley, WorleyError};
 use glam::DVec2;
 
 fn picture_equals_distance<const N: usize>(
@@ -30,16 +29,16 @@ where
     let edges = worley.edge_distances();
     for_every_level(|level| {
         let mut raster = Raster::filled(window.size, -1.0).unwrap();
-        let picture = edges.worley.feature_picture(plane, window);
-        let bands = picture.bands(Some(raster.view_mut()));
-        picture.render_at(level, bands.map(Output::Edges).collect());
+        edges
+            .render_plane(plane, window, raster.view_mut())
+            .unwrap();
         let found = positions.iter().zip(raster.pixels()).zip(&expected);
         for ((at, found), expected) in found {
             assert_eq!(
                 found.to_bits(),
                 expected.to_bits(),
                 "{found} for {expected} at {at:?}, {:?}, {window:?}, {level:?}",
-                worley.scatter
+                worley.scatter()
             );
         }
     });
@@ -92,7 +91,7 @@ fn edge_picture_equals_edge_distance_on_edges() -> Result<(), WorleyError> {
 
 #[test]
 fn edge_picture_is_zero_on_the_edges_of_a_lattice() -> Result<(), WorleyError> {
-    let jittered = crate::Scatter::Jittered { jitter: 0.0 };
+    let jittered = dapple_worley::Scatter::Jittered { jitter: 0.0 };
     let worley = Worley::<2>::new(Seed(24)).with_scatter(jittered)?;
     // Pixels lie on the borders of unit cells, which are the edges.
     let window = Window::new(DVec2::splat(-1.0 / 64.0), DVec2::splat(4.0), [128; 2])?;

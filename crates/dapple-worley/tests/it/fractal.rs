@@ -1,12 +1,12 @@
 //! Fractal sums: doors, oracle, gradients, periods and ranges.
 
 use super::oracle::{METRICS, position};
-use crate::{
+use dapple_hash::Seed;
+use dapple_raster::{Field, Raster, Window};
+use dapple_worley::{
     Axes, Cellular, Combination, Fractal, Metric, OctaveSeeds, Octaves, Plane, Scatter, Space,
     Vector, Worley, WorleyError, WorleyErrorKind,
 };
-use dapple_hash::Seed;
-use dapple_raster::{Field, Raster, Window};
 use glam::DVec2;
 
 const ODD: Octaves = Octaves {

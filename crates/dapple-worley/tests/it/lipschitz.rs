@@ -4,10 +4,9 @@
 
 use super::doors::RANKS;
 use super::oracle::{METRICS, SCATTERS, position};
-use crate::fixed::STEP;
-use crate::{Axes, Metric, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
+use dapple_worley::{Axes, Metric, Plane, RESOLUTION, Space, Vector, Worley, WorleyError};
 use glam::DVec2;
 
 /// How far rounding may move the difference of two distances: a key is rounded a few times and its root once, and
@@ -108,7 +107,7 @@ fn cross<const N: usize>(worley: &Worley<N>, border: i64, index: i64)
 where
     Axes: Space<N>,
 {
-    let step = f64::from(STEP);
+    let step = f64::from(RESOLUTION);
     for axis in 0..N {
         let mut start = position::<N>(Seed(37), index, 50.0);
         start[axis] = border as f64 - 2.0 * step;

@@ -1,7 +1,7 @@
 //! F1 to F4 beside all points of a wide neighborhood, sorted.
 
-use crate::{Axes, Metric, Scatter, Space, Worley, WorleyError};
 use dapple_hash::{Seed, hash1, unit_f64};
+use dapple_worley::{Axes, Metric, Scatter, Space, Worley, WorleyError};
 
 /// All feature points within `reach` cells, as distances and ids, nearest first: in double precision.
 pub(super) fn brute_force<const N: usize>(
@@ -21,7 +21,7 @@ where
 }
 
 /// The ways from all feature points within `reach` cells, and their ids.
-fn vectors<const N: usize>(
+pub(super) fn vectors<const N: usize>(
     worley: &Worley<N>,
     position: [f64; N],
     reach: i64,
@@ -56,6 +56,7 @@ fn length<const N: usize>(metric: Metric, vector: [f64; N]) -> f64 {
             let p = f64::from(p);
             libm::pow(parts.iter().map(|&part| libm::pow(part, p)).sum(), 1.0 / p)
         }
+        other => panic!("the oracle does not know {other:?}"),
     }
 }
 
@@ -77,7 +78,7 @@ pub(super) const SCATTERS: [Scatter; 6] = [
 ];
 
 /// As [`brute_force`], in the Euclidean metric, with the ways from the points instead of their ids.
-pub(crate) fn brute_force_vectors<const N: usize>(
+pub(super) fn brute_force_vectors<const N: usize>(
     worley: &Worley<N>,
     position: [f64; N],
     reach: i64,
@@ -94,7 +95,7 @@ where
 }
 
 /// A position in cells, a multiple of 2^-21, so that nothing is rounded.
-pub(crate) fn position<const N: usize>(seed: Seed, index: i64, spread: f64) -> [f64; N] {
+pub(super) fn position<const N: usize>(seed: Seed, index: i64, spread: f64) -> [f64; N] {
     core::array::from_fn(|axis| {
         let unit = unit_f64(hash1(seed.child("position", axis as u64), [index], 0));
         let steps = (unit - 0.5) * spread * f64::from(1 << 21);

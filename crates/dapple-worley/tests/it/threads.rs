@@ -1,9 +1,9 @@
 //! Any number of threads gives the same bits.
 
 use super::oracle::METRICS;
-use crate::{Combination, FeatureView, Octaves, Plane, Worley, WorleyError};
 use dapple_hash::Seed;
 use dapple_raster::{Raster, Window};
+use dapple_worley::{Combination, FeatureView, Octaves, Plane, Worley, WorleyError};
 use glam::DVec2;
 
 /// What a number of threads makes of each of several pictures, the first of which is that of one thread.
