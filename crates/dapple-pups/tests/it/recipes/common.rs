@@ -1,8 +1,8 @@
 //! What all recipes promise: they repeat, windows are crops, doors agree, threads do not matter.
 
-use crate::recipes::*;
-use crate::{ReferenceImage, Texture};
 use dapple_hash::Seed;
+use dapple_pups::*;
+use dapple_pups::{ReferenceImage, Texture};
 use dapple_raster::{Field, Raster, Window};
 use glam::DVec2;
 

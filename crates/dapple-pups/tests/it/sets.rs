@@ -1,9 +1,9 @@
 //! Nets to test with.
 
-use crate::{AxialWeight, Orientation, Pups, PupsOptions, Texture};
 use dapple_graph::{Direction, Graph, GraphError, delaunay, k_nearest, yao};
 use dapple_hash::{Seed, hash1, unit_f32, unit_f64};
 use dapple_points::{Domain, PointIdx, PointSet, poisson_disk, white_noise};
+use dapple_pups::{AxialWeight, Orientation, Pups, PupsOptions, Texture};
 use glam::{DVec2, DVec3};
 
 /// A name, points, a graph over them, and options.

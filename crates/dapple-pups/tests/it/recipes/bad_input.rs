@@ -1,9 +1,9 @@
 //! Every bad input is refused with its limit.
 
 use super::common::paper_window;
-use crate::*;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointSet, poisson_disk};
+use dapple_pups::*;
 use dapple_raster::{Field, Ramp, Raster, Varying};
 use glam::{DVec2, DVec3};
 

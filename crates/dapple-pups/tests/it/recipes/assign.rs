@@ -1,9 +1,9 @@
 //! Attributes: values, labels, orientations, groups.
 
-use crate::graph::{Graph, delaunay};
-use crate::*;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointIdx, PointSet, poisson_disk, white_noise};
+use dapple_pups::graph::{Graph, delaunay};
+use dapple_pups::*;
 use dapple_raster::{Ramp, Raster};
 use glam::{DVec2, DVec3};
 

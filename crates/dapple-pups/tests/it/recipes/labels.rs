@@ -1,9 +1,9 @@
 //! Cells, cows, layers of cells, reference images, colors.
 
 use super::common::paper_window;
-use crate::*;
 use dapple_hash::Seed;
 use dapple_points::Domain;
+use dapple_pups::*;
 use dapple_raster::{Field, Raster};
 use glam::DVec2;
 

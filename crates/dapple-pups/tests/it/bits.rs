@@ -1,11 +1,9 @@
 //! The same bits through every door, at every SIMD level, for any number of threads and in any window.
 
 use super::sets::{Case, cases, values};
-use crate::Pups;
-use crate::render::render_at;
-use crate::texture::Mean;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointIdx, poisson_disk, white_noise};
+use dapple_pups::Pups;
 use dapple_raster::simd::for_every_level;
 use dapple_raster::{Field, Raster, Window};
 use glam::DVec2;
@@ -100,20 +98,11 @@ fn vectors_are_scalars_side_by_side() {
 #[test]
 fn every_simd_level_gives_the_same_bits() {
     for case in cases() {
-        let pups = case.pups();
-        let values = case.values();
+        let texture = case.texture();
         let window = window(&case);
-        let reference = bits(&case.texture().to_raster(&window).unwrap());
+        let reference = bits(&texture.to_raster(&window).unwrap());
         for_every_level(|level| {
-            let mut raster = Raster::filled(window.size, 0.0).unwrap();
-            let sink = Mean::<1>::new(&values, 1, 0);
-            render_at(
-                level,
-                &pups.net,
-                &window,
-                &sink,
-                &mut raster.view_mut().rows_mut().collect::<Vec<_>>(),
-            );
+            let raster = texture.to_raster(&window).unwrap();
             assert_eq!(bits(&raster), reference, "{} at {level:?}", case.name);
         });
     }
@@ -131,15 +120,7 @@ fn supports_of_any_size_in_pixels_give_the_bits_of_single_positions() {
         let window = Window::new(DVec2::NEG_ONE, DVec2::splat(2.0), [side, side / 2]).unwrap();
         let sampled = Raster::from_window(&window, |position| texture.sample(position)).unwrap();
         for_every_level(|level| {
-            let mut raster = Raster::filled(window.size, 0.0).unwrap();
-            let sink = Mean::<1>::new(texture.values(), 1, 0);
-            render_at(
-                level,
-                &texture.pups().net,
-                &window,
-                &sink,
-                &mut raster.view_mut().rows_mut().collect::<Vec<_>>(),
-            );
+            let raster = texture.to_raster(&window).unwrap();
             assert_eq!(bits(&raster), bits(&sampled), "side {side} at {level:?}");
         });
     }

@@ -1,8 +1,8 @@
 //! What grows from left to right does, and from top to bottom it repeats.
 
 use super::common::{digest, paper_window};
-use crate::recipes::*;
 use dapple_hash::Seed;
+use dapple_pups::*;
 use dapple_raster::{Field, Raster, Window};
 use glam::DVec2;
 

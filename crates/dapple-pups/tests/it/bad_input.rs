@@ -1,9 +1,9 @@
 //! Every bad input is refused with its limit.
 
-use crate::{AxialWeight, Orientation, Pups, PupsErrorKind, PupsOptions};
 use dapple_graph::delaunay;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointSet, white_noise};
+use dapple_pups::{AxialWeight, Orientation, Pups, PupsErrorKind, PupsOptions};
 use dapple_raster::{Field, Raster, Window};
 use glam::{DVec2, DVec3};
 

@@ -2,10 +2,10 @@
 
 use super::oracle;
 use super::sets::{cases, positions, values};
-use crate::{Orientation, Pups, PupsOptions};
 use dapple_graph::delaunay;
 use dapple_hash::Seed;
 use dapple_points::{Domain, poisson_disk};
+use dapple_pups::{Orientation, Pups, PupsOptions};
 use dapple_raster::Window;
 use glam::{DVec2, DVec3};
 

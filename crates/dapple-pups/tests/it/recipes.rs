@@ -3,7 +3,6 @@
 mod assign;
 mod bad_input;
 mod common;
-mod giraffe;
 mod labels;
 mod noise;
 mod progression;

@@ -1,9 +1,9 @@
 //! Noise, its octaves, folding and turbulence.
 
 use super::common::paper_window;
-use crate::recipes::*;
-use crate::{PupsErrorKind, points::Domain};
 use dapple_hash::Seed;
+use dapple_pups::*;
+use dapple_pups::{PupsErrorKind, points::Domain};
 use dapple_raster::{Field, Ramp, Varying};
 use glam::DVec2;
 

@@ -1,11 +1,15 @@
 //! Spots stay apart.
 
-use super::common::paper_window;
-use crate::recipes::*;
+use crate::*;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointIdx, PointSet};
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
+
+/// The window of `size` pixels over the paper's torus.
+fn paper_window(size: u32) -> Window {
+    Window::new(DVec2::NEG_ONE, DVec2::splat(2.0), [size; 2]).unwrap()
+}
 
 /// The spot that each control point belongs to: its center's index.
 fn owners(labels: &[u32], options: &SpaceGiraffeOptions, seed: Seed) -> (PointSet, Vec<usize>) {

@@ -1,7 +1,7 @@
 //! Equations 1 to 4 word for word, in double precision, over all control points and many images of each.
 
 use super::sets::{Case, cases, positions};
-use crate::{AxialWeight, PupsOptions};
+use dapple_pups::{AxialWeight, PupsOptions};
 use dapple_raster::Field;
 use glam::{DVec2, DVec3};
 
@@ -53,6 +53,7 @@ fn axial_weight(weight: AxialWeight, p: f64) -> f64 {
             let swing = libm::cos(f64::from(dips) * libm::acos(1.0 - 2.0 * p));
             cubic * (1.0 - f64::from(depth) * libm::pow(1.0 - swing * swing, 2.0))
         }
+        other => panic!("the oracle does not know {other:?}"),
     }
 }
 
