@@ -23,18 +23,21 @@ pub fn level() -> Level {
     }
 }
 
-/// The levels that this machine has, from the least to the best.
+/// The levels that this machine has, from the least to the best, looked up once.
 #[cold]
-fn levels() -> Vec<Level> {
-    let mut levels = vec![Level::baseline()];
-    let best = Level::new();
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        levels.extend(best.as_sse4_2().map(Level::Sse4_2));
-        levels.extend(best.as_avx2().map(Level::Avx2));
-    }
-    levels.push(best);
-    levels
+fn levels() -> &'static [Level] {
+    static LEVELS: OnceLock<Vec<Level>> = OnceLock::new();
+    LEVELS.get_or_init(|| {
+        let mut levels = vec![Level::baseline()];
+        let best = Level::new();
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        {
+            levels.extend(best.as_sse4_2().map(Level::Sse4_2));
+            levels.extend(best.as_avx2().map(Level::Avx2));
+        }
+        levels.push(best);
+        levels
+    })
 }
 
 /// Calls `check` for every level that this machine has, from the least to the best: what tests of equal bits do.
@@ -45,7 +48,7 @@ pub fn for_every_level(mut check: impl FnMut(Level)) {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     // After a check that failed, the next one begins anew.
     let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
-    for (index, level) in levels().into_iter().enumerate() {
+    for (index, &level) in levels().iter().enumerate() {
         CHOSEN.store(index, Ordering::Relaxed);
         check(level);
     }
