@@ -245,8 +245,7 @@ fn many_positions_equal_single_ones_bit_for_bit() -> Result<(), WorleyError> {
     many_equal_single_ones::<4, 3>(&Worley::<4>::new(Seed(4)), 1e3)
 }
 
-/// The four nearest of all feature points nearby, in exact steps: their ways are rounded once, to `f32`, as those of the
-/// search.
+/// The feature points within `reach` cells, nearest first. Their ways are exact and are rounded once, to `f32`.
 fn nearest_of_all<const N: usize>(
     worley: &Worley<N>,
     at: [f64; N],
@@ -273,12 +272,13 @@ fn nearest_points_are_those_of_all_points_bit_for_bit() -> Result<(), WorleyErro
         Axes: Space<N>,
     {
         let reach = reach_of(worley)?;
-        for index in 0..n {
-            let at = position::<N>(Seed(21), index, 1e4);
-            let all = nearest_of_all(worley, at, reach);
-            for_every_level(|level| {
-                let found = worley.sample::<4>(at);
-                for (rank, found) in found.iter().enumerate() {
+        let positions = (0..n).map(|index| position::<N>(Seed(21), index, 1e4));
+        let expected: Vec<_> = positions
+            .map(|at| (at, nearest_of_all(worley, at, reach)))
+            .collect();
+        for_every_level(|level| {
+            for (at, all) in &expected {
+                for (rank, found) in worley.sample::<4>(*at).iter().enumerate() {
                     let (distance, id, vector) = all[rank];
                     assert_eq!(
                         found.distance.to_bits(),
@@ -293,8 +293,8 @@ fn nearest_points_are_those_of_all_points_bit_for_bit() -> Result<(), WorleyErro
                         assert_eq!(found, (id, vector), "{at:?}, {level:?}, {worley:?}");
                     }
                 }
-            });
-        }
+            }
+        });
         Ok(())
     }
     for metric in METRICS {
