@@ -111,7 +111,7 @@ fn features(shell: &Shell) -> anyhow::Result<()> {
         if member.features.iter().any(|feature| feature == "rayon") {
             cmd!(
                 shell,
-                "cargo test --quiet --package {package} --no-default-features --lib"
+                "cargo test --quiet --package {package} --no-default-features --tests"
             )
             .run()?;
         }

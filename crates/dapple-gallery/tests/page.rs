@@ -3,12 +3,16 @@
 //! `page/harness.html` uses the page as a reader does and writes down what it found; the pictures of the page, light and
 //! dark, are looked at here. Without a Chromium (on the `PATH`, or named by the variable `CHROMIUM`) the tests say so and
 //! pass.
+//!
+//! What the text of the page holds is tested here as well: to test it in the library would compile all figures again.
 #![expect(
     clippy::disallowed_methods,
     reason = "a browser is another program, and reads files"
 )]
 
 use dapple_color::LinearRgb;
+use dapple_gallery::figures;
+use dapple_gallery::page::{Entry, Image, html};
 use dapple_image::{Limits, read_image};
 use dapple_raster::Raster;
 use std::collections::BTreeSet;
@@ -51,6 +55,50 @@ const CHECKS: [&str; 8] = [
 
 /// How long a browser may take: the first start on a machine takes tens of seconds.
 const TENTHS_MAX: u32 = 1800;
+
+#[test]
+fn page_names_every_picture_and_loads_nothing_from_elsewhere() {
+    let image = |file: String| Image {
+        file,
+        label: "a < b".into(),
+        note: "seam < 1\n".into(),
+        repeats: [true, false],
+        size: [5, 4],
+    };
+    let entries: Vec<_> = figures()
+        .map(|figure| Entry {
+            figure,
+            images: vec![image(format!("{}.png", figure.name()))],
+            time: Duration::from_micros(1500),
+        })
+        .collect();
+    let page = html(&entries, "../../");
+    for figure in figures() {
+        assert!(
+            page.contains(&format!("src=\"{}.png\"", figure.name())),
+            "no picture of {}",
+            figure.name()
+        );
+        assert!(
+            page.contains(&format!("href=\"../../{}\"", figure.source.path)),
+            "no source of {}",
+            figure.name()
+        );
+    }
+    assert!(
+        page.contains("a &lt; b") && page.contains(">seam &lt; 1</pre>") && page.contains("1 ms"),
+        "label, note or time is missing"
+    );
+    let shell = html(&[], "");
+    for foreign in ["http:", "https:", "\"//", "(//", "@import", "src="] {
+        assert!(!shell.contains(foreign), "the page refers to `{foreign}`");
+    }
+}
+
+#[test]
+fn papers_without_figures_have_no_section() {
+    assert!(!html(&[], "").contains("<section"), "an empty section");
+}
 
 #[test]
 fn page_works_in_a_browser() {

@@ -72,6 +72,3 @@ pub use recipes::{
 };
 pub use texture::{Texture, VectorTexture};
 pub use weight::AxialWeight;
-
-#[cfg(test)]
-mod tests;

@@ -354,3 +354,33 @@ fn clip_support(axes: &[Axis], scale: f64) -> (DVec2, DVec2) {
         DVec2::new(open(max.x), open(max.y)),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Pups, PupsOptions};
+    use dapple_graph::{Direction, Graph, gabriel, k_nearest};
+    use dapple_hash::Seed;
+    use dapple_points::{Domain, PointIdx, white_noise};
+    use glam::DVec2;
+
+    #[test]
+    fn supports_on_the_torus_are_closed_whatever_the_graph() {
+        let points = white_noise(Domain::paper_torus(), 60, Seed(11)).unwrap();
+        let alone: Vec<Vec<PointIdx>> = vec![Vec::new(); 60];
+        let graphs = [
+            k_nearest(&points, 1, Direction::Directed).unwrap(),
+            k_nearest(&points, 3, Direction::Symmetric).unwrap(),
+            gabriel(&points).unwrap(),
+            Graph::from_adjacency(&points, &alone).unwrap(),
+        ];
+        for graph in graphs {
+            let pups = Pups::new(&points, &graph, PupsOptions::default()).unwrap();
+            let instances = pups.net.instances.iter();
+            let widest = instances.map(|instance| instance.max - instance.min);
+            assert!(
+                widest.fold(DVec2::ZERO, DVec2::max).is_finite(),
+                "a support is open"
+            );
+        }
+    }
+}

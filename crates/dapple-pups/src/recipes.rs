@@ -139,6 +139,3 @@ macro_rules! recipes {
         }
     };
 }
-
-#[cfg(test)]
-mod tests;

@@ -29,17 +29,7 @@ const BAND_ROWS: usize = 64;
 ///
 /// `rows` are those of the window, each with as many values as the sink makes of a pixel, times the width.
 pub(crate) fn render<K: Sink>(net: &Net, window: &Window, sink: &K, rows: &mut [&mut [K::Value]]) {
-    render_at(simd::level(), net, window, sink, rows);
-}
-
-/// Renders, as [`render`] does, at a given SIMD level.
-pub(crate) fn render_at<K: Sink>(
-    level: Level,
-    net: &Net,
-    window: &Window,
-    sink: &K,
-    rows: &mut [&mut [K::Value]],
-) {
+    let level = simd::level();
     let xs: Vec<f64> = (0..window.size[0])
         .map(|column| net.local(0, window.column_x(column)))
         .collect();

@@ -6,7 +6,7 @@ use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
 use crate::{Axes, Combination, Plane, Space, Vector, Worley, WorleyError, WorleyErrorKind};
 use dapple_hash::{CellHash, Seed, unit_f64};
-use dapple_raster::{Field, RasterError, RasterViewMut, Window, simd};
+use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
 /// A scalar texture: a combination of F1 to F4 at every position.
@@ -128,7 +128,7 @@ where
             let picture = self.worley.feature_picture(plane, window);
             (picture, self.outputs(&picture, out))
         });
-        render_stack(simd::level(), stack.collect());
+        render_stack(stack.collect());
         Ok(())
     }
 

@@ -67,25 +67,3 @@ pub(crate) fn split(coordinate: f64) -> Option<(i64, i32)> {
 pub(crate) fn cells(steps: i64) -> f32 {
     steps as f32 * STEP
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{Place, STEPS, split};
-
-    #[test]
-    fn places_are_rounded_down_to_steps() {
-        assert_eq!(split(1.5), Some((1, STEPS / 2)));
-        assert_eq!(split(-0.25), Some((-1, STEPS / 4 * 3)));
-        assert_eq!(split(1e9 + 0.5), Some((1_000_000_000, STEPS / 2)));
-        assert_eq!(split(-1e-30), Some((0, 0)), "rounded up to the next cell");
-        assert_eq!(split(-0.0), Some((0, 0)));
-    }
-
-    #[test]
-    fn positions_without_a_cell_have_no_place() {
-        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e19, -1e300] {
-            assert_eq!(Place::new([0.0, bad]), None, "{bad}");
-        }
-        assert!(Place::new([4e18, -4e18]).is_some(), "4e18 is within 2^62");
-    }
-}

@@ -15,7 +15,7 @@ use crate::render::{Output, Picture, render_stack};
 use crate::sink::{Tone, Values};
 use crate::{Axes, Cellular, Plane, Space, Vector, Worley, WorleyError};
 use dapple_hash::Seed;
-use dapple_raster::{Field, RasterError, RasterViewMut, Window, simd};
+use dapple_raster::{Field, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
 /// How many octaves a fractal sum has, and how they differ.
@@ -300,7 +300,7 @@ where
                 let outputs = bands.map(|rows| Output::Values(values, rows));
                 (picture, outputs.collect())
             });
-            render_stack(simd::level(), stack.collect());
+            render_stack(stack.collect());
         }
         let rows = slices.iter_mut().flat_map(|(_, out)| out.rows_mut());
         for value in rows.flatten() {

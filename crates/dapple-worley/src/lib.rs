@@ -93,6 +93,3 @@ pub use set::FeatureSet;
 pub use slice::Slice;
 pub use space::{Axes, Space, Vector};
 pub use worley::{CellPoint, Feature, LIMIT, RESOLUTION, Worley, Worley2, Worley3, Worley4};
-
-#[cfg(test)]
-mod tests;

@@ -120,12 +120,7 @@ impl Picture<'_> {
 
     /// Fills the bands of the window, on all cores where the feature `rayon` is on.
     pub(crate) fn render(&self, bands: Vec<Output<'_>>) {
-        self.render_at(simd::level(), bands);
-    }
-
-    /// As [`render`](Self::render), at a given SIMD level.
-    pub(crate) fn render_at(&self, level: Level, bands: Vec<Output<'_>>) {
-        render_stack(level, vec![(*self, bands)]);
+        render_stack(vec![(*self, bands)]);
     }
 
     /// The coordinates of the columns; those of the picture before, if they are the same.
@@ -190,7 +185,7 @@ impl Picture<'_> {
 const STACK: usize = 16;
 
 /// Fills the bands of pictures of the same basis, frequency and window, on all cores where the feature `rayon` is on.
-pub(crate) fn render_stack<'a>(level: Level, stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
+pub(crate) fn render_stack<'a>(stack: Vec<(Picture<'a>, Vec<Output<'a>>)>) {
     let mut pictures: Vec<(Picture<'a>, Arc<Line>, Vec<Output<'a>>)> = Vec::new();
     for (picture, bands) in stack {
         let before = pictures.last();
@@ -210,6 +205,7 @@ pub(crate) fn render_stack<'a>(level: Level, stack: Vec<(Picture<'a>, Vec<Output
             jobs.push((bands, outs));
         }
     }
+    let level = simd::level();
     parallel::consume_with(jobs, Memory::new, |memory, _, (bands, outs)| {
         render_bands(level, &bands, outs, memory);
     });

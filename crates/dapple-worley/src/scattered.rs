@@ -7,7 +7,6 @@ use crate::sink::Tone;
 use crate::{Axes, Feature, LIMIT, Space, Vector, Worley, WorleyError};
 use core::ops::Range;
 use dapple_raster::simd;
-use fearless_simd::Level;
 
 impl<const N: usize> Worley<N>
 where
@@ -37,21 +36,11 @@ where
         positions: &[Vector<N>],
         features: &mut [[Feature<Vector<N>>; K]],
     ) -> Result<(), WorleyError> {
-        self.sample_many_at(simd::level(), positions, features)
-    }
-
-    /// As [`sample_many`](Self::sample_many), at a given SIMD level.
-    pub(crate) fn sample_many_at<const K: usize>(
-        &self,
-        level: Level,
-        positions: &[Vector<N>],
-        features: &mut [[Feature<Vector<N>>; K]],
-    ) -> Result<(), WorleyError> {
         const { assert!(K >= 1 && K <= LIMIT, "F1 to F4 are there to be asked for") };
         WorleyError::check_length(features.len(), positions.len())?;
         // Hardly faster for three than for four, but as much to compile.
         let depth = if K == 3 { LIMIT } else { K };
-        self.each_group(level, depth, positions, |range, holds, points| {
+        self.each_group(depth, positions, |range, holds, points| {
             let positions = &positions[range.clone()];
             let features = &mut features[range];
             if holds != 0 {
@@ -70,7 +59,7 @@ where
     /// The values of a combination at many positions.
     pub(crate) fn tones(&self, tone: &Tone, positions: &[Vector<N>], values: &mut [f32]) {
         let depth = if tone.depth() <= 2 { 2 } else { LIMIT };
-        self.each_group(simd::level(), depth, positions, |range, holds, points| {
+        self.each_group(depth, positions, |range, holds, points| {
             for (place, index) in range.enumerate() {
                 values[index] = if holds >> place & 1 != 0 {
                     let mut distances = [0.0; LIMIT];
@@ -92,7 +81,7 @@ where
         positions: &[Vector<N>],
         mut put: impl FnMut(usize, f32, u64),
     ) {
-        self.each_group(simd::level(), 2, positions, |range, holds, points| {
+        self.each_group(2, positions, |range, holds, points| {
             let nearest = &points[0];
             for (place, index) in range.enumerate() {
                 if holds >> place & 1 != 0 {
@@ -109,7 +98,6 @@ where
     /// points: 1, 2 or 4 of them.
     fn each_group(
         &self,
-        level: Level,
         depth: usize,
         positions: &[Vector<N>],
         mut found: impl FnMut(Range<usize>, u64, &[Points<N>]),
@@ -123,7 +111,7 @@ where
                     group.positions[axis][place] = position[axis];
                 }
             }
-            let holds = Axes::search_group(self, level, &mut group);
+            let holds = Axes::search_group(self, simd::level(), &mut group);
             let first = index * GROUP;
             found(first..first + positions.len(), holds, group.points());
         }

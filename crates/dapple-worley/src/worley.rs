@@ -7,7 +7,6 @@ use crate::search::{Hit, Name};
 use crate::{Axes, Metric, Scatter, Space, Vector, WorleyError};
 use dapple_hash::{Seed, unit_f32};
 use dapple_raster::simd;
-use fearless_simd::Level;
 use std::sync::Arc;
 
 /// The greatest n of `F_n`.
@@ -273,13 +272,8 @@ where
 
     /// The `K` nearest points of a place.
     pub(crate) fn hits<const K: usize>(&self, place: &Place<N>) -> [Hit<N>; K] {
-        self.hits_at(simd::level(), place)
-    }
-
-    /// As [`hits`](Self::hits), at a given SIMD level.
-    pub(crate) fn hits_at<const K: usize>(&self, level: Level, place: &Place<N>) -> [Hit<N>; K] {
         let mut hits = [Hit::NONE; K];
-        Axes::nearest(self.metric, &self.lattice, level, place, &mut hits);
+        Axes::nearest(self.metric, &self.lattice, simd::level(), place, &mut hits);
         hits
     }
 

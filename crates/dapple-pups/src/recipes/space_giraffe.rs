@@ -123,7 +123,7 @@ pub fn space_giraffe(options: &SpaceGiraffeOptions, seed: Seed) -> Result<LabelT
 
 impl SpaceGiraffeOptions {
     /// The centers and the pairs, and their labels.
-    pub(super) fn control_points(&self, seed: Seed) -> Result<(PointSet, Vec<u32>), PupsError> {
+    fn control_points(&self, seed: Seed) -> Result<(PointSet, Vec<u32>), PupsError> {
         self.check()?;
         let centers = self.spacing.points(self.domain, seed.child("points", 0))?;
         let spots = self.place_spots(&centers, seed.child("spot", 0))?;
@@ -207,3 +207,6 @@ impl PupsRecipe for SpaceGiraffeOptions {
         Ok(PupsField::numbers(space_giraffe(self, seed)?))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,9 +1,0 @@
-//! What the recipes promise, each of them and all together.
-
-mod assign;
-mod bad_input;
-mod common;
-mod giraffe;
-mod labels;
-mod noise;
-mod progression;

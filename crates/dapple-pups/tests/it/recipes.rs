@@ -1,0 +1,8 @@
+//! What the recipes promise, each of them and all together.
+
+mod assign;
+mod bad_input;
+mod common;
+mod labels;
+mod noise;
+mod progression;

@@ -1,0 +1,34 @@
+//! Positions are rounded down to whole steps of a cell.
+
+use dapple_hash::Seed;
+use dapple_worley::{RESOLUTION, Worley2};
+
+#[test]
+fn places_are_rounded_down_to_steps() {
+    let worley = Worley2::new(Seed(7));
+    let step = f64::from(RESOLUTION);
+    for (position, place) in [
+        (1.5 + 0.9 * step, 1.5),
+        (-0.25 + 0.9 * step, -0.25),
+        (-0.25 - 0.1 * step, -0.25 - step),
+        (1e9 + 0.5 + 0.25 * step, 1e9 + 0.5),
+        // Rounded up to the next cell, since its fraction is that close to 1.
+        (-1e-30, 0.0),
+        (-0.0, 0.0),
+    ] {
+        for at in [|x| [x, 0.5], |y| [0.5, y]] {
+            let [found, expected] = [position, place].map(|x: f64| worley.sample::<4>(at(x)));
+            assert_eq!(found, expected, "{position}");
+        }
+    }
+}
+
+#[test]
+fn positions_without_a_cell_have_no_place() {
+    let worley = Worley2::new(Seed(7));
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e19, -1e300] {
+        assert!(worley.sample::<1>([0.0, bad])[0].distance.is_nan(), "{bad}");
+    }
+    let [far] = worley.sample::<1>([4e18, -4e18]);
+    assert!(far.distance >= 0.0, "4e18 is within 2^62");
+}

@@ -1,0 +1,27 @@
+//! The basis beside its oracle, through its public doors: the kernels are compiled once, in the library.
+
+mod bits;
+mod cell_values;
+mod doors;
+mod edges;
+mod far_away;
+mod fixed;
+mod forced;
+mod fractal;
+mod lipschitz;
+mod many;
+mod oracle;
+mod profile;
+mod properties;
+mod radial;
+mod ranges;
+#[cfg(feature = "serde")]
+mod serialized;
+mod set;
+mod sheet;
+mod slice;
+mod stability;
+mod statistics;
+mod threads;
+mod varying;
+mod voronoi;

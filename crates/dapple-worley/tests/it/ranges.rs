@@ -1,0 +1,65 @@
+//! The table of ranges of the named combinations.
+
+use dapple_hash::Seed;
+use dapple_worley::{Axes, Combination, Metric, Space, Worley, WorleyErrorKind};
+
+/// The combinations whose range in the table is not the one that is measured.
+fn measured_otherwise<const N: usize>() -> Vec<String>
+where
+    Axes: Space<N>,
+{
+    let mut other = Vec::new();
+    for metric in [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev] {
+        let worley = Worley::<N>::new(Seed(0)).with_metric(metric).unwrap();
+        for (name, combination) in Combination::NAMED {
+            let texture = worley.combine(combination);
+            let range = texture.measure_range(Seed(1), 20_000).unwrap();
+            // All that makes the values, with all digits.
+            let measured = format!("{:?}", texture.clone().with_range(range));
+            if format!("{:?}", texture.normalized()) != measured {
+                other.push(format!("{metric:?} {N} {name}: {range:?}"));
+            }
+        }
+    }
+    other
+}
+
+#[test]
+fn table_is_what_is_measured() {
+    let other = [
+        measured_otherwise::<2>(),
+        measured_otherwise::<3>(),
+        measured_otherwise::<4>(),
+    ];
+    let other = other.concat();
+    assert!(
+        other.is_empty(),
+        "measured otherwise:\n{}",
+        other.join("\n")
+    );
+}
+
+#[test]
+fn normalized_values_fill_zero_to_one_and_others_are_refused() {
+    let worley = Worley::<3>::new(Seed(9));
+    let texture = worley
+        .combine(Combination::F3_MINUS_F2)
+        .normalized()
+        .unwrap();
+    let [low, high] = texture.measure_range(Seed(2), 20_000).unwrap();
+    // The ends are quantiles of samples: 20 of 20000 values lie beyond each.
+    assert!(
+        low.abs() < 0.02 && (high - 1.0).abs() < 0.1,
+        "{low} to {high}"
+    );
+    let odd = worley
+        .combine(Combination::new([0.5, 0.0, 0.0, 0.0]))
+        .normalized();
+    assert_eq!(*odd.unwrap_err().kind(), WorleyErrorKind::NoRange);
+    let dense = worley
+        .with_density(5.0)
+        .unwrap()
+        .combine(Combination::F1)
+        .normalized();
+    assert_eq!(*dense.unwrap_err().kind(), WorleyErrorKind::NoRange);
+}
