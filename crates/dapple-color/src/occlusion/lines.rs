@@ -4,7 +4,7 @@
 
 use super::OcclusionOptions;
 use super::rays::{Ray, Sample, reach};
-use super::sky::LANES;
+use super::sky::COLUMNS;
 use crate::{ColorError, plane};
 use dapple_raster::{Raster, Wrap};
 
@@ -63,7 +63,7 @@ impl Heights {
     ) -> Result<Self, ColorError> {
         let size = height.size();
         let left = reach(rays)[0].max(1);
-        let span = (size[0] - 2 * margin[0]).next_multiple_of(LANES as u32);
+        let span = (size[0] - 2 * margin[0]).next_multiple_of(COLUMNS as u32);
         let mut padded = Raster::filled([span.saturating_add(2 * left), size[1]], 0.0)?;
         let wrap_x = options.plane.wrap[0];
         plane::fill_rows(&mut padded, |row, values| {
