@@ -131,36 +131,41 @@ pub fn ambient_occlusion(
     height: &Raster<f32>,
     options: &OcclusionOptions,
 ) -> Result<Raster<f32>, ColorError> {
-    ambient_occlusion_of_part(height, height.size(), options)
+    ambient_occlusion_of_part(height, [0; 2], height.size(), options)
 }
 
-/// Occlusion, as by [`ambient_occlusion`], of a part of a raster of `whole` pixels, whose extent is that of the options.
+/// Occlusion, as by [`ambient_occlusion`], of a part of a raster of `whole` pixels, whose extent is that of the options:
+/// of all pixels between margins of so many columns and rows at each side, which are only looked at.
 ///
-/// Every pixel that is further from the edges of the part than the [halo](OcclusionOptions::halo) of the whole has the
-/// bits that it has in the whole.
+/// If the margins are the [halo](OcclusionOptions::halo) of the whole, or wider, every pixel has the bits that it has in
+/// the whole.
 ///
 /// # Errors
 ///
-/// Those of [`ambient_occlusion`].
+/// Those of [`ambient_occlusion`], and [`ColorErrorKind::Raster`] if nothing lies between the margins.
 pub fn ambient_occlusion_of_part(
     height: &Raster<f32>,
+    margin: [u32; 2],
     whole: [u32; 2],
     options: &OcclusionOptions,
 ) -> Result<Raster<f32>, ColorError> {
-    occlusion_at(simd::level(), height, whole, options)
+    occlusion_at(simd::level(), height, margin, whole, options)
 }
 
 fn occlusion_at(
     level: Level,
     height: &Raster<f32>,
+    margin: [u32; 2],
     whole: [u32; 2],
     options: &OcclusionOptions,
 ) -> Result<Raster<f32>, ColorError> {
     let rays = options.rays(whole)?;
-    let heights = Heights::new(height, whole, options, &rays)?;
-    let mut seen = Raster::filled(height.size(), 0.0)?;
+    let inside =
+        [0, 1].map(|axis| height.size()[axis].saturating_sub(margin[axis].saturating_mul(2)));
+    let mut seen = Raster::filled(inside, 0.0)?;
+    let heights = Heights::new(height, margin, whole, options, &rays)?;
     plane::fill_rows(&mut seen, |row, values| {
-        let lines = heights.lines(row, &rays, options.plane.strength);
+        let lines = heights.lines(margin[1] + row, &rays, options.plane.strength);
         dispatch!(level, simd => see_row(simd, &lines, values));
     });
     Ok(seen)

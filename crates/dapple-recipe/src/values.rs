@@ -4,6 +4,7 @@ use crate::{RecipeError, RecipeErrorKind};
 use dapple_color::LinearRgb;
 use dapple_raster::{Raster, RasterError};
 use dapple_tile::Map;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// The values of a node: numbers or colors, with one value for each position.
@@ -55,6 +56,14 @@ impl Values {
         }
     }
 
+    /// The colors; of numbers, grays.
+    pub(crate) fn colors(&self) -> Cow<'_, [LinearRgb]> {
+        match self {
+            Self::Numbers(_) => Cow::Owned(self.clone().into_colors()),
+            Self::Colors(colors) => Cow::Borrowed(colors),
+        }
+    }
+
     /// The values of some of the positions.
     pub(crate) fn part(&self, range: Range<usize>) -> Self {
         match self {
@@ -81,11 +90,11 @@ impl Values {
         combine_colors: impl Fn(LinearRgb, LinearRgb) -> LinearRgb,
     ) -> Self {
         if Self::has_colors(inputs) {
-            let mut result = inputs[0].clone().into_colors();
-            for &input in &inputs[1..] {
-                let others = input.clone().into_colors();
-                let pairs = result.iter_mut().zip(others);
-                pairs.for_each(|(a, b)| *a = combine_colors(*a, b));
+            let mut result = inputs[0].colors().into_owned();
+            for input in &inputs[1..] {
+                let others = input.colors();
+                let pairs = result.iter_mut().zip(&*others);
+                pairs.for_each(|(a, &b)| *a = combine_colors(*a, b));
             }
             return Self::Colors(result);
         }

@@ -4,7 +4,7 @@
 
 use super::OcclusionOptions;
 use super::rays::{Ray, Sample, reach};
-use super::sky::LANES;
+use super::sky::COLUMNS;
 use crate::{ColorError, plane};
 use dapple_raster::{Raster, Wrap};
 
@@ -12,9 +12,9 @@ use dapple_raster::{Raster, Wrap};
 pub(super) struct Heights {
     padded: Raster<f32>,
     wrap_y: Wrap,
-    /// How many columns there are on the left.
-    margin: i32,
-    /// The columns of the raster, up to whole registers.
+    /// How many columns there are to the left of the first one whose pixels are made.
+    left: i32,
+    /// The columns whose pixels are made, up to whole registers.
     span: usize,
     /// Slope per difference of two neighbors, for columns and rows.
     scale: [f32; 2],
@@ -49,23 +49,26 @@ pub(super) struct Line<'a> {
 }
 
 impl Heights {
+    /// The heights of a part of `whole` pixels, less than half of which are its margins; pixels are made between those.
+    ///
     /// # Errors
     ///
     /// [`Raster`](crate::ColorErrorKind::Raster) if the raster with the columns at its sides is too large.
     pub(super) fn new(
         height: &Raster<f32>,
+        margin: [u32; 2],
         whole: [u32; 2],
         options: &OcclusionOptions,
         rays: &[Ray],
     ) -> Result<Self, ColorError> {
         let size = height.size();
-        let margin = reach(rays)[0].max(1);
-        let span = size[0].next_multiple_of(LANES as u32);
-        let mut padded = Raster::filled([span.saturating_add(2 * margin), size[1]], 0.0)?;
+        let left = reach(rays)[0].max(1);
+        let span = (size[0] - 2 * margin[0]).next_multiple_of(COLUMNS as u32);
+        let mut padded = Raster::filled([span.saturating_add(2 * left), size[1]], 0.0)?;
         let wrap_x = options.plane.wrap[0];
         plane::fill_rows(&mut padded, |row, values| {
             let source = height.row(row);
-            let first = -i64::from(margin);
+            let first = i64::from(margin[0]) - i64::from(left);
             for (column, value) in (first..).zip(values) {
                 let height = source[plane::index(wrap_x, column, size[0])];
                 // Not a number is above nothing, and infinity would be above all.
@@ -76,7 +79,7 @@ impl Heights {
         Ok(Self {
             padded,
             wrap_y: options.plane.wrap[1],
-            margin: margin as i32,
+            left: left as i32,
             span: span as usize,
             scale: [slope.x as f32, slope.y as f32],
         })
@@ -86,7 +89,7 @@ impl Heights {
     fn line(&self, row: u32, [x, y]: [i32; 2]) -> &[f32] {
         let row = i64::from(row) + i64::from(y);
         let row = plane::index(self.wrap_y, row, self.padded.height());
-        let first = (self.margin + x) as usize;
+        let first = (self.left + x) as usize;
         &self.padded.row(row as u32)[first..first + self.span]
     }
 

@@ -4,8 +4,14 @@ use super::lines::{Lines, View};
 use crate::arctangent::arctangent;
 use fearless_simd::{f32x16, prelude::*};
 
+/// The columns of a register.
+const LANES: usize = 16;
+
+/// How many registers are done side by side: what belongs to a sample is read once for all of them.
+const SIDE: usize = 2;
+
 /// How many columns are done side by side.
-pub(super) const LANES: usize = 16;
+pub(super) const COLUMNS: usize = SIDE * LANES;
 
 /// Slopes up to this are told apart: their squares are far from the end of `f32`.
 const STEEPEST: f32 = 1e9;
@@ -13,30 +19,49 @@ const STEEPEST: f32 = 1e9;
 /// The part of the sky that a row of pixels sees.
 #[inline(always)]
 pub(super) fn see_row<S: Simd>(simd: S, lines: &Lines<'_>, values: &mut [f32]) {
-    for (values, first) in values.chunks_mut(LANES).zip((0..).step_by(LANES)) {
-        let seen: [f32; LANES] = see(simd, lines, first).into();
-        values.copy_from_slice(&seen[..values.len()]);
+    for (values, first) in values.chunks_mut(COLUMNS).zip((0..).step_by(COLUMNS)) {
+        let seen = see(simd, lines, first);
+        for (register, values) in values.chunks_mut(LANES).enumerate() {
+            let seen: [f32; LANES] = seen[register].into();
+            values.copy_from_slice(&seen[..values.len()]);
+        }
     }
 }
 
 /// The part of the sky that the columns from `first` on see.
 #[inline(always)]
-fn see<S: Simd>(simd: S, lines: &Lines<'_>, first: usize) -> f32x16<S> {
-    let here = load(simd, lines.here, first);
-    let slope = slope(simd, lines, first);
-    let mut seen = f32x16::splat(simd, 0.0);
-    let mut whole = seen;
+fn see<S: Simd>(simd: S, lines: &Lines<'_>, first: usize) -> [f32x16<S>; SIDE] {
+    let zero = f32x16::splat(simd, 0.0);
+    let mut here = [zero; SIDE];
+    let mut slopes = [[zero; 2]; SIDE];
+    for register in 0..SIDE {
+        let first = first + register * LANES;
+        here[register] = load(simd, lines.here, first);
+        slopes[register] = slope(simd, lines, first);
+    }
+    let (mut seen, mut whole) = ([zero; SIDE], [zero; SIDE]);
     for [there, back] in lines.views.as_chunks::<2>().0 {
         let [x, y] = there.direction;
-        let tangent = limit(simd, slope[0] * x + slope[1] * y, -STEEPEST, STEEPEST);
-        let horizons = [
-            horizon(simd, there, here, first, tangent),
-            horizon(simd, back, here, first, -tangent),
-        ];
-        seen += arc(simd, tangent, horizons[0]) + arc(simd, -tangent, horizons[1]);
-        whole += tangent * arctangent(simd, tangent) + 1.0;
+        let (mut tangents, mut opposite) = ([zero; SIDE], [zero; SIDE]);
+        for register in 0..SIDE {
+            let [across, down] = slopes[register];
+            tangents[register] = limit(simd, across * x + down * y, -STEEPEST, STEEPEST);
+            opposite[register] = -tangents[register];
+        }
+        let ahead = horizons(simd, there, &here, first, &tangents);
+        let behind = horizons(simd, back, &here, first, &opposite);
+        for register in 0..SIDE {
+            let (tangent, opposite) = (tangents[register], opposite[register]);
+            seen[register] +=
+                arc(simd, tangent, ahead[register]) + arc(simd, opposite, behind[register]);
+            whole[register] += tangent * arctangent(simd, tangent) + 1.0;
+        }
     }
-    limit(simd, seen / (whole + whole), 0.0, 1.0)
+    for register in 0..SIDE {
+        let part = seen[register] / (whole[register] + whole[register]);
+        seen[register] = limit(simd, part, 0.0, 1.0);
+    }
+    seen
 }
 
 /// The slopes of the tangent planes to the right and downward; level where a part is not finite.
@@ -50,28 +75,37 @@ fn slope<S: Simd>(simd: S, lines: &Lines<'_>, first: usize) -> [f32x16<S>; 2] {
     [is_finite.select(x, level), is_finite.select(y, level)]
 }
 
-/// The largest slope to a sample of a ray, from that of the tangent plane on. What is not a number is not larger.
+/// The largest slopes to a sample of a ray, from those of the tangent planes on. What is not a number is not larger.
 #[inline(always)]
-fn horizon<S: Simd>(
+fn horizons<S: Simd>(
     simd: S,
     view: &View<'_>,
-    here: f32x16<S>,
+    here: &[f32x16<S>; SIDE],
     first: usize,
-    tangent: f32x16<S>,
-) -> f32x16<S> {
-    let mut horizon = tangent;
+    tangents: &[f32x16<S>; SIDE],
+) -> [f32x16<S>; SIDE] {
+    let mut horizons = *tangents;
     for line in &view.samples {
-        let mut height = load(simd, line.near, first);
-        if line.part > 0.0 {
-            height = height + (load(simd, line.far, first) - height) * line.part;
+        let near = &line.near[first..first + COLUMNS];
+        let far = &line.far[first..first + COLUMNS];
+        for register in 0..SIDE {
+            let mut height = load(simd, near, register * LANES);
+            if line.part > 0.0 {
+                height = height + (load(simd, far, register * LANES) - height) * line.part;
+            }
+            let tangent = tangents[register];
+            let mut slope = (height - here[register]) * line.scale;
+            if line.weight < 1.0 {
+                slope = tangent + (slope - tangent) * line.weight;
+            }
+            let horizon = horizons[register];
+            horizons[register] = slope.simd_gt(horizon).select(slope, horizon);
         }
-        let mut slope = (height - here) * line.scale;
-        if line.weight < 1.0 {
-            slope = tangent + (slope - tangent) * line.weight;
-        }
-        horizon = slope.simd_gt(horizon).select(slope, horizon);
     }
-    limit(simd, horizon, -STEEPEST, STEEPEST)
+    for horizon in &mut horizons {
+        *horizon = limit(simd, *horizon, -STEEPEST, STEEPEST);
+    }
+    horizons
 }
 
 /// The sky between the zenith and a horizon, twice over the upward part of the normal, without what opposite azimuths take

@@ -71,14 +71,23 @@ fn crops_with_the_halo_have_the_same_bits() {
             .unwrap()
             .crop(first, part)
             .unwrap();
-        let inside = ambient_occlusion_of_part(&crop, size, &cropped)
-            .unwrap()
-            .crop([x, y], part)
-            .unwrap();
+        let inside = ambient_occlusion_of_part(&crop, [x, y], size, &cropped).unwrap();
         assert_eq!(
             inside.map(|seen| seen.to_bits()),
             seen.map(|seen| seen.to_bits()),
             "{whole:?}"
+        );
+    }
+}
+
+#[test]
+fn margins_that_leave_nothing_are_refused() {
+    let height = rubble([9, 9]);
+    for margin in [[5, 0], [0, 9], [u32::MAX; 2]] {
+        let refused = ambient_occlusion_of_part(&height, margin, [9; 2], &options()).unwrap_err();
+        assert!(
+            matches!(refused.kind(), ColorErrorKind::Raster(_)),
+            "{refused}"
         );
     }
 }
@@ -272,7 +281,7 @@ fn levels_and_threads_do_not_change_a_bit() {
     let bits = |raster: Raster<f32>| raster.map(|seen| seen.to_bits());
     let expected = bits(ambient_occlusion(&height, &options).unwrap());
     for_every_level(|level| {
-        let seen = occlusion_at(level, &height, height.size(), &options).unwrap();
+        let seen = occlusion_at(level, &height, [0; 2], height.size(), &options).unwrap();
         assert_eq!(bits(seen), expected, "{level:?}");
     });
     checks::threads_do_not_change_a_bit(|| bits(ambient_occlusion(&height, &options).unwrap()));

@@ -1,7 +1,7 @@
 //! The heights of a band and of a margin about it, with what other maps are made of, too.
 
 use super::MapKind;
-use super::maps::{beside_height, curvature_options, occlusion_options};
+use super::maps::{NORMAL_HALO, beside_height, curvature_options, occlusion_options};
 use crate::plan::Known;
 use crate::{Plan, RecipeError, Values, Whole};
 use dapple_raster::{Raster, RasterError, Window};
@@ -50,7 +50,7 @@ impl Heights {
         for map in maps {
             let halo = match map {
                 MapKind::Height => [0; 2],
-                MapKind::Normal => [1; 2],
+                MapKind::Normal => NORMAL_HALO,
                 MapKind::Occlusion | MapKind::Orm => occlusion_options(plan)?.halo(tile.size),
                 MapKind::Curvature => curvature_options(plan)?.halo(tile.size),
                 MapKind::Albedo | MapKind::Roughness | MapKind::Metallic => continue,

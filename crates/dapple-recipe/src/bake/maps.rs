@@ -139,6 +139,9 @@ impl MapRows {
     }
 }
 
+/// The columns and rows at each side that a normal depends on.
+pub(super) const NORMAL_HALO: [u32; 2] = [1; 2];
+
 /// How the heights of a plan lie in the plane. What lies past the margin does not matter.
 fn height_plane(plan: &Plan) -> HeightPlane {
     HeightPlane {
@@ -279,7 +282,14 @@ impl Around<'_> {
     }
 
     fn height(&self) -> Result<Raster<f32>, RecipeError> {
-        Ok(self.margined()?.crop(self.heights.halo, self.size)?)
+        self.within([0; 2])
+    }
+
+    /// The heights with a margin of so many columns and rows, at most that which all maps need.
+    fn within(&self, margin: [u32; 2]) -> Result<Raster<f32>, RecipeError> {
+        let first = [0, 1].map(|axis| self.heights.halo[axis] - margin[axis]);
+        let size = [0, 1].map(|axis| self.size[axis] + 2 * margin[axis]);
+        Ok(self.margined()?.crop(first, size)?)
     }
 
     fn normal(&self) -> Result<Raster<Normal>, RecipeError> {
@@ -288,21 +298,24 @@ impl Around<'_> {
             y: material.normal_y,
             plane: height_plane(self.plan),
         };
-        let normals = normal_map_of_part(self.margined()?, self.tile, &options)?;
-        Ok(normals.crop(self.heights.halo, self.size)?)
+        let normals = normal_map_of_part(&self.within(NORMAL_HALO)?, self.tile, &options)?;
+        Ok(normals.crop(NORMAL_HALO, self.size)?)
     }
 
     fn make_occlusion(&self) -> Result<Raster<f32>, RecipeError> {
-        let free =
-            ambient_occlusion_of_part(self.margined()?, self.tile, &occlusion_options(self.plan)?)?;
-        Ok(free.crop(self.heights.halo, self.size)?)
+        let (heights, margin) = (self.margined()?, self.heights.halo);
+        let options = occlusion_options(self.plan)?;
+        Ok(ambient_occlusion_of_part(
+            heights, margin, self.tile, &options,
+        )?)
     }
 
     fn curvature(&self) -> Result<Raster<f32>, RecipeError> {
         let options = curvature_options(self.plan)?;
-        let curved = curvature_of_part(self.margined()?, self.tile, &options)?;
+        let halo = options.halo(self.tile);
+        let curved = curvature_of_part(&self.within(halo)?, self.tile, &options)?;
         let gray = curved.map(|&curvature| curvature_to_gray(curvature, options.radius as f32));
-        Ok(gray.crop(self.heights.halo, self.size)?)
+        Ok(gray.crop(halo, self.size)?)
     }
 }
 

@@ -42,10 +42,10 @@ fn mix(inputs: &[&Values]) -> Values {
                 .collect(),
         );
     }
-    let [from, to] = [0, 1].map(|index: usize| inputs[index].clone().into_colors());
-    let ends = from.into_iter().zip(to).zip(by);
+    let [from, to] = [0, 1].map(|index: usize| inputs[index].colors());
+    let ends = from.iter().zip(&*to).zip(by);
     Values::Colors(
-        ends.map(|((from, to), &by)| from.lerp(to, by.clamp(0.0, 1.0)))
+        ends.map(|((from, &to), &by)| from.lerp(to, by.clamp(0.0, 1.0)))
             .collect(),
     )
 }

@@ -53,13 +53,35 @@ pub(super) fn evaluate(
     for (index, known) in known {
         values[*index] = Some(known.clone());
     }
-    for index in needed(steps, wanted, |index| values[index].is_some()) {
+    let order = needed(steps, wanted, |index| values[index].is_some());
+    let last_use = last_uses(steps, &order, wanted);
+    for index in order {
         if values[index].is_none() {
             values[index] = Some(Arc::new(step(steps, whole, places, index, &values)?));
+        }
+        // The next steps use the memory again, which is in a cache still.
+        for input in steps[index].inputs() {
+            if last_use[input] == index {
+                values[input] = None;
+            }
         }
     }
     let value = |&index: &usize| values[index].clone().expect("what is wanted is needed");
     Ok(wanted.iter().map(value).collect())
+}
+
+/// For each step the last one of `order` that takes its values; none takes those of the steps `wanted` last.
+fn last_uses(steps: &[Step], order: &[usize], wanted: &[usize]) -> Vec<usize> {
+    let mut last_use = vec![usize::MAX; steps.len()];
+    for &index in order {
+        for input in steps[index].inputs() {
+            last_use[input] = index;
+        }
+    }
+    for &index in wanted {
+        last_use[index] = usize::MAX;
+    }
+    last_use
 }
 
 /// The pixels that a thread takes at a time.
@@ -203,5 +225,31 @@ impl Laid {
     fn read<T: Texel>(&self, raster: &Raster<T>, positions: &[DVec2]) -> Vec<T> {
         let uv = positions.iter().map(|&position| position / self.extent);
         uv.map(|uv| raster.sample_bilinear(uv, self.wrap)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Places, evaluate, last_uses, needed};
+    use crate::{Images, Plan, Recipe};
+    use dapple_raster::glam::DVec2;
+
+    #[test]
+    fn values_are_kept_until_their_last_use_or_as_long_as_they_are_wanted() {
+        let text = "dapple = 1\nnodes.a.coordinate = {}\nnodes.b.absolute = \"a\"\nnodes.c.add = [\"a\", \"b\", \"b\"]\nnodes.d.absolute = \"c\"\n[material]\n";
+        let plan = Plan::new(&Recipe::from_toml(text).unwrap(), &Images::new(), 0.0).unwrap();
+        let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| plan.names[name]);
+        let kept_until = |wanted: &[usize]| {
+            let order = needed(&plan.steps, wanted, |_| false);
+            let last_uses = last_uses(&plan.steps, &order, wanted);
+            [a, b, c, d].map(|index| last_uses[index])
+        };
+        assert_eq!(kept_until(&[d]), [c, c, d, usize::MAX]);
+        assert_eq!(kept_until(&[b, d]), [c, usize::MAX, d, usize::MAX]);
+        let positions = [DVec2::new(0.25, 0.5)];
+        let places = Places::Positions(&positions);
+        let values = evaluate(&plan.steps, None, places, &[b, d, a], &[]).unwrap();
+        let values: Vec<_> = values.iter().map(|values| values.numbers()[0]).collect();
+        assert_eq!(values, [0.25, 0.75, 0.25]);
     }
 }
