@@ -4,7 +4,6 @@
 //! the only place that uses `rayon`. Its code is large and made anew for every closure that it is given, so it is given
 //! only one, which calls through a reference what is to be done.
 
-#[cfg(feature = "rayon")]
 use std::sync::{Mutex, PoisonError};
 
 /// How many pieces there are for each thread at most: enough that no thread waits long for another.
@@ -41,7 +40,6 @@ pub fn map_at_least<T: Send>(
     count: usize,
     make: impl Fn(usize) -> T + Sync,
 ) -> Vec<T> {
-    #[cfg(feature = "rayon")]
     if count > least && n_threads() > 1 {
         let size = piece(count, least);
         let pieces: Vec<_> = (0..count.div_ceil(size))
@@ -121,7 +119,6 @@ pub fn consume_with<T: Send, S: Send>(
     scratch: impl Fn() -> S + Sync,
     work: impl Fn(&mut S, usize, T) + Sync,
 ) {
-    #[cfg(feature = "rayon")]
     if items.len() > 1 && n_threads() > 1 {
         let size = piece(items.len(), 1);
         let mut items: Vec<_> = items.into_iter().map(Some).collect();
@@ -178,7 +175,6 @@ fn piece(count: usize, least: usize) -> usize {
 }
 
 /// What a lock holds, whether or not a thread panicked with it: rayon passes the panic on.
-#[cfg(feature = "rayon")]
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
