@@ -13,7 +13,7 @@ use dapple_mesh::Model;
 use std::path::Path;
 
 /// All formats, in the order in which texts list them.
-pub const FORMATS: &[MeshFormat] = &[
+pub static FORMATS: &[MeshFormat] = &[
     obj::OBJ,
     ply::PLY,
     #[cfg(feature = "gltf")]
