@@ -65,34 +65,40 @@ fn strongest_points_are_the_same_through_both_doors() {
 #[test]
 fn vectors_are_scalars_side_by_side() {
     for case in cases() {
-        let pups = case.pups();
-        let scalars = case.values();
-        let vectors: Vec<[f32; 3]> = scalars
-            .iter()
-            .map(|&value| [value, 1.0 - value, value * value])
-            .collect();
-        let window = window(&case);
-        let raster = pups
-            .vector_texture(vectors.clone())
-            .unwrap()
-            .to_raster(&window)
-            .unwrap();
-        for channel in 0..3 {
-            let column = vectors.iter().map(|vector| vector[channel]).collect();
-            let expected = pups.texture(column).unwrap().to_raster(&window).unwrap();
-            assert_eq!(
-                bits(&raster.map(|vector| vector[channel])),
-                bits(&expected),
-                "{}",
-                case.name
-            );
-        }
-        let vector = pups
-            .vector_texture(vectors)
-            .unwrap()
-            .sample(window.position(9, 8));
-        assert_eq!(vector, raster.row(8)[9], "{}", case.name);
+        // Numbers are drawn three or one at a time.
+        vectors_are_scalars::<1>(&case);
+        vectors_are_scalars::<2>(&case);
+        vectors_are_scalars::<3>(&case);
+        vectors_are_scalars::<5>(&case);
     }
+}
+
+fn vectors_are_scalars<const N: usize>(case: &Case) {
+    let pups = case.pups();
+    let scalars = case.values();
+    let vectors: Vec<[f32; N]> = scalars
+        .iter()
+        .map(|&value| {
+            core::array::from_fn(|channel| {
+                [value, 1.0 - value, value * value][channel % 3] + channel as f32
+            })
+        })
+        .collect();
+    let window = window(case);
+    let texture = pups.vector_texture(vectors.clone()).unwrap();
+    let raster = texture.to_raster(&window).unwrap();
+    for channel in 0..N {
+        let column = vectors.iter().map(|vector| vector[channel]).collect();
+        let expected = pups.texture(column).unwrap().to_raster(&window).unwrap();
+        assert_eq!(
+            bits(&raster.map(|vector| vector[channel])),
+            bits(&expected),
+            "{}, {channel} of {N}",
+            case.name
+        );
+    }
+    let vector = texture.sample(window.position(9, 8));
+    assert_eq!(vector, raster.row(8)[9], "{}", case.name);
 }
 
 #[test]
