@@ -91,7 +91,7 @@ where
         Self::of(&Worley::new(SEED), known, size, px_per_cell)
     }
 
-    /// The same of some basis.
+    /// Grids of a basis.
     fn of(worley: &Worley<N>, known: Known, size: [u32; N], px_per_cell: u32) -> Result<Self> {
         let px = f64::from(px_per_cell);
         let extent = DVec2::new(f64::from(size[0]), f64::from(size[1])) / px;

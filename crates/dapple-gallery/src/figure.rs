@@ -68,7 +68,7 @@ impl Figure {
     ///
     /// # Errors
     ///
-    /// As [`render`](Self::render).
+    /// What [`render`](Self::render) refuses.
     pub fn hash(&self, size: u32) -> anyhow::Result<Hash> {
         Ok(hash_panels(&self.render(size)?))
     }

@@ -40,7 +40,7 @@ impl Pups {
     ///
     /// # Errors
     ///
-    /// As [`delaunay_with`](Self::delaunay_with).
+    /// What [`delaunay_with`](Self::delaunay_with) refuses.
     pub fn delaunay(points: &PointSet) -> Result<Self, PupsError> {
         Self::delaunay_with(points, PupsOptions::default())
     }
@@ -49,7 +49,7 @@ impl Pups {
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new), and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
+    /// What [`new`](Self::new) refuses, and [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation.
     pub fn delaunay_with(points: &PointSet, options: PupsOptions) -> Result<Self, PupsError> {
         let net = Net::new(points, &delaunay(points)?, GraphKind::Delaunay, options)?;
         Ok(Self {
@@ -112,7 +112,7 @@ impl Pups {
     ///
     /// # Errors
     ///
-    /// As [`texture`](Self::texture).
+    /// What [`texture`](Self::texture) refuses.
     pub fn vector_texture<const N: usize>(
         &self,
         values: Vec<[f32; N]>,

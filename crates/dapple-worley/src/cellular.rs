@@ -92,8 +92,8 @@ where
         self.render_slices(window, vec![(*plane, out)])
     }
 
-    /// The same for several planes, such as the slices of a volume. Those next to one another share what they look at,
-    /// so they are filled faster together than one by one, most of all if they are near one another.
+    /// Fills several planes, such as the slices of a volume. Those next to one another share their feature points, so
+    /// that they are filled faster together than one by one, most of all if they are near one another.
     ///
     /// # Errors
     ///
@@ -156,7 +156,7 @@ where
         })
     }
 
-    /// The same texture with its values mapped so that about 0 to 1 is their range: from a table of measured ranges,
+    /// This texture with values mapped so that about 0 to 1 is their range: from a table of measured ranges,
     /// for [the combinations that have a name](Combination::NAMED), the default density, and every metric but
     /// Minkowski's. One value in a thousand lies below 0, and one above 1.
     ///
@@ -176,7 +176,7 @@ where
         self.with_range(range.ok_or_else(|| WorleyError::new(WorleyErrorKind::NoRange))?)
     }
 
-    /// The same texture with its values mapped so that `range` becomes 0 to 1. Values beyond it are not clamped.
+    /// This texture with values mapped so that `range` becomes 0 to 1. Values beyond it are not clamped.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-range.md"))]
     ///

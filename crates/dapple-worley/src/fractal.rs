@@ -267,7 +267,7 @@ where
         self.render_slices(window, vec![(*plane, out)])
     }
 
-    /// The same for several planes, such as the slices of a volume: see [`Cellular::render_slices`].
+    /// Fills several planes, such as the slices of a volume: see [`Cellular::render_slices`].
     ///
     /// # Errors
     ///
@@ -320,7 +320,7 @@ where
         })
     }
 
-    /// The same texture with its values mapped so that `range` becomes 0 to 1. Values beyond it are not clamped.
+    /// This texture with values mapped so that `range` becomes 0 to 1. Values beyond it are not clamped.
     ///
     /// # Errors
     ///

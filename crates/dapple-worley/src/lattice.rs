@@ -157,7 +157,7 @@ impl<S: Simd> SixteenCells<S> {
         cells
     }
 
-    /// The same for several registers in step.
+    /// What [`new`](Self::new) makes, for several registers in step.
     #[inline(always)]
     pub(crate) fn new_each<const N: usize, const C: usize>(
         simd: S,
@@ -199,7 +199,7 @@ impl<S: Simd> SixteenCells<S> {
         point
     }
 
-    /// The same for several registers in step.
+    /// What [`steps`](Self::steps) makes, for several registers in step.
     #[inline(always)]
     pub(crate) fn steps_each<const N: usize, const C: usize>(
         cells: [Self; C],

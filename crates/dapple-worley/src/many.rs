@@ -182,7 +182,7 @@ impl<const N: usize> Group<N> {
         }
     }
 
-    /// The same, where hashes are made for `C` registers at a time.
+    /// Searches the nearest points of all registers; hashes are made for `C` registers at a time.
     #[inline(always)]
     fn search_in_step<S: Simd, const K: usize, const C: usize>(
         &mut self,

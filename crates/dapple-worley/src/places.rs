@@ -190,7 +190,7 @@ fn split_lanes<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x1
     )
 }
 
-/// The same one by one, for coordinates that are very large, or not finite.
+/// Cells and steps of sixteen coordinates, one by one, for those that are very large, or not finite.
 #[inline(never)]
 fn split_each<S: Simd>(simd: S, coordinates: &[f64; LANES]) -> (Words<S>, i32x16<S>, u64) {
     let mut words = [[0; LANES]; 2];

@@ -57,7 +57,7 @@ where
         }))
     }
 
-    /// The same plane, whatever the number of axes.
+    /// This plane as pictures have it, whatever the number of axes.
     pub(crate) fn section(&self) -> Section {
         let flat = |part: Vector<N>| {
             let mut parts = [0.0; MOST_AXES];

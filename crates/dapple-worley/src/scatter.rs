@@ -31,7 +31,8 @@ pub enum Scatter {
         /// Feature points per cell on average, before clamping: from 1/64 to 64.
         density: f64,
     },
-    /// The same without clamping: a cell may be empty, and the points have no trace of the grid.
+    /// Poisson-distributed points without a least or a largest number: a cell may be empty, and the points have no trace
+    /// of the grid.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/scatter-unclamped.md"))]
     Unclamped {

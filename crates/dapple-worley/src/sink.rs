@@ -24,7 +24,7 @@ impl Tone {
         }
     }
 
-    /// The same with its values mapped so that `range` becomes 0 to 1.
+    /// This tone with values mapped so that `range` becomes 0 to 1.
     pub(crate) fn with_range(self, [low, high]: [f32; 2]) -> Result<Self, WorleyError> {
         let extent = high - low;
         WorleyError::check(
@@ -103,7 +103,7 @@ impl Values {
         };
     }
 
-    /// The same for sixteen pixels at once.
+    /// What puts the values of sixteen pixels at once.
     #[inline(always)]
     pub(crate) fn lanes<S: Simd, const K: usize>(&self, simd: S) -> ValueLanes<S, K> {
         let coefficients = self.tone.weights.coefficients();

@@ -97,7 +97,7 @@ where
         }
     }
 
-    /// The same basis with other feature points.
+    /// This basis with the feature points of another seed.
     ///
     #[cfg_attr(doc, doc = include_str!("../docs/with-seed.md"))]
     #[must_use]

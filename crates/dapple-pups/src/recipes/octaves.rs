@@ -94,7 +94,7 @@ impl Default for OctavesOptions {
 ///
 /// # Errors
 ///
-/// As [`noise`]; [`Range`](PupsErrorKind::Range) for options outside of their ranges;
+/// What [`noise`] refuses; [`Range`](PupsErrorKind::Range) for options outside of their ranges;
 /// [`NotWrapped`](PupsErrorKind::NotWrapped) if octaves are rescaled and the domain does not wrap along both axes.
 ///
 /// # Examples

@@ -139,7 +139,7 @@ impl PointList {
         }
     }
 
-    /// As [`cull`](Self::cull), for boxes with `N` axes.
+    /// Culls points, compiled for boxes with `N` axes.
     #[inline(always)]
     fn cull_axes<S: Simd, M: Measure, const N: usize>(
         &mut self,

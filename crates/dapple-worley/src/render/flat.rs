@@ -179,7 +179,7 @@ pub(super) struct FlatPoints {
     /// cells away, and so exact. There is room for a register more.
     pub(super) x: Vec<f32>,
     pub(super) y: Vec<f32>,
-    /// The same along the axis across several slices.
+    /// Coordinates along the axis across several slices.
     pub(super) z: Vec<f32>,
     /// What the other axes add to their keys.
     pub(super) rest: Vec<f32>,
@@ -270,7 +270,7 @@ impl FlatPoints {
         }
     }
 
-    /// As [`take_undominated`](Self::take_undominated), where it is known whether there are several slices.
+    /// Takes the points that fewer than `depth` others dominate, compiled for one slice or, where `DEEP`, for several.
     #[inline(always)]
     fn take_undominated_axes<S: Simd, const DEEP: bool>(
         &mut self,

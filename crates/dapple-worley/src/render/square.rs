@@ -93,7 +93,7 @@ impl Plan {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Square {
     pub(super) pixels: PixelBox,
-    /// The same, from its lower corner.
+    /// The box of its pixels, from its lower corner.
     pub(super) cuboid: Cuboid,
     /// Whether it is its only tile.
     pub(super) is_tile: bool,

@@ -21,7 +21,7 @@ impl CellBox {
         (self.last[axis] - self.first[axis] + 1) as usize
     }
 
-    /// The same with so many more cells on every side.
+    /// This box with `by` more cells on every side.
     pub(super) fn widened(mut self, by: i64) -> Self {
         for axis in 0..self.n_axes {
             self.first[axis] -= by;
