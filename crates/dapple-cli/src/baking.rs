@@ -10,11 +10,11 @@ use crate::progress::Progress;
 use crate::words::with_dashes;
 use anyhow::{Context as _, Error, Result};
 use dapple::image::RowWriter;
+use dapple::raster::parallel;
 use dapple::recipe::{
     Bake, Band, ImageAlpha, Images, Picture, Recipe, RecipeError, RecipeErrorKind,
 };
 use dapple::tile::Map;
-use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::fs::File;
 use std::io::{BufWriter, Cursor, Write};
@@ -165,10 +165,10 @@ pub(crate) fn encode(
     let mut writers = images.iter().map(writer).collect::<Result<Vec<_>, _>>()?;
     for band in bake {
         let band = band.map_err(advise)?;
-        let work = writers.par_iter_mut().zip(images);
-        work.try_for_each(|(writer, image)| -> Result<()> {
-            Ok(image.layers.rows(&band)?.write(writer)?)
-        })?;
+        let written = parallel::map_mut_at_least(1, &mut writers, |index, writer| {
+            Ok(images[index].layers.rows(&band)?.write(writer)?)
+        });
+        written.into_iter().collect::<Result<()>>()?;
         progress.add(n_rows(&band));
     }
     let finished = writers.into_iter().map(RowWriter::finish);
@@ -184,8 +184,9 @@ fn draw(
 ) -> Result<()> {
     for band in bake {
         let band = band.map_err(advise)?;
-        rows.par_iter_mut()
-            .try_for_each(|rows| write(rows, &rows.layers.rows(&band)?))?;
+        let written =
+            parallel::map_mut_at_least(1, rows, |_, rows| write(rows, &rows.layers.rows(&band)?));
+        written.into_iter().collect::<Result<()>>()?;
         progress.add(n_rows(&band));
     }
     Ok(())

@@ -78,6 +78,19 @@ pub fn for_each_mut_at_least<T: Send>(
     });
 }
 
+/// What `change` gives for each of some items and its number, in their order; `least` items together are worth a task.
+pub fn map_mut_at_least<T: Send, U: Send>(
+    least: usize,
+    items: &mut [T],
+    change: impl Fn(usize, &mut T) -> U + Sync,
+) -> Vec<U> {
+    let mut pairs: Vec<_> = items.iter_mut().map(|item| (item, None)).collect();
+    for_each_mut_at_least(least, &mut pairs, |index, (item, made)| {
+        *made = Some(change(index, item));
+    });
+    pairs.into_iter().filter_map(|(_, made)| made).collect()
+}
+
 /// Calls `work` once with each chunk of `size` values (the last one may be shorter) and its number, in any order.
 ///
 /// # Panics

@@ -16,6 +16,14 @@ pub(crate) fn update<T: Send>(column: &mut [T], change: impl Fn(usize, &mut T) +
     parallel::for_each_mut_at_least(BLOCK, column, change);
 }
 
+/// Changes every row of a column, given its number, and gathers what `change` returns.
+pub(crate) fn map<T: Send, U: Send>(
+    column: &mut [T],
+    change: impl Fn(usize, &mut T) -> U + Sync,
+) -> Vec<U> {
+    parallel::map_mut_at_least(BLOCK, column, change)
+}
+
 /// The sum of a number for every row, added within blocks and then block by block, whatever the number of cores.
 pub(crate) fn sum(n_rows: usize, row: impl Fn(usize) -> f64 + Sync) -> f64 {
     let block = |block: usize| {

@@ -54,18 +54,17 @@ impl<'a> Links<'a> {
         change: impl Fn(usize, &[SiteIdx], &mut [f64]) -> T + Sync + Send,
     ) -> Vec<T> {
         let n_sites = self.len();
-        let mut rows: Vec<(&mut [f64], Option<T>)> = Vec::with_capacity(n_sites);
+        let mut rows: Vec<&mut [f64]> = Vec::with_capacity(n_sites);
         let mut rest = self.weights.as_mut_slice();
         for ends in self.offsets.windows(2) {
             let (row, after) = rest.split_at_mut((ends[1] - ends[0]) as usize);
-            rows.push((row, None));
+            rows.push(row);
             rest = after;
         }
         let graph = self.graph;
-        columns::update(&mut rows, |site, (row, found)| {
-            *found = Some(change(site, graph.neighbors(SiteIdx(site as u32)), row));
+        let found = columns::map(&mut rows, |site, row| {
+            change(site, graph.neighbors(SiteIdx(site as u32)), row)
         });
-        let found = rows.into_iter().filter_map(|(_, found)| found).collect();
         self.sums = columns::column(n_sites, |site| self.weights(site).iter().sum());
         found
     }

@@ -1,6 +1,9 @@
 //! Every number, item and chunk is taken once, whatever the number of threads.
 
-use super::{consume, for_each, for_each_chunk, for_each_chunk_with, for_each_mut, map, sort};
+use super::{
+    consume, for_each, for_each_chunk, for_each_chunk_with, for_each_mut, map, map_mut_at_least,
+    sort,
+};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Runs `check` on 1, 2 and 7 threads.
@@ -56,6 +59,24 @@ fn chunks_and_items_are_changed_once_each() {
             for_each_mut(&mut values, |index, value| *value += 1000 * index);
             let expected: Vec<usize> = (0..count).map(|index| 1000 * index + index / 7).collect();
             assert_eq!(values, expected);
+        }
+    });
+}
+
+#[test]
+fn items_are_changed_and_what_that_gives_is_in_their_order() {
+    on_threads(|| {
+        for count in [0, 1, 5, 1000] {
+            let mut values: Vec<usize> = (0..count).collect();
+            let doubled = map_mut_at_least(3, &mut values, |index, value| {
+                *value += 1;
+                2 * index
+            });
+            assert_eq!(values, (1..=count).collect::<Vec<_>>());
+            assert_eq!(
+                doubled,
+                (0..count).map(|index| 2 * index).collect::<Vec<_>>()
+            );
         }
     });
 }
