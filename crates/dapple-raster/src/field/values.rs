@@ -23,20 +23,22 @@ pub struct Pair<A, B> {
     pub(super) operation: PairOperation,
 }
 
-/// What becomes of two values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum PairOperation {
-    /// Their sum.
-    Add,
-    /// The first less the second.
-    Subtract,
-    /// Their product.
-    Multiply,
-    /// The smaller; the first, where one is not a number.
-    Minimum,
-    /// The larger; the first, where one is not a number.
-    Maximum,
+crate::named! {
+    /// What becomes of two values.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    #[non_exhaustive]
+    pub enum PairOperation {
+        /// Their sum.
+        Add = "add",
+        /// The first less the second.
+        Subtract = "subtract",
+        /// Their product.
+        Multiply = "multiply",
+        /// The smaller; the first, where one is not a number.
+        Minimum = "minimum",
+        /// The larger; the first, where one is not a number.
+        Maximum = "maximum",
+    }
 }
 
 /// A part of the way from one field to another: see [`FieldExt::mix`](super::FieldExt::mix).

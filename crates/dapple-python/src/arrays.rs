@@ -1,0 +1,144 @@
+//! NumPy arrays in and out.
+//!
+//! What the library makes becomes an array without a copy. What it is given is read where it lies if it has the type and
+//! the order of the library, and is copied otherwise.
+
+use crate::error::{Error, Result};
+use dapple::raster::glam::DVec2;
+use dapple::raster::{Raster, RasterView};
+use numpy::ndarray::{ArrayD, IxDyn};
+use numpy::{AllowTypeChange, Element, IntoPyArray, PyArrayLike, PyArrayLikeDyn};
+use pyo3::prelude::*;
+
+/// Values as an array of a shape, without a copy.
+pub(crate) fn array<'py, T: Element>(
+    py: Python<'py>,
+    values: Vec<T>,
+    shape: &[usize],
+) -> Result<Bound<'py, PyAny>> {
+    let array = ArrayD::from_shape_vec(IxDyn(shape), values);
+    let array = array.map_err(|error| Error::new("shape", error.to_string()))?;
+    Ok(array.into_pyarray(py).into_any())
+}
+
+/// A raster of numbers as an array (rows, columns).
+pub(crate) fn numbers<'py>(py: Python<'py>, raster: Raster<f32>) -> Result<Bound<'py, PyAny>> {
+    let [width, height] = raster.size().map(|side| side as usize);
+    array(py, raster.into_pixels(), &[height, width])
+}
+
+/// A raster of several numbers a pixel as an array (rows, columns, channels).
+pub(crate) fn channels<'py, const N: usize>(
+    py: Python<'py>,
+    raster: Raster<[f32; N]>,
+) -> Result<Bound<'py, PyAny>> {
+    let [width, height] = raster.size().map(|side| side as usize);
+    array(
+        py,
+        raster.into_pixels().into_flattened(),
+        &[height, width, N],
+    )
+}
+
+/// Positions from an array of the shape (…, axes).
+pub(crate) struct Positions {
+    /// Their coordinates, one position after the other.
+    pub(crate) numbers: Vec<f64>,
+    /// The shape of the array without its last axis.
+    pub(crate) shape: Vec<usize>,
+}
+
+impl Positions {
+    /// The positions of an array or of nested lists.
+    pub(crate) fn read(positions: &Bound<'_, PyAny>, n_axes: usize) -> Result<Self> {
+        let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> = positions.extract()?;
+        let array = array.as_array();
+        let Some((&last, shape)) = array
+            .shape()
+            .split_last()
+            .filter(|(last, _)| **last == n_axes)
+        else {
+            let message = format!(
+                "positions have the shape {:?}, but the last axis must have {n_axes} numbers, x first",
+                array.shape()
+            );
+            return Err(Error::new("shape", message));
+        };
+        debug_assert_eq!(last, n_axes, "the last axis holds a position");
+        Ok(Self {
+            numbers: array.iter().copied().collect(),
+            shape: shape.to_vec(),
+        })
+    }
+
+    /// Positions of the plane.
+    pub(crate) fn plane(positions: &Bound<'_, PyAny>) -> Result<Vec<DVec2>> {
+        let positions = Self::read(positions, 2)?;
+        Ok(positions
+            .numbers
+            .chunks_exact(2)
+            .map(DVec2::from_slice)
+            .collect())
+    }
+}
+
+/// An array of two axes (rows, columns) as a raster. It is copied.
+pub(crate) fn raster(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>> {
+    let array: PyArrayLike<'_, f32, numpy::Ix2, AllowTypeChange> = data.extract()?;
+    let array = array.as_array();
+    let values = array.iter().copied().collect();
+    Ok(Raster::from_vec(raster_size(what, array.shape())?, values)?)
+}
+
+/// An array of three axes (rows, columns, channels) as a raster. It is copied.
+pub(crate) fn raster_of<const N: usize>(
+    what: &str,
+    data: &Bound<'_, PyAny>,
+) -> Result<Raster<[f32; N]>> {
+    let array: PyArrayLike<'_, f32, numpy::Ix3, AllowTypeChange> = data.extract()?;
+    let array = array.as_array();
+    if array.shape()[2] != N {
+        let message = format!(
+            "the {what} has {} channels, but {N} are needed",
+            array.shape()[2]
+        );
+        return Err(Error::new("channels", message));
+    }
+    let values: Vec<f32> = array.iter().copied().collect();
+    let pixels = values
+        .chunks_exact(N)
+        .map(|pixel| core::array::from_fn(|channel| pixel[channel]));
+    Ok(Raster::from_vec(
+        raster_size(what, array.shape())?,
+        pixels.collect(),
+    )?)
+}
+
+/// The columns and rows of an array whose first axes are rows and columns.
+fn raster_size(what: &str, shape: &[usize]) -> Result<[u32; 2]> {
+    let side = |length: usize| {
+        u32::try_from(length).map_err(|_| {
+            Error::new(
+                "too_large",
+                format!("the {what} has a side of {length} pixels"),
+            )
+        })
+    };
+    Ok([side(shape[1])?, side(shape[0])?])
+}
+
+/// Memory as a raster that it holds without gaps.
+pub(crate) fn view<T>(values: &[T], size: [u32; 2]) -> Result<RasterView<'_, T>> {
+    Ok(RasterView::new(values, size[0] as usize, size)?)
+}
+
+/// Distances, vectors and ids of feature points as Python's `Features`.
+pub(crate) fn features<'py>(
+    py: Python<'py>,
+    arrays: impl pyo3::call::PyCallArgs<'py>,
+) -> Result<Bound<'py, PyAny>> {
+    Ok(py
+        .import("dapple_textures._types")?
+        .getattr("Features")?
+        .call1(arrays)?)
+}

@@ -1,0 +1,121 @@
+//! Options from Python as data: dictionaries, lists, words and numbers, NumPy's too.
+
+use crate::error::{Error, Result};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyMapping, PySequence, PyString};
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Number, Value};
+
+/// The deepest nesting of data.
+const DEEPEST: usize = 100;
+
+/// Options that are read as a recipe reads them; `what` names them in messages.
+pub(crate) fn options<T: DeserializeOwned>(what: &str, data: &Bound<'_, PyAny>) -> Result<T> {
+    read(what, value(data)?)
+}
+
+/// Options that are read as a recipe reads them, or their default where there are none.
+pub(crate) fn options_or<T: DeserializeOwned>(
+    what: &str,
+    data: Option<&Bound<'_, PyAny>>,
+    default: T,
+) -> Result<T> {
+    data.map_or(Ok(default), |data| options(what, data))
+}
+
+/// What data says.
+pub(crate) fn read<T: DeserializeOwned>(what: &str, data: Value) -> Result<T> {
+    serde_json::from_value(data).map_err(|error| Error::new("options", format!("{what}: {error}")))
+}
+
+/// Python's data as that of the crates.
+pub(crate) fn value(data: &Bound<'_, PyAny>) -> Result<Value> {
+    nested(data, 0)
+}
+
+fn nested(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
+    if depth > DEEPEST {
+        let message = format!("data is nested more than {DEEPEST} times");
+        return Err(Error::new("options", message));
+    }
+    if data.is_none() {
+        return Ok(Value::Null);
+    }
+    if let Ok(flag) = data.cast::<PyBool>() {
+        return Ok(Value::Bool(flag.is_true()));
+    }
+    if let Ok(text) = data.cast::<PyString>() {
+        return Ok(Value::String(text.to_str()?.to_owned()));
+    }
+    if let Ok(mapping) = data.cast::<PyDict>() {
+        return object(mapping.iter(), depth);
+    }
+    if let Ok(mapping) = data.cast::<PyMapping>() {
+        let items = mapping.items()?;
+        let pairs: Vec<(Bound<'_, PyAny>, Bound<'_, PyAny>)> = items.extract()?;
+        return object(pairs.into_iter(), depth);
+    }
+    if let Ok(sequence) = data.cast::<PySequence>() {
+        return list(sequence.as_any(), depth);
+    }
+    number(data, depth)
+}
+
+fn object<'py>(
+    pairs: impl Iterator<Item = (Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+    depth: usize,
+) -> Result<Value> {
+    let mut map = Map::new();
+    for (key, data) in pairs {
+        let key = key
+            .cast::<PyString>()
+            .map_err(PyErr::from)?
+            .to_str()?
+            .to_owned();
+        map.insert(key, nested(&data, depth + 1)?);
+    }
+    Ok(Value::Object(map))
+}
+
+fn list(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
+    let items = data.try_iter()?.map(|item| nested(&item?, depth + 1));
+    Ok(Value::Array(items.collect::<Result<_>>()?))
+}
+
+/// Numbers of Python and of NumPy, and NumPy's arrays.
+fn number(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
+    if data.hasattr("tolist")? {
+        return nested(&data.call_method0("tolist")?, depth + 1);
+    }
+    if data.is_instance_of::<PyInt>()
+        || (data.hasattr("__index__")? && !data.is_instance_of::<PyFloat>())
+    {
+        let number = data.extract::<u64>().map(Number::from);
+        return Ok(Value::Number(
+            number.or_else(|_| data.extract::<i64>().map(Number::from))?,
+        ));
+    }
+    if data.hasattr("__float__")? {
+        let number: f64 = data.extract()?;
+        return Number::from_f64(number)
+            .map(Value::Number)
+            .ok_or_else(|| Error::new("options", format!("the number {number} is not finite")));
+    }
+    let message = format!(
+        "{} is no data: use dictionaries, lists, words and numbers",
+        data.get_type()
+    );
+    Err(PyTypeError::new_err(message).into())
+}
+
+/// The value of this name of a kind of values with names.
+pub(crate) fn named<T: dapple::raster::Named>(what: &str, name: &str) -> Result<T> {
+    T::from_name(name).ok_or_else(|| {
+        let names = T::NAMES.join(", ");
+        Error::new(
+            "name",
+            format!("the {what} is `{name}`, but it must be one of {names}"),
+        )
+    })
+}

@@ -1,0 +1,132 @@
+//! The one error of the package, and how those of the crates become it.
+
+use dapple::{
+    color::ColorError, graph::GraphError, image::ImageError, mesh::MeshError, mesh_io::MeshIoError,
+    points::PointsError, pups::PupsError, raster::RasterError, recipe::RecipeError,
+    synth::SynthError, tile::TileError, wavelet::WaveletError, worley::WorleyError,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+pyo3::create_exception!(
+    dapple_textures,
+    DappleError,
+    PyValueError,
+    "A value that the library refuses. The message names the limit and the value; `kind` is the kind of the limit in \
+     small letters, `node` the node of a recipe, and `hint` what was perhaps meant; the last two may be None."
+);
+
+/// Why a call failed, before it is an exception.
+pub(crate) enum Error {
+    /// A limit of the library.
+    Refused(Refusal),
+    /// An exception of Python's.
+    Python(PyErr),
+}
+
+/// What a [`DappleError`] says.
+pub(crate) struct Refusal {
+    kind: String,
+    message: String,
+    node: Option<String>,
+    hint: Option<String>,
+}
+
+/// What a call gives.
+pub(crate) type Result<T> = core::result::Result<T, Error>;
+
+impl Error {
+    /// A refusal of the package's own: its kind in small letters, and its message.
+    pub(crate) fn new(kind: &str, message: impl Into<String>) -> Self {
+        Self::Refused(Refusal {
+            kind: kind.to_owned(),
+            message: message.into(),
+            node: None,
+            hint: None,
+        })
+    }
+
+    /// A refusal of a crate: its kind is the name of the value of its enum.
+    fn of(kind: &impl core::fmt::Debug, message: &impl ToString) -> Self {
+        Self::new(&snake_case(&format!("{kind:?}")), message.to_string())
+    }
+}
+
+/// The name that a debug text begins with, in small letters, words joined by `_`.
+fn snake_case(text: &str) -> String {
+    let mut name = String::new();
+    for letter in text.chars().take_while(|letter| letter.is_alphanumeric()) {
+        if letter.is_uppercase() && !name.is_empty() {
+            name.push('_');
+        }
+        name.extend(letter.to_lowercase());
+    }
+    name
+}
+
+macro_rules! refusals {
+    ($($error:ty),* $(,)?) => {$(
+        impl From<$error> for Error {
+            fn from(error: $error) -> Self {
+                Self::of(error.kind(), &error)
+            }
+        }
+    )*};
+}
+
+refusals!(
+    ColorError,
+    GraphError,
+    ImageError,
+    MeshError,
+    MeshIoError,
+    PointsError,
+    PupsError,
+    RasterError,
+    SynthError,
+    TileError,
+    WaveletError,
+    WorleyError,
+);
+
+impl From<RecipeError> for Error {
+    fn from(error: RecipeError) -> Self {
+        let mut refusal = Refusal {
+            kind: snake_case(&format!("{:?}", error.kind())),
+            message: error.to_string(),
+            node: error.node().map(str::to_owned),
+            hint: error.nearest().map(str::to_owned),
+        };
+        if refusal.kind == "global" {
+            refusal.hint = Some(
+                "bake the node `tile` or `blend_map` first and give the result to the recipe as an image".to_owned(),
+            );
+        }
+        Self::Refused(refusal)
+    }
+}
+
+impl From<PyErr> for Error {
+    fn from(error: PyErr) -> Self {
+        Self::Python(error)
+    }
+}
+
+impl From<Error> for PyErr {
+    fn from(error: Error) -> Self {
+        let refusal = match error {
+            Error::Python(error) => return error,
+            Error::Refused(refusal) => refusal,
+        };
+        Python::attach(|py| {
+            let error = DappleError::new_err(refusal.message);
+            let value = error.value(py);
+            let set = || {
+                value.setattr("kind", refusal.kind)?;
+                value.setattr("node", refusal.node)?;
+                value.setattr("hint", refusal.hint)
+            };
+            set().err().unwrap_or(error)
+        })
+    }
+}

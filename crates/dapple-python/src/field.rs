@@ -1,0 +1,413 @@
+//! Fields: values at every position.
+
+use crate::arrays::{self, Positions};
+use crate::error::{Error, Result};
+use crate::function::{Function, Made, position};
+use crate::generators::Worley;
+use crate::grid::{Grid, GridArguments, pair};
+use crate::threads;
+use dapple::raster::{Field as _, FractalShape, PairOperation, RasterViewMut};
+use numpy::{PyArrayDyn, PyArrayMethods};
+use pyo3::prelude::*;
+use sha2::{Digest, Sha256};
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// A function with a value at every position: of the plane, of space, or of space and time.
+///
+/// Fields are made by `worley`, `gradient_noise`, `wavelet_noise`, `pups` and others, and are composed: `a + b`, `a * 0.5`,
+/// `a.warp(x, y, 0.1)`. A field is its description: it can be pickled, compared and used as a key, and the same
+/// description gives the same bits on every machine.
+#[pyclass(frozen, subclass, module = "dapple_textures")]
+pub(crate) struct Field {
+    made: Made,
+    function: Function,
+}
+
+/// The positions that a thread takes at a time.
+const CHUNK: usize = 4096;
+
+impl Field {
+    /// The field that a description gives.
+    pub(crate) fn new(made: Made) -> Result<Self> {
+        let function = made.build()?;
+        Ok(Self { made, function })
+    }
+
+    /// How it was made.
+    pub(crate) fn made(&self) -> &Made {
+        &self.made
+    }
+
+    /// The function of the plane that it is.
+    pub(crate) fn plane(&self) -> Result<std::sync::Arc<dyn dapple::raster::Field>> {
+        match &self.function {
+            Function::Plane(field) => Ok(field.clone()),
+            Function::Space(_) => Err(Error::new(
+                "axes",
+                "a field of the plane is needed: take `slice(…)` first",
+            )),
+        }
+    }
+
+    fn boxed(&self) -> Box<Made> {
+        Box::new(self.made.clone())
+    }
+
+    /// The periods along all axes.
+    fn periods(&self) -> Vec<Option<f64>> {
+        match &self.function {
+            Function::Plane(field) => field.period().to_vec(),
+            Function::Space(volume) => volume.period(),
+        }
+    }
+
+    /// Values at the pixels of a grid, into memory of their number.
+    fn fill(&self, grid: &Grid, values: &mut [f32]) -> Result<()> {
+        let window = grid.plane();
+        match &self.function {
+            Function::Plane(field) => {
+                field.render(
+                    &window,
+                    RasterViewMut::new(values, window.size[0] as usize, window.size)?,
+                )?;
+            }
+            Function::Space(volume) => volume.render(&window, &grid.planes(), values)?,
+        }
+        Ok(())
+    }
+
+    /// This field and another field or number, value by value.
+    fn with(
+        &self,
+        other: &Bound<'_, PyAny>,
+        operation: PairOperation,
+        is_first: bool,
+    ) -> Result<Self> {
+        let (this, other) = (self.boxed(), Box::new(operand(other)?));
+        let (first, second) = if is_first {
+            (this, other)
+        } else {
+            (other, this)
+        };
+        Self::new(Made::Pair {
+            first,
+            second,
+            operation,
+        })
+    }
+
+    fn fractal(
+        &self,
+        octaves: u32,
+        gain: f64,
+        lacunarity: f64,
+        shape: FractalShape,
+    ) -> Result<Self> {
+        Self::new(Made::Fractal {
+            field: self.boxed(),
+            octaves,
+            gain,
+            lacunarity,
+            shape,
+        })
+    }
+
+    fn description(&self) -> Result<String> {
+        serde_json::to_string(&self.made)
+            .map_err(|error| Error::new("description", error.to_string()))
+    }
+}
+
+/// A field, or a number as a field.
+fn operand(other: &Bound<'_, PyAny>) -> Result<Made> {
+    if let Ok(field) = other.cast::<Field>() {
+        return Ok(field.get().made.clone());
+    }
+    Ok(Made::Constant(other.extract()?))
+}
+
+/// The field that is described, as the class that it has.
+#[pyfunction]
+pub(crate) fn _field_from_description(py: Python<'_>, description: &str) -> Result<Py<PyAny>> {
+    let made = serde_json::from_str(description);
+    match made.map_err(|error| Error::new("description", error.to_string()))? {
+        Made::Worley(made) => Worley::from_made(py, made),
+        made => Ok(Py::new(py, Field::new(made)?)?.into_any()),
+    }
+}
+
+/// A number as a field.
+#[pyfunction]
+pub(crate) fn constant(value: f32) -> Result<Field> {
+    Field::new(Made::Constant(value))
+}
+
+#[pymethods]
+impl Field {
+    /// The number of axes: 2, 3 or 4.
+    #[getter]
+    fn ndim(&self) -> usize {
+        self.periods().len()
+    }
+
+    /// The distances after which the field repeats, x first: None where it does not, or where that is not known, and 0
+    /// where nothing changes along the axis.
+    #[getter]
+    fn period(&self) -> Vec<Option<f64>> {
+        self.periods()
+    }
+
+    /// The values at the pixels of an array, float32.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : (rows, columns), or a number for both; (depth, rows, columns) of three axes.
+    /// extent : (x, y), what the array covers, in units of the field; one period by default, and 1 where there is none.
+    /// origin : (x, y) of the corner of the first pixel; 0 by default.
+    /// window : the part to make, as `np.s_[100:150, 33:94]`: bit for bit the crop of the whole. It may lie outside.
+    /// out : memory for the values, a float32 array in C order; a new array by default.
+    #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        size: &Bound<'py, PyAny>,
+        extent: Option<&Bound<'py, PyAny>>,
+        origin: Option<&Bound<'py, PyAny>>,
+        window: Option<&Bound<'py, PyAny>>,
+        out: Option<Bound<'py, PyArrayDyn<f32>>>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let grid = Grid::new(
+            &GridArguments {
+                size,
+                extent,
+                origin,
+                window,
+            },
+            &self.periods(),
+        )?;
+        let n_values = grid.n_values()?;
+        let Some(out) = out else {
+            let values = threads::run(py, || -> Result<Vec<f32>> {
+                let mut values = vec![0.0; n_values];
+                self.fill(&grid, &mut values)?;
+                Ok(values)
+            })??;
+            return arrays::array(py, values, &grid.shape());
+        };
+        let mut memory = out.try_readwrite().map_err(PyErr::from)?;
+        if memory.as_array().shape() != grid.shape() {
+            let message = format!(
+                "`out` has the shape {:?}, but {:?} is needed",
+                memory.as_array().shape(),
+                grid.shape()
+            );
+            return Err(Error::new("shape", message));
+        }
+        let values = memory
+            .as_slice_mut()
+            .map_err(|_| Error::new("order", "`out` is not in C order without gaps"))?;
+        threads::run(py, || self.fill(&grid, values))??;
+        drop(memory);
+        Ok(out.into_any())
+    }
+
+    /// The values at positions of the shape (…, ndim), x first: float32 of the shape (…).
+    fn sample<'py>(
+        &self,
+        py: Python<'py>,
+        positions: &Bound<'py, PyAny>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let n_axes = self.ndim();
+        let positions = Positions::read(positions, n_axes)?;
+        let values = threads::run(py, || -> Result<Vec<f32>> {
+            let mut values = vec![0.0; positions.numbers.len() / n_axes];
+            dapple::raster::parallel::for_each_chunk(&mut values, CHUNK, |chunk, values| {
+                let first = chunk * CHUNK * n_axes;
+                let numbers = &positions.numbers[first..first + values.len() * n_axes];
+                let places = numbers.chunks_exact(n_axes);
+                match &self.function {
+                    Function::Plane(field) => {
+                        let places: Vec<_> = places.map(position).collect();
+                        // The lengths are equal, and there is no other error.
+                        let _ = field.sample_many(&places, values);
+                    }
+                    Function::Space(volume) => {
+                        for (value, place) in values.iter_mut().zip(places) {
+                            *value = volume.sample(place);
+                        }
+                    }
+                }
+            });
+            Ok(values)
+        })??;
+        arrays::array(py, values, &positions.shape)
+    }
+
+    /// The plane of the first two axes at the further coordinates: `slice(z)` of three axes, `slice(z, w)` of four.
+    #[pyo3(signature = (*rest))]
+    fn slice(&self, rest: Vec<f64>) -> Result<Self> {
+        Self::new(Made::Slice {
+            field: self.boxed(),
+            rest,
+        })
+    }
+
+    /// This field at positions times a frequency: one number, or (x, y).
+    fn frequency(&self, frequency: &Bound<'_, PyAny>) -> Result<Self> {
+        let frequency = pair("frequency", frequency)?.to_array();
+        Self::new(Made::Frequency {
+            field: self.boxed(),
+            frequency,
+        })
+    }
+
+    /// This field at positions plus an offset (x, y).
+    fn offset(&self, offset: &Bound<'_, PyAny>) -> Result<Self> {
+        let offset = pair("offset", offset)?.to_array();
+        Self::new(Made::Offset {
+            field: self.boxed(),
+            offset,
+        })
+    }
+
+    /// This field at positions turned by an angle about the origin, in radians, from x to y.
+    fn rotate(&self, angle: f64) -> Result<Self> {
+        Self::new(Made::Rotate {
+            field: self.boxed(),
+            angle,
+        })
+    }
+
+    /// This field at positions moved by `amount` times the values of the fields `x` and `y` (domain warping).
+    fn warp(&self, x: &Self, y: &Self, amount: f64) -> Result<Self> {
+        Self::new(Made::Warp {
+            field: self.boxed(),
+            x: x.boxed(),
+            y: y.boxed(),
+            amount,
+        })
+    }
+
+    /// This field with the range `old` of its values mapped to the range `new`, and beyond.
+    #[pyo3(signature = (old, new = [0.0, 1.0]), text_signature = "(self, old, new=(0.0, 1.0))")]
+    fn remap(&self, old: [f32; 2], new: [f32; 2]) -> Result<Self> {
+        Self::new(Made::Remap {
+            field: self.boxed(),
+            from: old,
+            to: new,
+        })
+    }
+
+    /// This field with values below `low` and above `high` replaced by these.
+    #[pyo3(signature = (low = 0.0, high = 1.0))]
+    fn clamp(&self, low: f32, high: f32) -> Result<Self> {
+        Self::new(Made::Clamp {
+            field: self.boxed(),
+            bounds: [low, high],
+        })
+    }
+
+    /// The smaller of this field and another field or number, everywhere.
+    fn minimum(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+        self.with(other, PairOperation::Minimum, true)
+    }
+
+    /// The larger of this field and another field or number, everywhere.
+    fn maximum(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+        self.with(other, PairOperation::Maximum, true)
+    }
+
+    /// From this field, where `by` is 0, to another field or number, where it is 1.
+    fn mix(&self, to: &Bound<'_, PyAny>, by: &Bound<'_, PyAny>) -> Result<Self> {
+        let (to, by) = (Box::new(operand(to)?), Box::new(operand(by)?));
+        Self::new(Made::Mix {
+            from: self.boxed(),
+            to,
+            by,
+        })
+    }
+
+    /// Fractional Brownian motion of this field: the sum of octaves, each finer and lower than the one before.
+    #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
+    fn fbm(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
+        self.fractal(octaves, gain, lacunarity, FractalShape::Sum)
+    }
+
+    /// The sum of octaves of `1 - |value|`: ridges where values go through 0.
+    #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
+    fn ridged(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
+        self.fractal(octaves, gain, lacunarity, FractalShape::Ridged)
+    }
+
+    /// The sum of octaves of `|value|`: creases, and round hills between them (turbulence).
+    #[pyo3(signature = (octaves = 6, *, gain = 0.5, lacunarity = 2.0))]
+    fn billow(&self, octaves: u32, gain: f64, lacunarity: f64) -> Result<Self> {
+        self.fractal(octaves, gain, lacunarity, FractalShape::Billow)
+    }
+
+    fn __add__(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+        self.with(other, PairOperation::Add, true)
+    }
+
+    fn __radd__(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+        self.with(other, PairOperation::Add, false)
+    }
+
+    fn __sub__(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+        self.with(other, PairOperation::Subtract, true)
+    }
+
+    fn __rsub__(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+        self.with(other, PairOperation::Subtract, false)
+    }
+
+    fn __mul__(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+        self.with(other, PairOperation::Multiply, true)
+    }
+
+    fn __rmul__(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+        self.with(other, PairOperation::Multiply, false)
+    }
+
+    fn __neg__(&self) -> Result<Self> {
+        let (first, second) = (self.boxed(), Box::new(Made::Constant(-1.0)));
+        Self::new(Made::Pair {
+            first,
+            second,
+            operation: PairOperation::Multiply,
+        })
+    }
+
+    fn __abs__(&self) -> Result<Self> {
+        Self::new(Made::Absolute(self.boxed()))
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other
+            .cast::<Self>()
+            .is_ok_and(|other| other.get().made == self.made)
+    }
+
+    fn __hash__(&self) -> Result<u64> {
+        let mut hasher = DefaultHasher::new();
+        self.description()?.hash(&mut hasher);
+        Ok(hasher.finish())
+    }
+
+    fn __reduce__(&self, py: Python<'_>) -> Result<(Py<PyAny>, (String,))> {
+        let make = py
+            .import("dapple_textures._native")?
+            .getattr("_field_from_description")?;
+        Ok((make.unbind(), (self.description()?,)))
+    }
+
+    /// The name by which Dask knows what is computed from the field: the same in all processes.
+    fn __dask_tokenize__(&self) -> Result<String> {
+        let hash = Sha256::digest(self.description()?);
+        Ok(hash.iter().map(|byte| format!("{byte:02x}")).collect())
+    }
+
+    fn __repr__(&self) -> Result<String> {
+        Ok(format!("Field({})", self.description()?))
+    }
+}

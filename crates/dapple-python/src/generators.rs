@@ -1,0 +1,49 @@
+//! Fields that draw from a seed: Worley's cells, gradient noise, wavelet noise.
+
+mod cells;
+mod gradient;
+mod wavelet;
+
+pub(crate) use cells::{CellsMade, Worley, worley};
+pub(crate) use gradient::{GradientMade, gradient_noise};
+pub(crate) use wavelet::{WaveletMade, wavelet_noise};
+
+use crate::error::{Error, Result};
+use pyo3::prelude::*;
+
+/// Periods along axes in cells: one for all, or one for each, None where a field does not repeat.
+fn periods(data: Option<&Bound<'_, PyAny>>, n_axes: usize) -> Result<Vec<Option<u32>>> {
+    let Some(data) = data else {
+        return Ok(vec![None; n_axes]);
+    };
+    let periods = match data.extract::<u32>() {
+        Ok(cells) => vec![Some(cells); n_axes],
+        Err(_) => data.extract::<Vec<Option<u32>>>()?,
+    };
+    if periods.len() != n_axes {
+        let message = format!(
+            "the period has {} numbers, but {n_axes} are needed, x first",
+            periods.len()
+        );
+        return Err(Error::new("count", message));
+    }
+    Ok(periods)
+}
+
+/// Refuses a number of axes that there is no field of.
+fn unknown_axes(dims: usize, known: &str) -> Error {
+    Error::new(
+        "axes",
+        format!("the number of axes is {dims}, but it must be {known}"),
+    )
+}
+
+/// The numbers as an array of as many.
+fn array<T: Copy, const N: usize>(numbers: &[T]) -> Result<[T; N]> {
+    numbers.try_into().map_err(|_| {
+        Error::new(
+            "count",
+            format!("there are {} numbers, but {N} are needed", numbers.len()),
+        )
+    })
+}

@@ -1,0 +1,674 @@
+//! Worley's cells, in two to four dimensions.
+
+use super::{array, periods, unknown_axes};
+use crate::arrays::{self, Positions};
+use crate::data;
+use crate::error::{Error, Result};
+use crate::field::Field;
+use crate::function::{Function, Made, Volume};
+use crate::grid::{Grid, GridArguments};
+use crate::seed::SeedArgument;
+use crate::threads;
+use dapple::hash::Seed;
+use dapple::raster::glam::DVec2;
+use dapple::raster::{Field as _, Raster, RasterError, RasterViewMut, Window};
+use dapple::recipe::WorleyValue;
+use dapple::worley::{
+    Axes, Cellular, EdgeDistances, Feature, FeatureView, Fractal, LIMIT, Metric, Octaves, Plane,
+    Scatter, Space, Vector, Worley as Basis,
+};
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// How a field of cells was made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct CellsMade {
+    seed: Seed,
+    dims: usize,
+    value: WorleyValue,
+    metric: Metric,
+    scatter: Scatter,
+    period: Vec<Option<u32>>,
+    octaves: Option<Octaves>,
+    range: CellsRange,
+}
+
+/// The range of values that becomes 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum CellsRange {
+    /// None: the values are distances.
+    Plain,
+    /// The measured one.
+    Normalized,
+    /// This one.
+    Given([f32; 2]),
+}
+
+/// What is drawn of cells.
+enum Texture<const N: usize>
+where
+    Axes: Space<N>,
+{
+    Cellular(Cellular<N>),
+    Fractal(Fractal<N>),
+    Edges(EdgeDistances<N>),
+    CellValues(Basis<N>),
+}
+
+/// A texture of more axes at a plane.
+struct Section<const N: usize>
+where
+    Axes: Space<N>,
+{
+    texture: Arc<Texture<N>>,
+    plane: Plane<N>,
+}
+
+impl CellsMade {
+    pub(crate) fn build(&self) -> Result<Function> {
+        match self.dims {
+            2 => {
+                let texture = self.texture::<2>()?;
+                let field: Arc<dyn dapple::raster::Field> = match texture {
+                    Texture::Cellular(cellular) => Arc::new(cellular),
+                    Texture::Fractal(fractal) => Arc::new(fractal),
+                    Texture::Edges(edges) => Arc::new(edges),
+                    Texture::CellValues(basis) => Arc::new(basis.cell_values()),
+                };
+                Ok(Function::Plane(field))
+            }
+            3 => self.volume::<3>(),
+            4 => self.volume::<4>(),
+            dims => Err(unknown_axes(dims, "2, 3 or 4")),
+        }
+    }
+
+    fn volume<const N: usize>(&self) -> Result<Function>
+    where
+        Axes: Space<N>,
+    {
+        let texture = Arc::new(self.texture::<N>()?);
+        let period = self
+            .period
+            .iter()
+            .map(|period| period.map(f64::from))
+            .collect();
+        Ok(Function::Space(Arc::new(Cells { texture, period })))
+    }
+
+    /// The basis without what is made of its distances.
+    fn basis<const N: usize>(&self) -> Result<Basis<N>>
+    where
+        Axes: Space<N>,
+    {
+        let basis = Basis::<N>::new(self.seed)
+            .with_metric(self.metric)?
+            .with_scatter(self.scatter)?;
+        Ok(basis.with_period(array(&self.period)?)?)
+    }
+
+    fn texture<const N: usize>(&self) -> Result<Texture<N>>
+    where
+        Axes: Space<N>,
+    {
+        let basis = self.basis::<N>()?;
+        let WorleyValue::Combination(combination) = self.value else {
+            let is_edges = self.value == WorleyValue::EdgeDistance;
+            if self.octaves.is_some() || self.range != CellsRange::Plain {
+                return Err(Error::new(
+                    "conflict",
+                    "`cell_value` and `edge_distance` have neither `octaves` nor a `range`",
+                ));
+            }
+            if is_edges && self.metric != Metric::Euclidean {
+                return Err(Error::new(
+                    "conflict",
+                    "`edge_distance` is of the Euclidean metric",
+                ));
+            }
+            return Ok(if is_edges {
+                Texture::Edges(basis.edge_distances())
+            } else {
+                Texture::CellValues(basis)
+            });
+        };
+        let cellular = basis.combine(combination);
+        let Some(octaves) = self.octaves else {
+            return Ok(Texture::Cellular(match self.range {
+                CellsRange::Plain => cellular,
+                CellsRange::Normalized => cellular.normalized()?,
+                CellsRange::Given(range) => cellular.with_range(range)?,
+            }));
+        };
+        let fractal = cellular.fractal(octaves)?;
+        Ok(Texture::Fractal(match self.range {
+            CellsRange::Plain => fractal,
+            CellsRange::Normalized => {
+                return Err(Error::new(
+                    "no_range",
+                    "octaves of cells have no measured range; give one as `range`",
+                ));
+            }
+            CellsRange::Given(range) => fractal.with_range(range)?,
+        }))
+    }
+}
+
+impl<const N: usize> Texture<N>
+where
+    Axes: Space<N>,
+{
+    fn value(&self, position: Vector<N>) -> f32 {
+        match self {
+            Self::Cellular(cellular) => cellular.value(position),
+            Self::Fractal(fractal) => fractal.value(position),
+            Self::Edges(edges) => edges.value(position),
+            Self::CellValues(basis) => {
+                let [nearest] = basis.sample(position);
+                if nearest.distance.is_nan() {
+                    f32::NAN
+                } else {
+                    nearest.cell_value()
+                }
+            }
+        }
+    }
+}
+
+/// A texture of three or four axes.
+struct Cells<const N: usize>
+where
+    Axes: Space<N>,
+{
+    texture: Arc<Texture<N>>,
+    period: Vec<Option<f64>>,
+}
+
+/// The plane along the first two axes at the further coordinates.
+fn plane<const N: usize>(rest: &[f64]) -> Plane<N>
+where
+    Axes: Space<N>,
+{
+    let mut origin = [0.0; N];
+    origin[2..].copy_from_slice(rest);
+    Plane::slice(origin.into())
+}
+
+impl<const N: usize> Volume for Cells<N>
+where
+    Axes: Space<N>,
+{
+    fn period(&self) -> Vec<Option<f64>> {
+        self.period.clone()
+    }
+
+    fn sample(&self, position: &[f64]) -> f32 {
+        let position: [f64; N] = core::array::from_fn(|axis| position[axis]);
+        self.texture.value(position.into())
+    }
+
+    fn slice(&self, rest: &[f64]) -> Arc<dyn dapple::raster::Field> {
+        Arc::new(Section {
+            texture: Arc::clone(&self.texture),
+            plane: plane::<N>(rest),
+        })
+    }
+
+    fn render(
+        &self,
+        window: &Window,
+        planes: &[Vec<f64>],
+        values: &mut [f32],
+    ) -> core::result::Result<(), RasterError> {
+        let views = values
+            .chunks_mut(window.n_pixels())
+            .map(|values| RasterViewMut::new(values, window.size[0] as usize, window.size));
+        let slices = planes
+            .iter()
+            .zip(views)
+            .map(|(rest, view)| Ok((plane::<N>(rest), view?)));
+        let slices: Vec<_> = slices.collect::<core::result::Result<_, RasterError>>()?;
+        match self.texture.as_ref() {
+            Texture::Cellular(cellular) => cellular.render_slices(window, slices),
+            Texture::Fractal(fractal) => fractal.render_slices(window, slices),
+            _ => {
+                for (plane, view) in slices {
+                    let section = Section {
+                        texture: Arc::clone(&self.texture),
+                        plane,
+                    };
+                    section.render(window, view)?;
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+impl<const N: usize> dapple::raster::Field for Section<N>
+where
+    Axes: Space<N>,
+{
+    fn sample(&self, position: DVec2) -> f32 {
+        self.texture.value(self.plane.position(position))
+    }
+
+    fn render(
+        &self,
+        window: &Window,
+        mut out: RasterViewMut<'_, f32>,
+    ) -> core::result::Result<(), RasterError> {
+        match self.texture.as_ref() {
+            Texture::Cellular(cellular) => cellular.render_plane(&self.plane, window, out),
+            Texture::Fractal(fractal) => fractal.render_plane(&self.plane, window, out),
+            Texture::Edges(edges) => edges.render_plane(&self.plane, window, out),
+            Texture::CellValues(basis) => {
+                window.check_size(out.size())?;
+                let mut ids = Raster::filled(window.size, 0_u64)?;
+                let nearest = FeatureView {
+                    id: Some(ids.view_mut()),
+                    ..FeatureView::default()
+                };
+                basis.render_features(&self.plane, window, [nearest])?;
+                for (row, values) in (0..).zip(out.rows_mut()) {
+                    for (value, &id) in values.iter_mut().zip(ids.row(row)) {
+                        *value = Feature {
+                            distance: 0.0,
+                            vector: (),
+                            id,
+                        }
+                        .cell_value();
+                    }
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Worley's cells: a field whose value is made of the distances to the nearest of scattered feature points.
+///
+/// It has all that a `Field` has, and the feature points themselves.
+#[pyclass(extends = Field, frozen, module = "dapple_textures")]
+pub(crate) struct Worley {
+    made: CellsMade,
+}
+
+impl Worley {
+    fn with(py: Python<'_>, made: CellsMade) -> Result<Py<Self>> {
+        let field = Field::new(Made::Worley(made.clone()))?;
+        Ok(Py::new(
+            py,
+            PyClassInitializer::from(field).add_subclass(Self { made }),
+        )?)
+    }
+
+    /// The field that a description of cells gives.
+    pub(crate) fn from_made(py: Python<'_>, made: CellsMade) -> Result<Py<PyAny>> {
+        Ok(Self::with(py, made)?.into_any())
+    }
+}
+
+/// Worley's cells, after Steven Worley's "A Cellular Texture Basis Function" (1996).
+///
+/// Positions and distances are in cells. The same seed gives the same bits on every machine.
+///
+/// Parameters
+/// ----------
+/// seed : int, from 0 to 2**64 - 1.
+/// dims : 2, 3 or 4 axes.
+/// value : "f1" to "f4" (distance to the nearest, second, … feature point), a difference such as "f2_minus_f1",
+///     "cell_value" (a random number from 0 to 1 for each cell), "edge_distance" (to the nearest border of a cell), or
+///     the four coefficients of F1 to F4.
+/// metric : "euclidean", "squared", "manhattan", "chebyshev", or {"minkowski": {"exponent": 3}}.
+/// scatter : {"poisson": {"density": 3}}, the paper's; {"unclamped": {"density": 3}}; {"jittered": {"jitter": 1}}, one
+///     point in each cell.
+/// period : cells after which it repeats exactly: one number, or one for each axis, x first; None where it does not.
+/// octaves : a fractal sum, {"count": 6, "lacunarity": 2, "gain": 0.5, "seeds": "own"}.
+/// range : the two values that become 0 and 1.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> cracks = dp.worley(seed=7, value="f2_minus_f1", period=8).normalized()
+/// >>> cracks.render(256, extent=8).shape
+/// (256, 256)
+#[pyfunction]
+#[pyo3(signature = (*, seed = SeedArgument::default(), dims = 2, value = None, metric = None, scatter = None, period = None, octaves = None, range = None),
+    text_signature = "(*, seed=0, dims=2, value='f1', metric='euclidean', scatter=None, period=None, octaves=None, range=None)")]
+#[expect(clippy::too_many_arguments, reason = "they are keywords")]
+pub(crate) fn worley(
+    py: Python<'_>,
+    seed: SeedArgument,
+    dims: usize,
+    value: Option<&Bound<'_, PyAny>>,
+    metric: Option<&Bound<'_, PyAny>>,
+    scatter: Option<&Bound<'_, PyAny>>,
+    period: Option<&Bound<'_, PyAny>>,
+    octaves: Option<&Bound<'_, PyAny>>,
+    range: Option<[f32; 2]>,
+) -> Result<Py<Worley>> {
+    if !(2..=4).contains(&dims) {
+        return Err(unknown_axes(dims, "2, 3 or 4"));
+    }
+    let made = CellsMade {
+        seed: seed.0,
+        dims,
+        value: data::options_or("value", value, WorleyValue::default())?,
+        metric: data::options_or("metric", metric, Metric::default())?,
+        scatter: data::options_or("scatter", scatter, Scatter::default())?,
+        period: periods(period, dims)?,
+        octaves: data::options_or("octaves", octaves, None)?,
+        range: range.map_or(CellsRange::Plain, CellsRange::Given),
+    };
+    Worley::with(py, made)
+}
+
+/// Calls a function with the number of axes and of feature points as constants.
+macro_rules! with_counts {
+    ($dims:expr, $count:expr, $call:ident($($argument:expr),*)) => {
+        match ($dims, $count) {
+            (2, 1) => $call::<2, 1>($($argument),*),
+            (2, 2) => $call::<2, 2>($($argument),*),
+            (2, 3) => $call::<2, 3>($($argument),*),
+            (2, _) => $call::<2, 4>($($argument),*),
+            (3, 1) => $call::<3, 1>($($argument),*),
+            (3, 2) => $call::<3, 2>($($argument),*),
+            (3, 3) => $call::<3, 3>($($argument),*),
+            (3, _) => $call::<3, 4>($($argument),*),
+            (_, 1) => $call::<4, 1>($($argument),*),
+            (_, 2) => $call::<4, 2>($($argument),*),
+            (_, 3) => $call::<4, 3>($($argument),*),
+            _ => $call::<4, 4>($($argument),*),
+        }
+    };
+}
+
+#[pymethods]
+impl Worley {
+    /// These cells with values mapped so that about 0 to 1 is their range, which was measured.
+    fn normalized(&self, py: Python<'_>) -> Result<Py<Self>> {
+        if self.made.range != CellsRange::Plain {
+            return Err(Error::new("no_range", "the range was set before"));
+        }
+        Self::with(
+            py,
+            CellsMade {
+                range: CellsRange::Normalized,
+                ..self.made.clone()
+            },
+        )
+    }
+
+    /// The nearest feature points of positions, nearest first.
+    ///
+    /// `positions` has the shape (…, dims), x first, in cells; `count` is from 1 to 4. The result has `distance` (…, count),
+    /// float32; `vector` (…, count, dims), float64, from the feature point to the position; `id` (…, count), uint64, what
+    /// a point is known by.
+    #[pyo3(signature = (positions, *, count = 1))]
+    fn features<'py>(
+        &self,
+        py: Python<'py>,
+        positions: &Bound<'py, PyAny>,
+        count: usize,
+    ) -> Result<Bound<'py, PyAny>> {
+        check_count(count)?;
+        let positions = Positions::read(positions, self.made.dims)?;
+        let found = threads::run(py, || {
+            with_counts!(self.made.dims, count, find(&self.made, &positions.numbers))
+        })??;
+        let shape = [&positions.shape[..], &[count]].concat();
+        let vectors = [&shape[..], &[self.made.dims]].concat();
+        let arrays = (
+            arrays::array(py, found.distance, &shape)?,
+            arrays::array(py, found.vector, &vectors)?,
+            arrays::array(py, found.id, &shape)?,
+        );
+        arrays::features(py, arrays)
+    }
+
+    /// The nearest feature points at the pixels of a plane: what `features` gives there, bit for bit.
+    ///
+    /// `outputs` names the planes to make; the others are None. With `count` points their shapes are (count, rows,
+    /// columns) and, for vectors, (count, rows, columns, dims), float32. Fields of more than two axes are cut where the
+    /// further coordinates are `at`.
+    #[pyo3(signature = (size, *, count = 1, outputs = None, extent = None, origin = None, window = None, at = None),
+        text_signature = "(self, size, *, count=1, outputs=('distance', 'vector', 'id'), extent=None, origin=None, window=None, at=None)")]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
+    fn render_features<'py>(
+        &self,
+        py: Python<'py>,
+        size: &Bound<'py, PyAny>,
+        count: usize,
+        outputs: Option<Vec<String>>,
+        extent: Option<&Bound<'py, PyAny>>,
+        origin: Option<&Bound<'py, PyAny>>,
+        window: Option<&Bound<'py, PyAny>>,
+        at: Option<Vec<f64>>,
+    ) -> Result<Bound<'py, PyAny>> {
+        check_count(count)?;
+        let dims = self.made.dims;
+        let period: Vec<_> = self.made.period[..2]
+            .iter()
+            .map(|cells| cells.map(f64::from))
+            .collect();
+        let grid = Grid::new(
+            &GridArguments {
+                size,
+                extent,
+                origin,
+                window,
+            },
+            &period,
+        )?;
+        let rest = at.unwrap_or_else(|| vec![0.0; dims - 2]);
+        if rest.len() != dims - 2 {
+            let message = format!(
+                "`at` has {} numbers, but {} are needed",
+                rest.len(),
+                dims - 2
+            );
+            return Err(Error::new("count", message));
+        }
+        let names = outputs.unwrap_or_else(|| OUTPUTS.map(str::to_owned).to_vec());
+        if let Some(name) = names.iter().find(|name| !OUTPUTS.contains(&name.as_str())) {
+            let message = format!(
+                "the output is `{name}`, but it must be one of {}",
+                OUTPUTS.join(", ")
+            );
+            return Err(Error::new("name", message));
+        }
+        let wanted = OUTPUTS.map(|output| names.iter().any(|name| name == output));
+        let shape = [&[count][..], &grid.shape()].concat();
+        let n_values = grid.n_values()?;
+        let window = grid.plane();
+        let work = || {
+            with_counts!(
+                dims,
+                count,
+                draw(&self.made, &window, &rest, wanted, n_values)
+            )
+        };
+        let drawn = threads::run(py, work)??;
+        let vectors = [&shape[..], &[dims]].concat();
+        let arrays = (
+            drawn
+                .distance
+                .map(|values| arrays::array(py, values, &shape))
+                .transpose()?,
+            drawn
+                .vector
+                .map(|values| arrays::array(py, values, &vectors))
+                .transpose()?,
+            drawn
+                .id
+                .map(|values| arrays::array(py, values, &shape))
+                .transpose()?,
+        );
+        arrays::features(py, arrays)
+    }
+
+    /// The gradients of the value at positions of the shape (…, dims), per cell: float64 of the same shape.
+    ///
+    /// On the borders between cells the gradient jumps. Cell values and edge distances have none.
+    fn gradient<'py>(
+        &self,
+        py: Python<'py>,
+        positions: &Bound<'py, PyAny>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let positions = Positions::read(positions, self.made.dims)?;
+        let gradients = threads::run(py, || match self.made.dims {
+            2 => gradients::<2>(&self.made, &positions.numbers),
+            3 => gradients::<3>(&self.made, &positions.numbers),
+            _ => gradients::<4>(&self.made, &positions.numbers),
+        })??;
+        let shape = [&positions.shape[..], &[self.made.dims]].concat();
+        arrays::array(py, gradients, &shape)
+    }
+
+    /// The feature points of a cell, as (positions, ids): float64 of the shape (n, dims), in cells, and uint64.
+    fn cell_points<'py>(
+        &self,
+        py: Python<'py>,
+        cell: Vec<i64>,
+    ) -> Result<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let (positions, ids) = match self.made.dims {
+            2 => cell_points::<2>(&self.made, &cell),
+            3 => cell_points::<3>(&self.made, &cell),
+            _ => cell_points::<4>(&self.made, &cell),
+        }?;
+        let shape = [ids.len(), self.made.dims];
+        Ok((
+            arrays::array(py, positions, &shape)?,
+            ids.into_pyarray(py).into_any(),
+        ))
+    }
+}
+
+/// The planes that `render_features` can make.
+const OUTPUTS: [&str; 3] = ["distance", "vector", "id"];
+
+fn check_count(count: usize) -> Result<()> {
+    if (1..=LIMIT).contains(&count) {
+        return Ok(());
+    }
+    Err(Error::new(
+        "count",
+        format!("the number of feature points is {count}, but it must be from 1 to {LIMIT}"),
+    ))
+}
+
+/// The nearest feature points of many positions.
+struct Found {
+    distance: Vec<f32>,
+    vector: Vec<f64>,
+    id: Vec<u64>,
+}
+
+fn find<const N: usize, const K: usize>(made: &CellsMade, positions: &[f64]) -> Result<Found>
+where
+    Axes: Space<N>,
+{
+    let basis = made.basis::<N>()?;
+    let features = dapple::raster::parallel::map_at_least(256, positions.len() / N, |index| {
+        let position: [f64; N] = core::array::from_fn(|axis| positions[index * N + axis]);
+        basis.sample::<K>(position)
+    });
+    let features = features.as_flattened();
+    Ok(Found {
+        distance: features.iter().map(|feature| feature.distance).collect(),
+        vector: features
+            .iter()
+            .flat_map(|feature| feature.vector.into())
+            .collect(),
+        id: features.iter().map(|feature| feature.id).collect(),
+    })
+}
+
+/// The planes of the nearest feature points, those of the nearest first.
+struct Drawn {
+    distance: Option<Vec<f32>>,
+    vector: Option<Vec<f32>>,
+    id: Option<Vec<u64>>,
+}
+
+fn draw<const N: usize, const K: usize>(
+    made: &CellsMade,
+    window: &Window,
+    rest: &[f64],
+    wanted: [bool; 3],
+    n_values: usize,
+) -> Result<Drawn>
+where
+    Axes: Space<N>,
+{
+    let basis = made.basis::<N>()?;
+    let mut distance = wanted[0].then(|| vec![0.0_f32; K * n_values]);
+    let mut vector = wanted[1].then(|| vec![[0.0_f32; N]; K * n_values]);
+    let mut id = wanted[2].then(|| vec![0_u64; K * n_values]);
+    let mut views: [FeatureView<'_, N>; K] = core::array::from_fn(|_| FeatureView::default());
+    let stride = window.size[0] as usize;
+    if let Some(values) = &mut distance {
+        for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
+            view.distance = Some(RasterViewMut::new(values, stride, window.size)?);
+        }
+    }
+    if let Some(values) = &mut vector {
+        for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
+            view.vector = Some(RasterViewMut::new(values, stride, window.size)?);
+        }
+    }
+    if let Some(values) = &mut id {
+        for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
+            view.id = Some(RasterViewMut::new(values, stride, window.size)?);
+        }
+    }
+    basis.render_features(&plane::<N>(rest), window, views)?;
+    Ok(Drawn {
+        distance,
+        vector: vector.map(Vec::into_flattened),
+        id,
+    })
+}
+
+fn gradients<const N: usize>(made: &CellsMade, positions: &[f64]) -> Result<Vec<f64>>
+where
+    Axes: Space<N>,
+{
+    let texture = made.texture::<N>()?;
+    let gradient: &(dyn Fn(Vector<N>) -> Vector<N> + Sync) = match &texture {
+        Texture::Cellular(cellular) => &|position| cellular.gradient(position),
+        Texture::Fractal(fractal) => &|position| fractal.gradient(position),
+        Texture::Edges(_) | Texture::CellValues(_) => {
+            return Err(Error::new(
+                "conflict",
+                "`cell_value` and `edge_distance` have no gradient",
+            ));
+        }
+    };
+    let gradients = dapple::raster::parallel::map_at_least(256, positions.len() / N, |index| {
+        let position: [f64; N] = core::array::from_fn(|axis| positions[index * N + axis]);
+        <[f64; N]>::from(gradient(position.into()).into())
+    });
+    Ok(gradients.into_flattened())
+}
+
+/// The positions and ids of the feature points of a cell.
+fn cell_points<const N: usize>(made: &CellsMade, cell: &[i64]) -> Result<(Vec<f64>, Vec<u64>)>
+where
+    Axes: Space<N>,
+{
+    let cell: [i64; N] = array(cell)?;
+    let points = made.basis::<N>()?.cell_points(cell);
+    let positions = points.iter().flat_map(|point| {
+        let offset: [f64; N] = point.offset.into();
+        core::array::from_fn::<f64, N, _>(|axis| cell[axis] as f64 + offset[axis])
+    });
+    Ok((
+        positions.collect(),
+        points.iter().map(|point| point.id).collect(),
+    ))
+}

@@ -1,0 +1,140 @@
+//! Perlin's gradient noise, in two to four dimensions.
+
+use super::{array, periods, unknown_axes};
+use crate::data;
+use crate::error::{Error, Result};
+use crate::field::Field;
+use crate::function::{Function, Made, Volume};
+use crate::seed::SeedArgument;
+use dapple::hash::Seed;
+use dapple::noise::{GradientNoise2, GradientNoise3, GradientNoise4};
+use dapple::raster::FractalShape;
+use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// How gradient noise was made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct GradientMade {
+    seed: Seed,
+    dims: usize,
+    period: Vec<Option<u32>>,
+    octaves: Option<OctavesMade>,
+}
+
+/// A fractal sum, of which each octave has a seed of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct OctavesMade {
+    count: u32,
+    gain: f64,
+    lacunarity: f64,
+    shape: FractalShape,
+}
+
+impl GradientMade {
+    pub(crate) fn build(&self) -> Result<Function> {
+        match self.dims {
+            2 => {
+                let noise = GradientNoise2::new(self.seed).with_period(array(&self.period)?)?;
+                Ok(Function::Plane(match self.octaves {
+                    None => Arc::new(noise),
+                    Some(OctavesMade {
+                        count,
+                        gain,
+                        lacunarity,
+                        shape,
+                    }) => Arc::new(noise.fractal(count, gain, lacunarity, shape)?),
+                }))
+            }
+            _ if self.octaves.is_some() => Err(Error::new(
+                "axes",
+                "octaves of gradient noise are of two axes; sum slices for more",
+            )),
+            3 => Ok(Function::Space(Arc::new(
+                GradientNoise3::new(self.seed).with_period(array(&self.period)?)?,
+            ))),
+            4 => Ok(Function::Space(Arc::new(
+                GradientNoise4::new(self.seed).with_period(array(&self.period)?)?,
+            ))),
+            dims => Err(unknown_axes(dims, "2, 3 or 4")),
+        }
+    }
+}
+
+impl Volume for GradientNoise3 {
+    fn period(&self) -> Vec<Option<f64>> {
+        self.periods().map(|cells| cells.map(f64::from)).to_vec()
+    }
+
+    fn sample(&self, position: &[f64]) -> f32 {
+        Self::sample(self, [position[0], position[1], position[2]])
+    }
+
+    fn slice(&self, rest: &[f64]) -> Arc<dyn dapple::raster::Field> {
+        Arc::new(Self::slice(*self, rest[0]))
+    }
+}
+
+impl Volume for GradientNoise4 {
+    fn period(&self) -> Vec<Option<f64>> {
+        self.periods().map(|cells| cells.map(f64::from)).to_vec()
+    }
+
+    fn sample(&self, position: &[f64]) -> f32 {
+        Self::sample(self, [position[0], position[1], position[2], position[3]])
+    }
+
+    fn slice(&self, rest: &[f64]) -> Arc<dyn dapple::raster::Field> {
+        Arc::new(Self::slice(*self, rest[0], rest[1]))
+    }
+}
+
+/// Perlin's gradient noise: smooth bumps of one size, after "Improving Noise" (2002), with a seed and exact periods.
+///
+/// Positions are in cells. The mean is 0; values are from -1 to 1 in the plane, and at most 1.04 and 1.54 from 0 in three
+/// and four dimensions. Without octaves, the standard deviation is 0.31, 0.27 and 0.29.
+///
+/// Parameters
+/// ----------
+/// seed : int, from 0 to 2**64 - 1.
+/// dims : 2, 3 or 4 axes.
+/// period : cells after which it repeats exactly: one number, or one for each axis, x first; None where it does not.
+/// octaves : how many octaves are summed (fBm), each with a seed of its own; 1 to 32. Two axes only.
+/// gain : how much lower each octave is than the one before, -1 to 1.
+/// lacunarity : how much finer each octave is, 1 to 16; whole if there is a period.
+/// shape : "sum", "ridged" or "billow" (turbulence).
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> hills = dp.gradient_noise(seed=1, period=4, octaves=5)
+/// >>> hills.render((64, 64), extent=4).shape
+/// (64, 64)
+#[pyfunction]
+#[pyo3(signature = (*, seed = SeedArgument::default(), dims = 2, period = None, octaves = None, gain = 0.5, lacunarity = 2.0, shape = "sum"),
+    text_signature = "(*, seed=0, dims=2, period=None, octaves=None, gain=0.5, lacunarity=2.0, shape='sum')")]
+pub(crate) fn gradient_noise(
+    seed: SeedArgument,
+    dims: usize,
+    period: Option<&Bound<'_, PyAny>>,
+    octaves: Option<u32>,
+    gain: f64,
+    lacunarity: f64,
+    shape: &str,
+) -> Result<Field> {
+    if !(2..=4).contains(&dims) {
+        return Err(unknown_axes(dims, "2, 3 or 4"));
+    }
+    let shape = data::named("shape", shape)?;
+    Field::new(Made::GradientNoise(GradientMade {
+        seed: seed.0,
+        dims,
+        period: periods(period, dims)?,
+        octaves: octaves.map(|count| OctavesMade {
+            count,
+            gain,
+            lacunarity,
+            shape,
+        }),
+    }))
+}

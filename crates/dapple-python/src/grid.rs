@@ -1,0 +1,219 @@
+//! Where the pixels of an array lie: its size, the rectangle that it covers, and the part of it that is made.
+
+use crate::error::{Error, Result};
+use dapple::raster::{Window, glam::DVec2};
+use pyo3::prelude::*;
+use pyo3::types::{PySlice, PyTuple};
+
+/// The pixels of an array of two to four axes, in the order of positions: x first.
+#[derive(Clone, Debug)]
+pub(crate) struct Grid {
+    axes: Vec<Axis>,
+}
+
+/// The pixels along an axis: the center of pixel `i` is at `origin + (first + i + ½) · extent / whole`.
+#[derive(Clone, Copy, Debug)]
+struct Axis {
+    origin: f64,
+    extent: f64,
+    whole: u32,
+    first: i64,
+    size: u32,
+}
+
+/// What a caller says of a grid, as it is said: sizes and windows as NumPy has them (the last axis is x), extents and
+/// origins as positions are written (x first).
+pub(crate) struct GridArguments<'a, 'py> {
+    pub(crate) size: &'a Bound<'py, PyAny>,
+    pub(crate) extent: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) origin: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) window: Option<&'a Bound<'py, PyAny>>,
+}
+
+impl Grid {
+    /// The grid of as many axes that a caller asks for. `period` is the extent where none is given.
+    pub(crate) fn new(arguments: &GridArguments<'_, '_>, period: &[Option<f64>]) -> Result<Self> {
+        let n_axes = period.len();
+        let sizes = sizes(arguments.size, n_axes)?;
+        let extents = match arguments.extent {
+            None => period
+                .iter()
+                .map(|period| period.filter(|&period| period > 0.0).unwrap_or(1.0))
+                .collect(),
+            Some(extent) => numbers("extent", extent, n_axes)?,
+        };
+        let origins = match arguments.origin {
+            None => vec![0.0; n_axes],
+            Some(origin) => numbers("origin", origin, n_axes)?,
+        };
+        let mut axes = Vec::with_capacity(n_axes);
+        for axis in 0..n_axes {
+            let (origin, extent) = (origins[axis], extents[axis]);
+            if !origin.is_finite() || !extent.is_finite() || extent == 0.0 {
+                let message = format!(
+                    "the origin is {origin} and the extent {extent} along an axis, but they must be finite, and the extent not 0"
+                );
+                return Err(Error::new("not_finite", message));
+            }
+            let whole = sizes[n_axes - 1 - axis];
+            axes.push(Axis {
+                origin,
+                extent,
+                whole,
+                first: 0,
+                size: whole,
+            });
+        }
+        if let Some(window) = arguments.window {
+            let parts = slices(window, n_axes)?;
+            for (axis, part) in axes.iter_mut().rev().zip(parts) {
+                (axis.first, axis.size) = crop(&part, axis.whole)?;
+            }
+        }
+        Ok(Self { axes })
+    }
+
+    /// The shape of the array, x last.
+    pub(crate) fn shape(&self) -> Vec<usize> {
+        self.axes
+            .iter()
+            .rev()
+            .map(|axis| axis.size as usize)
+            .collect()
+    }
+
+    /// The number of values, refused where there are too many.
+    pub(crate) fn n_values(&self) -> Result<usize> {
+        let sizes = self.axes.iter().map(|axis| axis.size as usize);
+        let count = sizes.clone().try_fold(1_usize, usize::checked_mul);
+        // A NumPy array has at most 2^63 bytes; memory ends long before.
+        count.filter(|&count| count <= 1 << 40).ok_or_else(|| {
+            let message = format!("an array of shape {:?} has too many values", self.shape());
+            Error::new("too_large", message)
+        })
+    }
+
+    /// The pixels along the first two axes.
+    pub(crate) fn plane(&self) -> Window {
+        let [x, y] = [self.axes[0], self.axes[1]];
+        Window {
+            origin: DVec2::new(x.origin, y.origin),
+            pixel: DVec2::new(x.extent, y.extent) / DVec2::new(x.whole.into(), y.whole.into()),
+            first: [x.first, y.first],
+            size: [x.size, y.size],
+            scale: DVec2::ONE,
+        }
+    }
+
+    /// The further coordinates of each plane, one plane after the other in the order of the array.
+    pub(crate) fn planes(&self) -> Vec<Vec<f64>> {
+        let mut planes = vec![Vec::new()];
+        for axis in &self.axes[2..] {
+            let centers: Vec<f64> = (0..axis.size).map(|index| axis.center(index)).collect();
+            // The last axis of positions is the first of the array: it changes slowest.
+            let all = centers.iter().flat_map(|&center| {
+                planes
+                    .iter()
+                    .map(move |plane| [plane.as_slice(), &[center]].concat())
+            });
+            planes = all.collect();
+        }
+        planes
+    }
+}
+
+impl Axis {
+    /// The center of a pixel, as windows of the plane compute it.
+    fn center(&self, index: u32) -> f64 {
+        let pixel = self.extent / f64::from(self.whole);
+        self.origin + ((self.first + i64::from(index)) as f64 + 0.5) * pixel
+    }
+}
+
+/// Numbers of pixels: one for all axes, or one for each.
+pub(crate) fn sizes(size: &Bound<'_, PyAny>, n_axes: usize) -> Result<Vec<u32>> {
+    let sizes = match size.extract::<u32>() {
+        Ok(side) => vec![side; n_axes],
+        Err(_) => size.extract::<Vec<u32>>()?,
+    };
+    if sizes.len() != n_axes || sizes.contains(&0) {
+        let message = format!(
+            "the size is {sizes:?}, but it must be {n_axes} numbers of at least 1, rows before columns"
+        );
+        return Err(Error::new("size", message));
+    }
+    Ok(sizes)
+}
+
+/// The columns and rows of an array of two axes.
+pub(crate) fn size(size: &Bound<'_, PyAny>) -> Result<[u32; 2]> {
+    let sizes = sizes(size, 2)?;
+    Ok([sizes[1], sizes[0]])
+}
+
+/// Numbers along axes: one for all, or one for each.
+fn numbers(what: &str, data: &Bound<'_, PyAny>, n_axes: usize) -> Result<Vec<f64>> {
+    let numbers = match data.extract::<f64>() {
+        Ok(number) => vec![number; n_axes],
+        Err(_) => data.extract::<Vec<f64>>()?,
+    };
+    if numbers.len() != n_axes {
+        let message = format!(
+            "the {what} has {} numbers, but {n_axes} are needed, x first",
+            numbers.len()
+        );
+        return Err(Error::new("count", message));
+    }
+    Ok(numbers)
+}
+
+/// A number along both axes of the plane: one for both, or one for each.
+pub(crate) fn pair(what: &str, data: &Bound<'_, PyAny>) -> Result<DVec2> {
+    Ok(DVec2::from_slice(&numbers(what, data, 2)?))
+}
+
+/// The slices of a window, the first axis of the array first.
+fn slices<'py>(window: &Bound<'py, PyAny>, n_axes: usize) -> Result<Vec<Bound<'py, PySlice>>> {
+    let parts = window.cast::<PyTuple>().map_err(PyErr::from)?;
+    let parts: Vec<_> = parts
+        .iter()
+        .map(|part| part.cast_into::<PySlice>().map_err(PyErr::from))
+        .collect::<PyResult<_>>()?;
+    if parts.len() != n_axes {
+        let message = format!(
+            "the window has {} slices, but {n_axes} are needed, as in `np.s_[100:150, 33:94]`",
+            parts.len()
+        );
+        return Err(Error::new("count", message));
+    }
+    Ok(parts)
+}
+
+/// The first pixel and the number of pixels of a slice, which may begin before the array and end after it.
+fn crop(part: &Bound<'_, PySlice>, whole: u32) -> Result<(i64, u32)> {
+    let bound = |name: &str, default: i64| -> Result<i64> {
+        let bound = part.getattr(name)?;
+        Ok(if bound.is_none() {
+            default
+        } else {
+            bound.extract()?
+        })
+    };
+    let (start, stop, step) = (
+        bound("start", 0)?,
+        bound("stop", whole.into())?,
+        bound("step", 1)?,
+    );
+    let size = stop
+        .checked_sub(start)
+        .and_then(|size| u32::try_from(size).ok());
+    match size {
+        Some(size) if size > 0 && step == 1 => Ok((start, size)),
+        _ => {
+            let message = format!(
+                "the window goes from {start} to {stop} in steps of {step}, but it must hold at least one pixel and go in steps of 1"
+            );
+            Err(Error::new("window", message))
+        }
+    }
+}

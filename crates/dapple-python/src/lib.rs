@@ -1,0 +1,36 @@
+//! The native half of the Python package `dapple-textures`: the crates of dapple, with NumPy arrays in and out.
+//!
+//! A call checks what it is given while it holds the interpreter, and works without it, on threads of its own
+//! ([`threads`]). Fields are descriptions that are made again in other processes ([`function`]).
+
+mod arrays;
+mod data;
+mod error;
+mod field;
+mod function;
+mod generators;
+mod grid;
+mod seed;
+mod threads;
+
+use pyo3::prelude::*;
+
+/// What the package is made of.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::error::DappleError;
+    #[pymodule_export]
+    use crate::field::{_field_from_description, Field, constant};
+    #[pymodule_export]
+    use crate::generators::{Worley, gradient_noise, wavelet_noise, worley};
+    #[pymodule_export]
+    use crate::threads::{set_threads, threads};
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

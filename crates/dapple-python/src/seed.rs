@@ -1,0 +1,26 @@
+//! Seeds.
+
+use dapple::hash::Seed;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+/// A whole number from 0 to 2^64 - 1, of Python or of NumPy.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct SeedArgument(pub(crate) Seed);
+
+impl<'py> FromPyObject<'_, 'py> for SeedArgument {
+    type Error = PyErr;
+
+    fn extract(seed: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let number = seed.call_method0("__index__").map_err(|_| {
+            let kind = seed.get_type();
+            PyTypeError::new_err(format!("a seed is a whole number, not {kind}"))
+        })?;
+        let seed = number.extract().map_err(|_| {
+            PyValueError::new_err(format!(
+                "the seed is {number}, but it must be from 0 to 2^64 - 1"
+            ))
+        })?;
+        Ok(Self(Seed(seed)))
+    }
+}

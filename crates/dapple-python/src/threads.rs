@@ -1,0 +1,96 @@
+//! The threads that the package works on: a pool of its own, which a forked process makes anew.
+
+use crate::error::{Error, Result};
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The pool, the process that made it, and how many threads it is to have (0: one for each core).
+struct Threads {
+    wanted: Option<usize>,
+    pool: Option<(u32, Arc<ThreadPool>)>,
+}
+
+/// It is locked with the interpreter held, and let go before that is: so no fork finds it locked.
+static THREADS: Mutex<Threads> = Mutex::new(Threads {
+    wanted: None,
+    pool: None,
+});
+
+/// The environment variable that says how many threads there are.
+const VARIABLE: &str = "DAPPLE_THREADS";
+
+/// The most threads that may be asked for.
+const MOST: usize = 1024;
+
+/// What `work` gives, on the threads of the package and without the interpreter.
+pub(crate) fn run<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> Result<T> {
+    let pool = pool(py)?;
+    Ok(py.detach(|| pool.install(work)))
+}
+
+/// The pool of this process.
+fn pool(_py: Python<'_>) -> Result<Arc<ThreadPool>> {
+    let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
+    let process = std::process::id();
+    match threads.pool.take() {
+        Some((maker, pool)) if maker == process => {
+            threads.pool = Some((maker, Arc::clone(&pool)));
+            return Ok(pool);
+        }
+        // The threads of a pool do not survive a fork, and what waits for them would wait forever.
+        Some((_, pool)) => core::mem::forget(pool),
+        None => {}
+    }
+    let wanted = match threads.wanted {
+        Some(wanted) => wanted,
+        None => from_environment()?,
+    };
+    let builder = ThreadPoolBuilder::new().num_threads(wanted);
+    let builder = builder.thread_name(|index| format!("dapple-{index}"));
+    let pool = builder
+        .build()
+        .map_err(|error| Error::new("threads", error.to_string()))?;
+    let pool = Arc::new(pool);
+    threads.pool = Some((process, Arc::clone(&pool)));
+    Ok(pool)
+}
+
+/// The number of threads that the environment asks for; 0 where it asks for none.
+fn from_environment() -> Result<usize> {
+    let Ok(text) = std::env::var(VARIABLE) else {
+        return Ok(0);
+    };
+    let number = text.trim().parse().ok();
+    number.filter(|&number| number <= MOST).ok_or_else(|| {
+        let message = format!("{VARIABLE} is `{text}`, but it must be a number from 0 to {MOST}");
+        Error::new("threads", message)
+    })
+}
+
+/// The number of threads on which calls work.
+#[pyfunction]
+pub(crate) fn threads(py: Python<'_>) -> Result<usize> {
+    Ok(pool(py)?.current_num_threads())
+}
+
+/// Sets the number of threads on which calls work: 0 is one for each core. The results have the same bits.
+///
+/// By default it is the number in the environment variable `DAPPLE_THREADS`, or one for each core. Workers of a cluster
+/// that run one task on each core set it to 1.
+#[pyfunction]
+pub(crate) fn set_threads(_py: Python<'_>, count: usize) -> Result<()> {
+    if count > MOST {
+        let message = format!("the number of threads is {count}, but it must be from 0 to {MOST}");
+        return Err(Error::new("threads", message));
+    }
+    let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
+    threads.wanted = Some(count);
+    // A forked process leaves the pool of its parent alone.
+    if let Some((maker, pool)) = threads.pool.take()
+        && maker != std::process::id()
+    {
+        core::mem::forget(pool);
+    }
+    Ok(())
+}
