@@ -4,6 +4,7 @@
 
 use crate::error::{Error, Result};
 use crate::generators::{CellsMade, GradientMade, WaveletMade};
+use crate::recipe::NodeMade;
 use dapple::raster::glam::DVec2;
 use dapple::raster::{
     Field, FieldExt, Fractal, FractalShape, PairOperation, RasterError, RasterViewMut, Window,
@@ -58,6 +59,8 @@ pub(crate) enum Made {
     GradientNoise(GradientMade),
     /// Wavelet noise.
     WaveletNoise(WaveletMade),
+    /// A node of a recipe.
+    Node(NodeMade),
     /// A plane through a function of more axes.
     Slice { field: Box<Made>, rest: Vec<f64> },
     /// At positions times a frequency.
@@ -116,6 +119,7 @@ impl Made {
             Self::Worley(made) => return made.build(),
             Self::GradientNoise(made) => return made.build(),
             Self::WaveletNoise(made) => return made.build(),
+            Self::Node(made) => return made.build(),
             Self::Slice { field, rest } => match field.build()? {
                 Function::Space(volume) if volume.period().len() == rest.len() + 2 => {
                     volume.slice(rest)

@@ -10,6 +10,7 @@ mod field;
 mod function;
 mod generators;
 mod grid;
+mod recipe;
 mod seed;
 mod threads;
 
@@ -25,12 +26,19 @@ mod _native {
     #[pymodule_export]
     use crate::generators::{Worley, gradient_noise, wavelet_noise, worley};
     #[pymodule_export]
+    use crate::recipe::{_plan_from_parts, Plan, Recipe, ShardList, map_names, shards};
+    #[pymodule_export]
     use crate::threads::{set_threads, threads};
 
     use pyo3::prelude::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // What an error does not say is None.
+        let error = module.getattr("DappleError")?;
+        for attribute in ["kind", "node", "hint"] {
+            error.setattr(attribute, module.py().None())?;
+        }
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -10,26 +10,37 @@ from __future__ import annotations
 from ._native import (
     DappleError,
     Field,
+    Plan,
+    Recipe,
+    ShardList,
     Worley,
     __version__,
     constant,
     gradient_noise,
+    map_names,
     set_threads,
+    shards,
     threads,
     wavelet_noise,
     worley,
 )
-from ._types import Features
+from ._types import Features, MapInfo
 
 __all__ = [
     "DappleError",
     "Features",
     "Field",
+    "MapInfo",
+    "Plan",
+    "Recipe",
+    "ShardList",
     "Worley",
     "__version__",
     "constant",
     "gradient_noise",
+    "map_names",
     "set_threads",
+    "shards",
     "threads",
     "wavelet_noise",
     "worley",
