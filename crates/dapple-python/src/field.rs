@@ -7,7 +7,7 @@ use crate::generators::Worley;
 use crate::grid::{Grid, GridArguments, pair};
 use crate::threads;
 use dapple::raster::{Field as _, FractalShape, PairOperation, RasterViewMut};
-use numpy::{PyArrayDyn, PyArrayMethods};
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use sha2::{Digest, Sha256};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -203,9 +203,10 @@ impl Field {
             );
             return Err(Error::new("shape", message));
         }
-        let values = memory
-            .as_slice_mut()
-            .map_err(|_| Error::new("order", "`out` is not in C order without gaps"))?;
+        let is_ordered = memory.is_c_contiguous();
+        let values = memory.as_slice_mut().ok().filter(|_| is_ordered);
+        let values =
+            values.ok_or_else(|| Error::new("order", "`out` is not in C order without gaps"))?;
         threads::run(py, || self.fill(&grid, values))??;
         drop(memory);
         Ok(out.into_any())
