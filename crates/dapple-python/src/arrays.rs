@@ -115,7 +115,7 @@ pub(crate) fn raster_of<const N: usize>(
 }
 
 /// The columns and rows of an array whose first axes are rows and columns.
-fn raster_size(what: &str, shape: &[usize]) -> Result<[u32; 2]> {
+pub(crate) fn raster_size(what: &str, shape: &[usize]) -> Result<[u32; 2]> {
     let side = |length: usize| {
         u32::try_from(length).map_err(|_| {
             Error::new(

@@ -4,15 +4,24 @@
 //! ([`threads`]). Fields are descriptions that are made again in other processes ([`function`]).
 
 mod arrays;
+mod bands;
+mod blending;
 mod data;
 mod error;
 mod field;
 mod function;
 mod generators;
 mod grid;
+mod images;
+mod maps;
+mod models;
+mod pictures;
 mod recipe;
 mod seed;
+mod synthesis;
 mod threads;
+mod tiles;
+mod watch;
 
 use pyo3::prelude::*;
 
@@ -20,15 +29,37 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _native {
     #[pymodule_export]
+    use crate::bands::{
+        wavelet_analyze, wavelet_double, wavelet_halve, wavelet_synthesize, wavelet_tile,
+    };
+    #[pymodule_export]
+    use crate::blending::{blend, blend_map};
+    #[pymodule_export]
     use crate::error::DappleError;
     #[pymodule_export]
     use crate::field::{_field_from_description, Field, constant};
     #[pymodule_export]
     use crate::generators::{Worley, gradient_noise, wavelet_noise, worley};
     #[pymodule_export]
+    use crate::images::{decode_image, encode_image, read_image, write_image};
+    #[pymodule_export]
+    use crate::maps::{
+        ambient_occlusion, curvature, linear_from_srgb, normal_map, palettes, ramp,
+        srgb_from_linear,
+    };
+    #[pymodule_export]
+    use crate::models::{Model, mesh_report, read_model, synthesize_on};
+    #[pymodule_export]
     use crate::recipe::{_plan_from_parts, Plan, Recipe, ShardList, map_names, shards};
     #[pymodule_export]
+    use crate::synthesis::synthesize;
+    #[pymodule_export]
     use crate::threads::{set_threads, threads};
+    #[pymodule_export]
+    use crate::tiles::{
+        CornerTiles, disturb, lay_tiles, make_tile, match_borders, rank_equalize, repeat,
+        seam_report,
+    };
 
     use pyo3::prelude::*;
 
