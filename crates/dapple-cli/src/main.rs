@@ -54,6 +54,7 @@ fn run(cli: &Cli, arguments: &[String]) -> Result<Exit> {
     let context = Context {
         quiet: cli.common.quiet,
         progress: cli.common.progress,
+        threads: cli.common.threads,
         arguments: arguments.to_vec(),
     };
     commands::run(&cli.command, &context)

@@ -26,14 +26,16 @@ A shard has the bits that the whole picture has there, so that any number of mac
 written whole or not at all, and one that is there is not made again: after anything that went wrong, run the list again.
 Then `dapple join rock/ -o rock.exr` puts them together.
 
-On one machine, in a shell or with GNU parallel:
+On one machine, in a shell or with GNU parallel (with --threads 1 the list says so to each bake):
   sh list
   parallel --jobs 4 < list
 
-On a cluster with SLURM, as the last line of a script with `#SBATCH --array=1-9604`:
+On a cluster with SLURM, as the last line of a script with `#SBATCH --array=1-9604`, or of one with `--array=0-999` where
+arrays may not be that long:
   sed -n \"${SLURM_ARRAY_TASK_ID}p\" list | sh
+  awk \"NR % 1000 == ${SLURM_ARRAY_TASK_ID}\" list | sh -e
 
-On a render farm with Open Job Description:
+On a render farm with Open Job Description, from a template in this folder:
   openjd check job.json
   openjd run job.json";
 
@@ -107,12 +109,16 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let first = list.tasks()?.next().map(|task| task.region);
     check(&plan, args, first)?;
     list.write(&args.output, args.force)?;
+    let mut options = args.material.words();
+    if context.threads > 0 {
+        options.push(format!("--threads={}", context.threads));
+    }
     let mut out = BufWriter::new(io::stdout().lock());
     match args.format {
-        ListFormat::Lines => lines(args, &list, &mut out)?,
+        ListFormat::Lines => lines(args, &options, &list, &mut out)?,
         ListFormat::Json => json(&list, maps, &mut out)?,
         ListFormat::OpenJd => {
-            let template = openjd::template(args, &list)?;
+            let template = openjd::template(args, options, &list)?;
             serde_json::to_writer_pretty(&mut out, &template)?;
             out.write_all(b"\n")?;
         }
@@ -141,13 +147,12 @@ fn check(plan: &Plan, args: &Args, region: Option<Region>) -> Result<()> {
     Ok(())
 }
 
-/// Writes a line of a shell for each shard.
-fn lines(args: &Args, list: &List, out: &mut impl Write) -> Result<()> {
+/// Writes a line of a shell for each shard, with the options of the bakes.
+fn lines(args: &Args, options: &[String], list: &List, out: &mut impl Write) -> Result<()> {
     let output = text_of_path(&args.output)?;
-    let material = args.material.words();
     for Task { frame, shard, .. } in list.tasks()? {
         let mut words = vec!["dapple".to_owned(), "bake".to_owned(), args.recipe.clone()];
-        words.extend(material.iter().cloned());
+        words.extend_from_slice(options);
         words.push(format!("--shard={shard}"));
         words.extend(frame.map(|frame| format!("--frame={frame}")));
         words.extend(["-o".to_owned(), output.to_owned()]);
@@ -209,7 +214,7 @@ impl Serialize for Entries<'_> {
     }
 }
 
-/// A path as a word of a command line.
+/// A path as a text.
 fn text_of_path(path: &Path) -> Result<&str> {
     path.to_str().ok_or_else(|| {
         usage(format!(

@@ -150,10 +150,11 @@ fn options_of_the_list_reach_the_bakes() {
     let options = "--seed 9 --relief -0.5 --normal-y directx --maps normal --size 80";
     let recipe = r#""my rock's.toml""#;
     let listed = folder.shell(&format!(
-        "dapple shards {recipe} {options} --shard 64 -o 'a b'"
+        "dapple shards {recipe} {options} --shard 64 -o 'a b' --threads 1"
     ));
     assert_done(&listed, "a list");
     let lines: Vec<_> = stdout(&listed).lines().map(str::to_owned).collect();
+    assert!(lines[0].contains(" --threads=1 "), "{lines:?}");
     run_all(&folder, &lines);
     assert_done(&folder.run(&["join", "a b", "-o", "joined.exr"]), "join");
     let whole = folder.shell(&format!("dapple bake {recipe} {options} -o whole.exr"));
@@ -311,10 +312,10 @@ fn a_job_template_is_valid_and_bakes_all_shards() {
         return;
     }
     let of = "my-rock.toml --size 80x40 --shard 64 --maps albedo";
-    for (number, more) in ["-o parts0", "--frames 2 -o parts1"]
-        .into_iter()
-        .enumerate()
-    {
+    // A template names files below its own folder; others, such as an absolute path, are texts.
+    let absolute = format!("-o {}", folder.path("parts2").display());
+    let outputs = ["-o parts0", "--frames 2 -o parts1", &absolute];
+    for (number, more) in outputs.into_iter().enumerate() {
         let line = format!("dapple shards {of} {more} --format openjd > job{number}.json");
         assert_done(&folder.shell(&line), &line);
         for step in ["check", "run"] {
@@ -332,6 +333,7 @@ fn a_job_template_is_valid_and_bakes_all_shards() {
     for joined in [
         "joined0/my-rock_albedo.exr",
         "joined1/my-rock_albedo_002.exr",
+        "joined2/my-rock_albedo.exr",
     ] {
         assert!(bytes(&folder, joined) == whole, "{joined}");
     }

@@ -77,16 +77,16 @@ struct Action {
     args: Vec<String>,
 }
 
-/// A job with a task for each shard. The recipe, the folder and the command are parameters.
+/// A job with a task for each shard, whose bakes have these options. The recipe, the folder and the command are parameters.
 ///
 /// # Errors
 ///
 /// If a path is not in UTF-8.
-pub(super) fn template(args: &Args, list: &List) -> Result<Template> {
+pub(super) fn template(args: &Args, options: Vec<String>, list: &List) -> Result<Template> {
     let [columns, rows] = list.grid()?;
     let mut ranges = vec![range("Column", 0, columns - 1), range("Row", 0, rows - 1)];
     let mut words = vec!["bake".to_owned(), "{{Param.Recipe}}".to_owned()];
-    words.extend(args.material.words());
+    words.extend(options);
     let size = Size(list.shard);
     words.push(format!(
         "--shard={{{{Task.Param.Column}}}},{{{{Task.Param.Row}}}},{size}"
