@@ -59,6 +59,7 @@ impl ColorField {
     ///
     /// The parameters are those of `Field.render`.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn render<'py>(
         &self,
         py: Python<'py>,

@@ -299,7 +299,7 @@ def color_noise(
     strength: float = 0.5,
     seed: int = 0,
 ) -> ColorField:
-    """Random colors of a palette, interpolated. Caron and Mould, figure 5.
+    """Random colors of a palette, interpolated; beyond the paper.
 
     Parameters
     ----------

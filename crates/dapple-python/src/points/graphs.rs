@@ -281,7 +281,7 @@ pub(crate) fn gabriel(
 /// Examples
 /// --------
 /// >>> import dapple_textures as dp
-/// >>> dp.yao([[0.5, 0.5]], domain=dp.Domain(1), cones=4).vectors().tolist()
+/// >>> dp.yao([[0.5, 0.5]], domain=dp.Domain(1), cones=4).axes().vectors.tolist()
 /// [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]
 #[pyfunction]
 #[pyo3(signature = (points, *, cones = 6, symmetric = false, domain = None))]

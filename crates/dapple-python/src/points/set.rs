@@ -118,8 +118,9 @@ fn rectangle_around(positions: &[DVec2]) -> dapple::points::Domain {
     let largest = (high - low).max_element();
     let least = if largest > 0.0 { largest * 1e-6 } else { 1.0 };
     let size = (high - low).max(DVec2::splat(least));
-    // Rounding must not leave the last point outside.
-    let size = size + (low + size - high).min(DVec2::ZERO).abs() * 2.0;
+    // Far from the origin, rounding may leave the last point outside.
+    let rounding = low.abs().max(high.abs()) * (2.0 * f64::EPSILON);
+    let size = DVec2::select((low + size).cmplt(high), size + rounding, size);
     dapple::points::Domain::rectangle(low, size)
 }
 
