@@ -110,7 +110,7 @@ def test_measures_are_the_bits_of_the_library() -> None:
     found = dp.spectrum(lattice)
     assert found.power[found.frequency < 0.9].max() < 1e-20 and found.power.max() > 5
     both = dp.spectrum([lattice, lattice], ring_width=0.1)
-    assert len(both.power) < len(found.power) and both.count.dtype == np.uint32
+    assert len(both.power) < len(found.power) and both.n_frequencies.dtype == np.uint32
     assert dp.Points([[0, 0]], dp.Domain(1)).minimum_distance() is None
     assert dp.Points(np.zeros((0, 2)), dp.Domain(1)).largest_empty_circle() is None
 

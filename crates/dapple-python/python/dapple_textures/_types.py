@@ -38,7 +38,7 @@ class Spectrum(NamedTuple):
     #: The variance of the power over what it is without a preferred direction, which is 1.
     anisotropy: npt.NDArray[np.float64]
     #: How many frequencies the ring holds.
-    count: npt.NDArray[np.uint32]
+    n_frequencies: npt.NDArray[np.uint32]
 
 
 class Axes(NamedTuple):
