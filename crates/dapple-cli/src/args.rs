@@ -1,15 +1,19 @@
 //! Options that many subcommands share: size, output, format.
 
 mod alpha;
+mod frame;
 mod numbers;
 mod ramp;
 mod region;
+mod shard;
 mod size;
 
 pub(crate) use alpha::{Alpha, AlphaArgs, image_alpha};
+pub(crate) use frame::Frame;
 pub(crate) use numbers::Numbers;
 pub(crate) use ramp::RampArg;
 pub(crate) use region::Region;
+pub(crate) use shard::Shard;
 pub(crate) use size::{Extent, Size};
 
 use crate::encode::Format;
@@ -218,7 +222,7 @@ fn plain_name(text: &str) -> Result<String, String> {
 }
 
 /// A name as a part of the names of files: what is no letter, digit, `.` or `_` becomes `-`.
-fn file_name(name: &str) -> String {
+pub(crate) fn file_name(name: &str) -> String {
     let plain = |c: char| {
         if c.is_alphanumeric() || c == '.' || c == '_' {
             c

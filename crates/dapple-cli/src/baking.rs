@@ -222,6 +222,16 @@ pub(crate) fn advise(error: RecipeError) -> Error {
     Error::new(error).hint(hint)
 }
 
+/// Adds a hint to an error of a recipe that is to be baked in shards.
+pub(crate) fn advise_shard(error: RecipeError) -> Error {
+    match error.kind() {
+        RecipeErrorKind::Global { .. } => Error::new(error)
+            .context("the recipe cannot be baked in shards")
+            .hint("make what the node makes beforehand, with `dapple tile`, `dapple blend-map` or a bake of its own, and let the recipe name the result in an `image` node"),
+        _ => advise(error),
+    }
+}
+
 /// A file that gets an image row by row, and its name for errors.
 struct Writer {
     target: Target,

@@ -6,11 +6,13 @@ mod blend_map;
 mod completions;
 mod copies;
 mod info;
+mod join;
 mod man;
 mod noise;
 mod points;
 mod pups;
 mod recipe;
+mod shards;
 mod synth;
 mod tile;
 mod watch;
@@ -27,6 +29,8 @@ use clap::Subcommand;
 pub(crate) enum Command {
     Bake(Box<bake::Args>),
     Watch(Box<watch::Args>),
+    Shards(Box<shards::Args>),
+    Join(Box<join::Args>),
     Recipe(Box<recipe::Args>),
     Worley(Box<worley::Args>),
     Pups(Box<pups::Args>),
@@ -52,6 +56,8 @@ pub(crate) fn run(command: &Command, context: &Context) -> Result<Exit> {
     match command {
         Command::Bake(args) => bake::run(args, context),
         Command::Watch(args) => watch::run(args, context),
+        Command::Shards(args) => shards::run(args, context),
+        Command::Join(args) => join::run(args, context),
         Command::Recipe(args) => recipe::run(args, context),
         Command::Worley(args) => worley::run(args, context),
         Command::Pups(args) => pups::run(args, context),

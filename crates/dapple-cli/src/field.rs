@@ -1,6 +1,6 @@
 //! A single field drawn: what `worley`, `pups` and `wavelet` share. Each makes a recipe of one node and bakes it.
 
-use crate::args::{Axes, ImageArgs, Region, Size, Targets, seed};
+use crate::args::{Axes, Frame, ImageArgs, Region, Size, Targets, seed};
 use crate::baking::{self, MapFile, advise, report};
 use crate::encode::{Format, ramped_recipe};
 use crate::error::{Exit, Hint, usage};
@@ -155,8 +155,8 @@ pub(crate) fn draw(
     let n_rows = args.region.map_or(args.size.0[1], |region| region.size[1]);
     let n_rows = u64::from(n_rows) * files.len() as u64;
     let progress = Progress::bar("drawing", n_rows, context);
-    for (index, file) in (0_u32..).zip(&files) {
-        let time = f64::from(index) / files.len() as f64;
+    for (index, (frame, file)) in Frame::all(field.frames).zip(&files).enumerate() {
+        let time = frame.map_or(0.0, Frame::time);
         let plan = Plan::new(&recipe, &field.images, time).map_err(refused)?;
         if index == 0 {
             foresee(&plan, &bake, &vec![image_of_map; files.len()], &job)?;
@@ -232,13 +232,8 @@ fn recipe(field: &Field, args: &FieldArgs, image: &ImageArgs, format: Format) ->
 
 /// The numbers of the pictures of a loop, `001` and so on, as parts of their names; no number for a single picture.
 fn frames(count: Option<u32>) -> Vec<String> {
-    let Some(count) = count else {
-        return vec![String::new()];
-    };
-    let digits = count.to_string().len().max(3);
-    (1..=count)
-        .map(|frame| format!("{frame:0digits$}"))
-        .collect()
+    let label = |frame: Option<Frame>| frame.map_or(String::new(), Frame::label);
+    Frame::all(count).map(label).collect()
 }
 
 /// The width and height of a picture that is `shorter` units along its shorter side and has square pixels.
@@ -287,9 +282,8 @@ mod tests {
     }
 
     #[test]
-    fn pictures_of_a_loop_are_numbered_with_as_many_digits() {
+    fn pictures_of_a_loop_are_numbered() {
         assert_eq!(frames(None), [""]);
         assert_eq!(frames(Some(2)), ["001", "002"]);
-        assert_eq!(frames(Some(1000)).first().map(String::as_str), Some("0001"));
     }
 }

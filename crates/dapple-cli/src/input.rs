@@ -8,10 +8,11 @@
 use crate::args::{Alpha, Region};
 use crate::encode::map_raster;
 use crate::error::{Hint, usage};
+use crate::output::read_back;
 use anyhow::{Context, Error, Result, anyhow};
 use dapple::color::{Code, LinearRgb, LinearRgba, Normal};
 use dapple::image::{
-    Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_image, read_image,
+    ExrImage, Image, ImageError, ImageErrorKind, Limits, PngPixels, decode_image, read_image,
 };
 use dapple::mesh::Model;
 use dapple::mesh_io::{MeshIoErrorKind, read_model, readable_endings};
@@ -292,6 +293,34 @@ pub(crate) fn text(path: &Path) -> Result<String> {
         return Err(anyhow!("{} has more than {TEXT_MAX} bytes", path.display()));
     }
     String::from_utf8(bytes).map_err(|_| anyhow!("{} is not a text in UTF-8", path.display()))
+}
+
+/// Reads the planes of an EXR image of this size.
+///
+/// # Errors
+///
+/// If there is no such file, or it is damaged, larger or another image.
+pub(crate) fn exr(path: &Path, size: [u32; 2]) -> Result<ExrImage> {
+    check_file(path, "an image")?;
+    let pixels = u64::from(size[0]) * u64::from(size[1]);
+    // Four planes, and what a file has beside its pixels: its header and the places of its tiles.
+    let bytes = pixels.saturating_mul(20).saturating_add(1 << 20);
+    match read_image(path, &Limits { pixels, bytes }).map_err(advise)? {
+        Image::Exr(image) => Ok(image),
+        _ => Err(anyhow!("{} is no EXR image", path.display())),
+    }
+}
+
+/// The SHA-256 of a file, in hexadecimal.
+///
+/// # Errors
+///
+/// If there is no such file, or it cannot be read.
+pub(crate) fn sha256(path: &Path) -> Result<String> {
+    check_file(path, "an image")?;
+    let content = fs::File::open(path).and_then(|file| read_back(&file));
+    let content = content.with_context(|| format!("{} cannot be read", path.display()))?;
+    Ok(content.sha256)
 }
 
 /// A part of a map.

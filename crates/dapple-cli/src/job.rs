@@ -22,6 +22,8 @@ pub(crate) struct Context {
     pub(crate) quiet: bool,
     /// How progress is shown.
     pub(crate) progress: Style,
+    /// The number of threads, or 0 for one on each core.
+    pub(crate) threads: u16,
     /// The command line, as it was given.
     pub(crate) arguments: Vec<String>,
 }

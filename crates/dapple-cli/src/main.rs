@@ -3,7 +3,8 @@
 //! `cli.rs` has the command line as a whole, `commands/` a file for each subcommand, and the other files what they share:
 //! `arguments.rs` the words as they are typed, `words.rs` names of values, `args.rs` options, `input.rs` reading, `encode.rs`
 //! and `output.rs` writing, `baking.rs` recipes drawn band by band, `layers.rs` the channels of an image, `field.rs` a single
-//! field as a recipe, `job.rs` a run from its first claimed file to its end, `error.rs` errors.
+//! field as a recipe, `shards.rs` the shards of a picture, `job.rs` a run from its first claimed file to its end, `error.rs`
+//! errors.
 
 #![forbid(unsafe_code)]
 
@@ -22,6 +23,7 @@ mod layers;
 mod output;
 mod preview;
 mod progress;
+mod shards;
 mod words;
 
 use anyhow::{Context as _, Result};
@@ -52,6 +54,7 @@ fn run(cli: &Cli, arguments: &[String]) -> Result<Exit> {
     let context = Context {
         quiet: cli.common.quiet,
         progress: cli.common.progress,
+        threads: cli.common.threads,
         arguments: arguments.to_vec(),
     };
     commands::run(&cli.command, &context)

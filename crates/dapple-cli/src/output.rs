@@ -178,6 +178,16 @@ impl Outputs {
         Err(anyhow!("{} is a file, and not a folder", folder.display()))
     }
 
+    /// Makes a folder that stays, whatever becomes of this run: other runs may write into it at the same time.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be made, as where a file has its name.
+    pub(crate) fn make_lasting_folder(folder: &Path) -> Result<()> {
+        let made = fs::create_dir_all(folder);
+        made.with_context(|| format!("{}: the folder cannot be made", folder.display()))
+    }
+
     /// Creates the temporary file of an output.
     ///
     /// # Errors
@@ -405,7 +415,12 @@ fn not_placed(target: &Target, error: io::Error, placed: &[Target]) -> Error {
     ))
 }
 
-fn read_back(mut file: &File) -> io::Result<Content> {
+/// The size and checksum of a file, from its start.
+///
+/// # Errors
+///
+/// If the operating system refuses.
+pub(crate) fn read_back(mut file: &File) -> io::Result<Content> {
     file.seek(SeekFrom::Start(0))?;
     let mut hash = Sha256::new();
     let mut block = vec![0; 1 << 18];
@@ -418,9 +433,18 @@ fn read_back(mut file: &File) -> io::Result<Content> {
         hash.update(&block[..n_read]);
         bytes += n_read as u64;
     }
-    let digits = hash.finalize();
-    let sha256 = digits.iter().map(|byte| format!("{byte:02x}")).collect();
+    let sha256 = hexadecimal(hash);
     Ok(Content { bytes, sha256 })
+}
+
+/// The SHA-256 of some bytes, in hexadecimal.
+pub(crate) fn sha256(bytes: &[u8]) -> String {
+    hexadecimal(Sha256::new_with_prefix(bytes))
+}
+
+fn hexadecimal(hash: Sha256) -> String {
+    let digits = hash.finalize();
+    digits.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

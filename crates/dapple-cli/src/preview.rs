@@ -41,7 +41,12 @@ struct Maps {
 /// # Errors
 ///
 /// A refusal of the recipe.
-pub(crate) fn picture(recipe: &Recipe, images: &Images, thing: Thing) -> Result<Raster<LinearRgb>> {
+pub(crate) fn picture(
+    recipe: &Recipe,
+    images: &Images,
+    time: f64,
+    thing: Thing,
+) -> Result<Raster<LinearRgb>> {
     let aspect = recipe.extent[0] / recipe.extent[1];
     let (shape, camera, tiles) = match thing {
         Thing::Plane => {
@@ -58,7 +63,7 @@ pub(crate) fn picture(recipe: &Recipe, images: &Images, thing: Thing) -> Result<
             (Shape::sphere(1.0), camera, DVec2::new(around, 1.0))
         }
     };
-    let maps = Maps::bake(recipe, images, tiles)?;
+    let maps = Maps::bake(recipe, images, time, tiles)?;
     let sky = Sky {
         nadir: LinearRgb::gray(0.03),
         horizon: LinearRgb::gray(0.5),
@@ -76,13 +81,13 @@ pub(crate) fn picture(recipe: &Recipe, images: &Images, thing: Thing) -> Result<
 }
 
 impl Maps {
-    fn bake(recipe: &Recipe, images: &Images, tiles: DVec2) -> Result<Self> {
+    fn bake(recipe: &Recipe, images: &Images, time: f64, tiles: DVec2) -> Result<Self> {
         let mut recipe = recipe.clone();
         recipe.material.normal_y = NormalY::OpenGl;
         let longer = recipe.extent[0].max(recipe.extent[1]);
         let side = |extent: f64| (extent / longer * f64::from(TILE)).round().max(1.0) as u32;
         let size = recipe.extent.map(side);
-        let plan = Plan::new(&recipe, images, 0.0).map_err(advise)?;
+        let plan = Plan::new(&recipe, images, time).map_err(advise)?;
         let options = BakeOptions {
             size,
             maps: vec![MapKind::Normal, MapKind::Albedo, MapKind::Orm],

@@ -142,6 +142,7 @@ mod tests {
         let context = Context {
             quiet: true,
             progress: Style::Auto,
+            threads: 0,
             arguments: Vec::new(),
         };
         let progress = Progress::bar("working", 10, &context);

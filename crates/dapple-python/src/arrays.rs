@@ -10,6 +10,7 @@ use dapple::raster::{Raster, RasterView};
 use numpy::ndarray::{ArrayD, IxDyn};
 use numpy::{
     AllowTypeChange, Element, IntoPyArray, PyArrayDyn, PyArrayLike, PyArrayLikeDyn, PyArrayMethods,
+    PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 
@@ -48,9 +49,10 @@ pub(crate) fn filled<'py>(
         );
         return Err(Error::new("shape", message));
     }
-    let values = memory
-        .as_slice_mut()
-        .map_err(|_| Error::new("order", "`out` is not in C order without gaps"))?;
+    let is_ordered = memory.is_c_contiguous();
+    let values = memory.as_slice_mut().ok().filter(|_| is_ordered);
+    let values =
+        values.ok_or_else(|| Error::new("order", "`out` is not in C order without gaps"))?;
     threads::run(py, || fill(values))??;
     drop(memory);
     Ok(out.into_any())
@@ -150,7 +152,7 @@ pub(crate) fn raster_of<const N: usize>(
 }
 
 /// The columns and rows of an array whose first axes are rows and columns.
-fn raster_size(what: &str, shape: &[usize]) -> Result<[u32; 2]> {
+pub(crate) fn raster_size(what: &str, shape: &[usize]) -> Result<[u32; 2]> {
     let side = |length: usize| {
         u32::try_from(length).map_err(|_| {
             Error::new(

@@ -46,6 +46,14 @@ impl Error {
         })
     }
 
+    /// This refusal with other words.
+    pub(crate) fn with_message(self, message: String) -> Self {
+        match self {
+            Self::Refused(refusal) => Self::Refused(Refusal { message, ..refusal }),
+            Self::Python(_) => self,
+        }
+    }
+
     /// A refusal of a crate: its kind is the name of the value of its enum.
     fn of(kind: &impl core::fmt::Debug, message: &impl ToString) -> Self {
         Self::new(&snake_case(&format!("{kind:?}")), message.to_string())

@@ -5,6 +5,7 @@
 use crate::error::{Error, Result};
 use crate::generators::{CellsMade, GradientMade, WaveletMade};
 use crate::pups::{PupsMade, Shared, TextureMade};
+use crate::recipe::NodeMade;
 use dapple::raster::glam::DVec2;
 use dapple::raster::{
     Field, FieldExt, Fractal, FractalShape, PairOperation, RasterError, RasterViewMut, Window,
@@ -64,6 +65,8 @@ pub(crate) enum Made {
     Pups(Shared<PupsMade>),
     /// A texture of control points, by its name.
     Texture(Shared<TextureMade>),
+    /// A node of a recipe.
+    Node(NodeMade),
     /// A plane through a function of more axes.
     Slice { field: Box<Made>, rest: Vec<f64> },
     /// At positions times a frequency.
@@ -124,6 +127,7 @@ impl Made {
             Self::WaveletNoise(made) => return made.build(),
             Self::Pups(made) => made.get()?.numbers()?,
             Self::Texture(made) => made.get()?.numbers()?,
+            Self::Node(made) => return made.build(),
             Self::Slice { field, rest } => match field.build()? {
                 Function::Space(volume) if volume.period().len() == rest.len() + 2 => {
                     volume.slice(rest)

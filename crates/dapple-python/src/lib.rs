@@ -4,6 +4,8 @@
 //! ([`threads`]). Fields are descriptions that are made again in other processes ([`function`]).
 
 mod arrays;
+mod bands;
+mod blending;
 mod color_field;
 mod data;
 mod error;
@@ -11,16 +13,30 @@ mod field;
 mod function;
 mod generators;
 mod grid;
+mod images;
+mod maps;
+mod models;
+mod pictures;
 mod points;
 mod pups;
+mod recipe;
 mod seed;
+mod synthesis;
 mod threads;
+mod tiles;
+mod watch;
 
 use pyo3::prelude::*;
 
 /// What the package is made of.
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::bands::{
+        wavelet_analyze, wavelet_double, wavelet_halve, wavelet_synthesize, wavelet_tile,
+    };
+    #[pymodule_export]
+    use crate::blending::{blend, blend_map};
     #[pymodule_export]
     use crate::color_field::ColorField;
     #[pymodule_export]
@@ -29,6 +45,15 @@ mod _native {
     use crate::field::{_field_from_description, Field, constant};
     #[pymodule_export]
     use crate::generators::{Worley, gradient_noise, wavelet_noise, worley};
+    #[pymodule_export]
+    use crate::images::{decode_image, encode_image, read_image, write_image};
+    #[pymodule_export]
+    use crate::maps::{
+        ambient_occlusion, curvature, linear_from_srgb, normal_map, palettes, ramp,
+        srgb_from_linear,
+    };
+    #[pymodule_export]
+    use crate::models::{Model, mesh_report, read_model, synthesize_on};
     #[pymodule_export]
     use crate::points::{
         _graph_from_description, Domain, Graph, Points, delaunay, extend_poisson_disk, gabriel,
@@ -41,12 +66,26 @@ mod _native {
         random_orientations, random_values, reference_labels,
     };
     #[pymodule_export]
+    use crate::recipe::{_plan_from_parts, Plan, Recipe, ShardList, map_names, shards};
+    #[pymodule_export]
+    use crate::synthesis::synthesize;
+    #[pymodule_export]
     use crate::threads::{set_threads, threads};
+    #[pymodule_export]
+    use crate::tiles::{
+        CornerTiles, disturb, lay_tiles, make_tile, match_borders, rank_equalize, repeat,
+        seam_report,
+    };
 
     use pyo3::prelude::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // What an error does not say is None.
+        let error = module.getattr("DappleError")?;
+        for attribute in ["kind", "node", "hint"] {
+            error.setattr(attribute, module.py().None())?;
+        }
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -30,7 +30,7 @@ pub(crate) fn run<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> R
 }
 
 /// The pool of this process.
-fn pool(_py: Python<'_>) -> Result<Arc<ThreadPool>> {
+pub(crate) fn pool(_py: Python<'_>) -> Result<Arc<ThreadPool>> {
     let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
     match threads.pool.take() {

@@ -9,8 +9,10 @@
 
 mod heights;
 mod maps;
+mod shards;
 
 pub use maps::{MapKind, MapRows};
+pub use shards::Shards;
 
 use crate::{Plan, RecipeError, Whole};
 use dapple_raster::Window;

@@ -15,7 +15,7 @@ mod text;
 mod values;
 mod words;
 
-pub use bake::{Bake, BakeMemory, BakeOptions, Band, MapKind, MapRows, Region};
+pub use bake::{Bake, BakeMemory, BakeOptions, Band, MapKind, MapRows, Region, Shards};
 pub use dapple_color as color;
 pub use dapple_hash as hash;
 pub use dapple_raster as raster;

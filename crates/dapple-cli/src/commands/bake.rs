@@ -5,26 +5,26 @@ mod claim;
 mod documents;
 mod images;
 mod maps;
+mod material;
 mod presets;
 mod recipes;
 
-use crate::args::{OutputArgs, Region, Size, seed};
-use crate::baking::{advise, read_images, read_recipe, report};
+use crate::args::{Frame, OutputArgs, Region, Shard, Size};
+use crate::baking::{advise, advise_shard, read_images, read_recipe, report};
 use crate::encode::Format;
 use crate::error::{Exit, Hint, usage};
 use crate::foresight::foresee;
 use crate::job::{Context, Job};
 use crate::preview::{self, Thing};
 use crate::progress::Progress;
+use crate::shards::{List, Wanted};
 use crate::words::Word;
-use anyhow::{Error, Result};
+use anyhow::Result;
 use batch::Batch;
 use claim::claim;
-use dapple::color::NormalY;
-use dapple::hash::Seed;
-use dapple::recipe::{Bake, BakeMemory, BakeOptions, Plan, Recipe, RecipeError, RecipeErrorKind};
+use dapple::recipe::{Bake, BakeMemory, BakeOptions, MapKind, Plan, Recipe};
 use dapple::tile::Map;
-use maps::Maps;
+pub(super) use material::MaterialArgs;
 use presets::Preset;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -44,6 +44,7 @@ Examples:
   dapple bake rock -o rock.glb
   dapple bake marble -o marble.mtlx
   dapple bake mountains --maps height --size 2017 -o island.r16
+  dapple bake rock --size 8192 --shard 3,1,512 -o parts/
 
 `dapple recipe --list` names the built-in recipes, and `dapple recipe rock` prints one, to
 begin your own with.
@@ -62,33 +63,26 @@ pub(crate) struct Args {
     #[arg(value_name = "RECIPE", required = true)]
     recipes: Vec<String>,
 
-    /// Columns and rows of the tile, in pixels.
-    #[arg(long, value_name = "WxH", default_value = "1024")]
-    size: Size,
-
-    /// The maps, with commas between them, or all. By default height, normal, ao, albedo and roughness.
-    #[arg(long, value_name = "MAPS")]
-    maps: Option<Maps>,
+    #[command(flatten)]
+    #[serde(flatten)]
+    material: MaterialArgs,
 
     /// The images of a program: their names, what their channels hold, their bits, and where green points in normal maps.
     #[arg(long, value_name = "PROGRAM", value_parser = Preset::parser(), conflicts_with_all = ["maps", "format"])]
     preset: Option<&'static Preset>,
 
-    /// The seed, instead of that of the recipe.
-    #[arg(long, value_name = "N", value_parser = seed)]
-    seed: Option<u64>,
-
     /// Make only this part of the tile, in pixels: bit for bit the crop of the whole.
     #[arg(long, value_name = "X,Y,W,H")]
     region: Option<Region>,
 
-    /// Where green points in normal maps. By default as the preset or the recipe says, or else up (opengl).
-    #[arg(long, value_name = "WAY", value_parser = Word::<NormalY>::all())]
-    normal_y: Option<NormalY>,
+    /// Make only this shard, as `dapple shards` lists it: its column and row, from 0, and the size of all shards. It goes into
+    /// a folder of its list in the output, as EXR, and is not made again if it is there.
+    #[arg(long, value_name = "COLUMN,ROW,WxH", conflicts_with_all = ["region", "preset", "sheet", "preview", "format", "name", "json"])]
+    shard: Option<Shard>,
 
-    /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6, instead of what the recipe says.
-    #[arg(long, value_name = "UNITS")]
-    relief: Option<f64>,
+    /// The picture of a loop that is made: its number, from 1, and how many there are. By default the first.
+    #[arg(long, value_name = "K/N")]
+    frame: Option<Frame>,
 
     /// Keep only a band of rows in memory, for large tiles. Refused where a node sees the whole tile, and needed past
     /// 32768 × 32768 pixels.
@@ -120,6 +114,8 @@ pub(crate) struct Args {
 struct Work {
     recipe: Recipe,
     folder: PathBuf,
+    /// What its shard belongs to, if it is baked in shards.
+    list: Option<List>,
 }
 
 /// Bakes the recipes.
@@ -136,12 +132,7 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     for name in &names {
         // All recipes are read and all files claimed before the work begins.
         let work = Work::read(name, args).and_then(|work| {
-            claim(
-                args,
-                &files,
-                &work.recipe,
-                &mut Job::new(context, "bake", &files),
-            )?;
+            claim(args, &files, &work, &mut Job::new(context, "bake", &files))?;
             Ok((name, work))
         });
         works.extend(batch.checked(name, work)?);
@@ -156,12 +147,12 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
             return Err(usage(message).hint("give each a `name`"));
         }
     }
-    let n_rows = u64::from(args.n_rows()) * works.len() as u64;
-    let progress = Progress::bar("baking", n_rows, context);
+    let rows = u64::from(args.n_rows()?);
+    let progress = Progress::bar("baking", rows * works.len() as u64, context);
     for (index, (name, work)) in (0..).zip(&works) {
         let baked = work.bake(args, &files, Job::new(context, "bake", &files), &progress);
         batch.checked(name, baked)?;
-        progress.set(u64::from(args.n_rows()) * (index + 1));
+        progress.set(rows * (index + 1));
     }
     drop(progress);
     Ok(batch.exit())
@@ -171,8 +162,18 @@ impl Work {
     fn read(name: &str, args: &Args) -> Result<Self> {
         let (mut recipe, folder) = read_recipe(name)?;
         args.change(&mut recipe);
-        let folder = folder.to_owned();
-        Ok(Self { recipe, folder })
+        let wanted = args.shard.map(|shard| Wanted {
+            size: args.material.size,
+            shard: shard.size,
+            maps: args.material.map_kinds(),
+            frames: args.frame.map(Frame::count),
+        });
+        let list = wanted.map(|wanted| List::new(name, &recipe, folder, &wanted));
+        Ok(Self {
+            list: list.transpose()?,
+            folder: folder.to_owned(),
+            recipe,
+        })
     }
 
     fn bake(
@@ -183,15 +184,30 @@ impl Work {
         progress: &Progress,
     ) -> Result<()> {
         let recipe = &self.recipe;
-        let claimed = claim(args, files, recipe, &mut job)?;
+        let claimed = claim(args, files, self, &mut job)?;
+        for target in &claimed.finished {
+            job.note_work(&format!("{target} is there already"));
+        }
+        if claimed.images.is_empty() {
+            return Ok(());
+        }
         let images = read_images(recipe, &self.folder)?;
-        let plan = Plan::new(recipe, &images, 0.0).map_err(|error| args.blame(error))?;
-        foresee(&plan, &args.options(), &claimed.images, &job)?;
-        let bake =
-            Bake::new(&plan, &args.options()).map_err(|error| advise(error).wrong_value())?;
+        let time = args.frame.map_or(0.0, Frame::time);
+        let blame = |error| args.material.blame(error);
+        let plan = Plan::new(recipe, &images, time).map_err(blame)?;
+        let options = args.options(claimed.map_kinds())?;
+        foresee(&plan, &options, &claimed.images, &job)?;
+        let refused = match args.shard {
+            Some(_) => advise_shard,
+            None => advise,
+        };
+        let bake = Bake::new(&plan, &options).map_err(|error| refused(error).wrong_value())?;
         claimed.write(&mut job, bake, recipe, progress)?;
+        if args.shard.is_some() {
+            claimed.sync(&job)?;
+        }
         if let (Some((output, format)), Some(thing)) = (claimed.preview, args.preview) {
-            let picture = preview::picture(recipe, &images, thing)?;
+            let picture = preview::picture(recipe, &images, time, thing)?;
             job.write_map(output, &Map::Color(picture), format)?;
         }
         job.finish(&Told { args, recipe }, report(recipe))
@@ -223,13 +239,14 @@ impl Args {
 
     /// The size, after one like it with a longer side of `small` pixels, if that is less.
     pub(super) fn sizes(&self, small: u32) -> Vec<Size> {
-        let longer = self.size.0[0].max(self.size.0[1]);
-        if longer <= small || self.region.is_some() {
-            return vec![self.size];
+        let size = self.material.size;
+        let longer = size.0[0].max(size.0[1]);
+        if longer <= small || self.region.is_some() || self.shard.is_some() {
+            return vec![size];
         }
         let side =
             |side: u32| (u64::from(side) * u64::from(small) / u64::from(longer)).max(1) as u32;
-        vec![Size(self.size.0.map(side)), self.size]
+        vec![Size(size.0.map(side)), size]
     }
 
     /// Whether files that are there are replaced.
@@ -239,10 +256,8 @@ impl Args {
 
     /// These options with another size, and with or without `--force`.
     pub(super) fn at(&self, size: Size, may_replace: bool) -> Self {
-        let mut args = Self {
-            size,
-            ..self.clone()
-        };
+        let mut args = self.clone();
+        args.material.size = size;
         args.files.force = may_replace;
         args
     }
@@ -250,6 +265,8 @@ impl Args {
     /// The outputs of a number of recipes, which need a folder if there are several.
     fn files_for(&self, n_recipes: usize) -> Result<OutputArgs> {
         let mut files = self.files.clone();
+        // Another run may finish a shard first, with the same bytes.
+        files.force |= self.shard.is_some();
         if n_recipes == 1 || files.output.is_none() {
             return Ok(files);
         }
@@ -266,45 +283,36 @@ impl Args {
         Ok(files)
     }
 
+    /// The part of the tile that is made.
+    fn part(&self) -> Result<Option<dapple::recipe::Region>> {
+        match self.shard {
+            Some(shard) => shard.region(self.material.size).map(Some),
+            None => Ok(self.region.map(Region::of_recipe)),
+        }
+    }
+
     /// How many rows of maps are baked for a recipe.
-    fn n_rows(&self) -> u32 {
-        let rows = self.region.map_or(self.size.0[1], |region| region.size[1]);
-        if self.sheet { 2 * rows } else { rows }
+    fn n_rows(&self) -> Result<u32> {
+        let size = self.part()?.map_or(self.material.size.0, |part| part.size);
+        Ok(if self.sheet { 2 * size[1] } else { size[1] })
     }
 
     /// Puts what the command line says into the recipe.
     fn change(&self, recipe: &mut Recipe) {
-        if let Some(seed) = self.seed {
-            recipe.seed = Seed(seed);
-        }
-        if let Some(relief) = self.relief {
-            recipe.material.relief = relief;
-        }
         let preset = self.preset().map(|preset| preset.normal_y);
-        if let Some(normal_y) = self.normal_y.or(preset) {
-            recipe.material.normal_y = normal_y;
-        }
+        self.material.change(recipe, preset);
     }
 
-    /// The refusal of a plan, as wrong usage if it is about the relief that was typed.
-    fn blame(&self, error: RecipeError) -> Error {
-        let is_typed = matches!(error.kind(), RecipeErrorKind::Range { value, .. } if self.relief == Some(*value));
-        match is_typed {
-            true => advise(error).wrong_value(),
-            false => advise(error),
-        }
-    }
-
-    fn options(&self) -> BakeOptions {
-        BakeOptions {
-            size: self.size.0,
-            region: self.region.map(Region::of_recipe),
-            maps: self.map_kinds(),
-            memory: if self.banded {
+    fn options(&self, maps: Vec<MapKind>) -> Result<BakeOptions> {
+        Ok(BakeOptions {
+            size: self.material.size.0,
+            region: self.part()?,
+            maps,
+            memory: if self.banded || self.shard.is_some() {
                 BakeMemory::Banded
             } else {
                 BakeMemory::Whole
             },
-        }
+        })
     }
 }

@@ -5,9 +5,11 @@
 use crate::support::{Folder, assert_done, stdout};
 use std::fs;
 
-const SUBCOMMANDS: [&str; 16] = [
+const SUBCOMMANDS: [&str; 18] = [
     "bake",
     "watch",
+    "shards",
+    "join",
     "recipe",
     "worley",
     "pups",
@@ -67,6 +69,12 @@ fn examples_of_the_help_run() {
 fn examples_of_bake_and_recipe_run() {
     run_examples(&["bake"]);
     run_examples(&["recipe"]);
+}
+
+#[test]
+fn examples_of_shards_and_join_run() {
+    run_examples(&["shards"]);
+    run_examples(&["join"]);
 }
 
 #[test]

@@ -16,6 +16,7 @@ mod meshes;
 mod outputs;
 mod refusals;
 mod results;
+mod shards;
 mod support;
 mod watch;
 mod words;

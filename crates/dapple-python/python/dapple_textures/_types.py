@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ._native import DappleError
+
 
 class Features(NamedTuple):
     """The nearest feature points of positions or of pixels; what was not asked for is None."""
@@ -61,3 +63,19 @@ class Weights(NamedTuple):
     indices: npt.NDArray[np.int64]
     #: Their weights, which sum to 1 at each position.
     weights: npt.NDArray[np.float32]
+
+
+class MapInfo(NamedTuple):
+    """What a map of a material holds."""
+
+    #: Numbers of a pixel: 1 or 3.
+    channels: int
+    #: "linear", for colors with the primaries of sRGB, or "non-color".
+    color_space: str
+
+
+def refusal(kind: str, message: str, hint: str | None = None) -> DappleError:
+    """The error of a limit: its kind, its message, and the way out."""
+    error = DappleError(message if hint is None else f"{message}: {hint}")
+    error.kind, error.hint = kind, hint
+    return error

@@ -1,22 +1,27 @@
 //! The files of a recipe: claimed before the work begins, and written when it is done.
 
-use super::Args;
 use super::documents::{glb, mtlx};
 use super::presets::Document;
-use crate::args::{OutputArgs, Targets};
+use super::{Args, Work};
+use crate::args::{OutputArgs, Shard, Targets};
 use crate::baking::{self, MapFile};
 use crate::encode::Format;
 use crate::error::{Hint, usage};
 use crate::job::Job;
 use crate::layers::{Image, Layers};
-use crate::output::{OutputIdx, Target};
+use crate::output::{OutputIdx, Outputs, Target, cannot_be_written};
 use crate::progress::Progress;
-use anyhow::Result;
-use dapple::recipe::{Bake, Recipe};
+use crate::shards::List;
+use anyhow::{Context as _, Error, Result};
+use dapple::recipe::{Bake, MapKind, Recipe};
+use std::path::Path;
 
 /// The files of a recipe.
 pub(super) struct Claimed {
+    /// The images that are to be made.
     pub(super) images: Vec<Image>,
+    /// Files of a shard that are there already.
+    pub(super) finished: Vec<Target>,
     /// A file for each image, unless a document has them in it.
     files: Vec<MapFile>,
     document: Option<(OutputIdx, Document)>,
@@ -28,13 +33,14 @@ pub(super) struct Claimed {
 pub(super) fn claim(
     args: &Args,
     files: &OutputArgs,
-    recipe: &Recipe,
+    work: &Work,
     job: &mut Job<'_>,
 ) -> Result<Claimed> {
-    let Targets { main, files } = targets(args, files, recipe)?;
+    let Targets { main, files } = targets(args, files, work)?;
     let mut places = files.into_iter();
     let mut claimed = Claimed {
         images: Vec::new(),
+        finished: Vec::new(),
         files: Vec::new(),
         document: None,
         preview: None,
@@ -56,6 +62,10 @@ pub(super) fn claim(
             Some(_) => target.with_ending("png"),
             None => target,
         };
+        if args.is_finished(&target) {
+            claimed.finished.push(target);
+            continue;
+        }
         let image = image(layers, asked, &target)?;
         let output = job.claim(&target)?;
         let sheet = args.sheet.then(|| places.next()).flatten();
@@ -74,8 +84,12 @@ pub(super) fn claim(
     Ok(claimed)
 }
 
-/// The names of all files: the document, each image with its sheet, and the preview.
-fn targets(args: &Args, files: &OutputArgs, recipe: &Recipe) -> Result<Targets> {
+/// The names of all files: the document, each image with its sheet, and the preview; or those of a shard.
+fn targets(args: &Args, files: &OutputArgs, work: &Work) -> Result<Targets> {
+    if let (Some(shard), Some(list)) = (args.shard, &work.list) {
+        let folder = files.output.as_deref().ok_or_else(no_folder)?;
+        return shard_targets(args, folder, shard, list);
+    }
     let document = args.document();
     // A document is the output itself.
     let mut parts: Vec<_> = document.iter().map(|_| String::new()).collect();
@@ -85,12 +99,35 @@ fn targets(args: &Args, files: &OutputArgs, recipe: &Recipe) -> Result<Targets> 
         parts.extend(args.sheet.then(|| format!("{part}_2x2")));
     }
     parts.extend(args.preview.map(|_| "preview".to_owned()));
+    if let Some(frame) = args.frame {
+        for part in parts.iter_mut().filter(|part| !part.is_empty()) {
+            *part += &format!("_{}", frame.label());
+        }
+    }
     let ending = match document {
         Some(document) => document.ending(),
         None => args.format.map_or("png", Format::ending),
     };
     let prefix = args.preset().map_or("", |preset| preset.prefix);
-    files.targets(&format!("{prefix}{}", recipe.name), &parts, ending)
+    files.targets(&format!("{prefix}{}", work.recipe.name), &parts, ending)
+}
+
+/// The files of a shard, in a folder that is made for good: other runs may need it before this one is done.
+fn shard_targets(args: &Args, folder: &Path, shard: Shard, list: &List) -> Result<Targets> {
+    list.check_folder(folder)?;
+    let kinds = args.material.map_kinds().iter();
+    let file = |&kind: &MapKind| folder.join(list.file(args.frame, shard.place, kind));
+    let files: Vec<_> = kinds.map(file).collect();
+    if let Some(folder) = files.first().and_then(|file| file.parent()) {
+        Outputs::make_lasting_folder(folder)?;
+    }
+    let files: Vec<_> = files.into_iter().map(Target::Path).collect();
+    let main = files.first().cloned().unwrap_or(Target::Stdout);
+    Ok(Targets { main, files })
+}
+
+fn no_folder() -> Error {
+    usage("missing output").hint("add -o DIR/, the folder of the shards")
 }
 
 /// An image in the format of its file.
@@ -125,7 +162,35 @@ fn check_ending(target: &Target, document: Document) -> Result<()> {
     )))
 }
 
+impl Args {
+    /// Whether a file is a finished one of a shard. What is under the name of a shard is whole, and belongs to its list.
+    fn is_finished(&self, target: &Target) -> bool {
+        let is_there = |path: &Path| path.exists();
+        self.shard.is_some() && !self.files.force && target.path().is_some_and(is_there)
+    }
+}
+
 impl Claimed {
+    /// The maps that the images are made of, each once.
+    pub(super) fn map_kinds(&self) -> Vec<MapKind> {
+        let mut kinds: Vec<MapKind> = Vec::new();
+        for kind in self.images.iter().flat_map(|image| image.layers.kinds()) {
+            if !kinds.contains(&kind) {
+                kinds.push(kind);
+            }
+        }
+        kinds
+    }
+
+    /// Waits until the images are on the disk, so that what gets its name is whole even if the machine fails.
+    pub(super) fn sync(&self, job: &Job<'_>) -> Result<()> {
+        for file in &self.files {
+            let synced = job.writer(file.output)?.get_ref().sync_all();
+            synced.with_context(|| cannot_be_written(job.target(file.output)))?;
+        }
+        Ok(())
+    }
+
     /// Writes the images, and the document that is made of them.
     pub(super) fn write(
         &self,

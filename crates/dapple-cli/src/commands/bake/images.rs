@@ -10,15 +10,6 @@ use dapple::color::NormalY;
 use dapple::recipe::MapKind;
 use std::path::Path;
 
-/// The default maps.
-const USUAL: [MapKind; 5] = [
-    MapKind::Height,
-    MapKind::Normal,
-    MapKind::Occlusion,
-    MapKind::Albedo,
-    MapKind::Roughness,
-];
-
 impl Args {
     /// The preset, named or by the ending of the output.
     pub(super) fn preset(&self) -> Option<&'static Preset> {
@@ -48,13 +39,14 @@ impl Args {
         };
         let ending = document.ending();
         let in_the_way = [
-            ("--maps", self.maps.is_some()),
+            ("--maps", self.material.maps.is_some()),
             ("--format", self.format.is_some()),
             ("--region", self.region.is_some()),
+            ("--shard", self.shard.is_some()),
             ("--sheet", self.sheet),
             (
                 "--normal-y directx",
-                self.normal_y == Some(NormalY::DirectX),
+                self.material.normal_y == Some(NormalY::DirectX),
             ),
         ];
         match in_the_way.iter().find(|(_, is_there)| *is_there) {
@@ -76,21 +68,7 @@ impl Args {
             };
             return images.map(of_preset).collect();
         }
-        let maps = self.maps.as_ref().map_or(USUAL.as_slice(), |maps| &maps.0);
         let of_map = |&kind: &MapKind| (kind.name(), Layers::Map(kind), self.format);
-        maps.iter().map(of_map).collect()
-    }
-
-    /// The maps that the images are made of, each once.
-    pub(super) fn map_kinds(&self) -> Vec<MapKind> {
-        let mut kinds: Vec<MapKind> = Vec::new();
-        for (_, layers, _) in self.images() {
-            for kind in layers.kinds() {
-                if !kinds.contains(&kind) {
-                    kinds.push(kind);
-                }
-            }
-        }
-        kinds
+        self.material.map_kinds().iter().map(of_map).collect()
     }
 }

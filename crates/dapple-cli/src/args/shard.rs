@@ -1,0 +1,103 @@
+//! A shard of a picture on the command line: `COLUMN,ROW,WxH`, such as `3,7,2048`.
+
+use super::Size;
+use crate::error::usage;
+use anyhow::Result;
+use dapple::recipe::{Region, Shards};
+use serde::{Serialize, Serializer};
+use std::fmt;
+use std::str::FromStr;
+
+/// A shard, and the size of all shards but the last ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Shard {
+    /// Its column and row among the shards, from 0.
+    pub(crate) place: [u32; 2],
+    /// Columns and rows of a shard, in pixels.
+    pub(crate) size: Size,
+}
+
+impl Shard {
+    /// Its pixels in a picture of this size, cut off at the border.
+    ///
+    /// # Errors
+    ///
+    /// If the picture has no such shard.
+    pub(crate) fn region(self, picture: Size) -> Result<Region> {
+        let shards = Shards::new(picture.0, self.size.0)?;
+        let [columns, rows] = shards.grid();
+        let [column, row] = self.place.map(u64::from);
+        let index = (column < columns.into()).then_some(row * u64::from(columns) + column);
+        let found = index.and_then(|index| shards.get(index));
+        found.ok_or_else(|| {
+            usage(format!(
+                "there is no shard in column {column} and row {row}: of a picture of {picture} there are {columns} x {rows}, counted from 0"
+            ))
+        })
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || {
+            format!("{text:?} is no shard: give its column, its row and its size, such as 3,7,2048")
+        };
+        let parts: Vec<_> = text.split(',').map(str::trim).collect();
+        let [column, row, size] = parts[..] else {
+            return Err(wrong());
+        };
+        let (Ok(column), Ok(row)) = (column.parse(), row.parse()) else {
+            return Err(wrong());
+        };
+        Ok(Self {
+            place: [column, row],
+            size: size.parse()?,
+        })
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [column, row] = self.place;
+        write!(f, "{column},{row},{}", self.size)
+    }
+}
+
+impl Serialize for Shard {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Shard, Size};
+
+    #[test]
+    fn a_shard_is_its_place_and_its_size() {
+        let shard = Shard {
+            place: [3, 1],
+            size: Size([64, 32]),
+        };
+        assert_eq!("3,1,64x32".parse(), Ok(shard));
+        assert_eq!(shard.to_string().parse(), Ok(shard));
+        for text in ["", "3,1", "3,1,0", "-1,1,64", "3,1,64,64", "a,b,c"] {
+            assert!(text.parse::<Shard>().is_err(), "{text:?} is no shard");
+        }
+    }
+
+    #[test]
+    fn the_pixels_of_a_shard_end_at_the_border() {
+        let region = |text: &str| -> Option<_> {
+            let shard: Shard = text.parse().ok()?;
+            let region = shard.region(Size([200, 100])).ok()?;
+            Some((region.first, region.size))
+        };
+        assert_eq!(region("0,0,64"), Some(([0, 0], [64, 64])));
+        assert_eq!(region("3,1,64"), Some(([192, 64], [8, 36])));
+        assert_eq!(region("4,0,64"), None, "past the last column");
+        assert_eq!(region("0,2,64"), None, "past the last row");
+    }
+}

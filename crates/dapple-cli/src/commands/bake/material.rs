@@ -1,0 +1,90 @@
+//! What is made of a recipe: the options that a bake and a list of shards share.
+
+use super::maps::Maps;
+use crate::args::{Size, seed};
+use crate::baking::advise;
+use crate::error::Hint;
+use crate::words::Word;
+use anyhow::Error;
+use dapple::color::NormalY;
+use dapple::hash::Seed;
+use dapple::raster::Named;
+use dapple::recipe::{MapKind, Recipe, RecipeError, RecipeErrorKind};
+use serde::Serialize;
+
+/// The default maps.
+const USUAL: [MapKind; 5] = [
+    MapKind::Height,
+    MapKind::Normal,
+    MapKind::Occlusion,
+    MapKind::Albedo,
+    MapKind::Roughness,
+];
+
+/// The size, the maps, and what replaces settings of the recipe.
+#[derive(clap::Args, Clone, Debug, Serialize)]
+pub(in crate::commands) struct MaterialArgs {
+    /// Columns and rows of the tile, in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1024")]
+    pub(in crate::commands) size: Size,
+
+    /// The maps, with commas between them, or all. By default height, normal, ao, albedo and roughness.
+    #[arg(long, value_name = "MAPS")]
+    pub(super) maps: Option<Maps>,
+
+    /// The seed, instead of that of the recipe.
+    #[arg(long, value_name = "N", value_parser = seed)]
+    seed: Option<u64>,
+
+    /// Where green points in normal maps. By default as the preset or the recipe says, or else up (opengl).
+    #[arg(long, value_name = "WAY", value_parser = Word::<NormalY>::all())]
+    pub(super) normal_y: Option<NormalY>,
+
+    /// How many units of the plane a height of 1 stands for, from -1e6 to 1e6, instead of what the recipe says.
+    #[arg(long, value_name = "UNITS")]
+    relief: Option<f64>,
+}
+
+impl MaterialArgs {
+    /// The maps that were asked for, or the usual ones.
+    pub(in crate::commands) fn map_kinds(&self) -> &[MapKind] {
+        self.maps.as_ref().map_or(&USUAL, |maps| &maps.0)
+    }
+
+    /// Puts what the command line says into the recipe; `normal_y` is what a preset says.
+    pub(in crate::commands) fn change(&self, recipe: &mut Recipe, normal_y: Option<NormalY>) {
+        if let Some(seed) = self.seed {
+            recipe.seed = Seed(seed);
+        }
+        if let Some(relief) = self.relief {
+            recipe.material.relief = relief;
+        }
+        if let Some(normal_y) = self.normal_y.or(normal_y) {
+            recipe.material.normal_y = normal_y;
+        }
+    }
+
+    /// The refusal of a plan, as wrong usage if it is about the relief that was typed.
+    pub(in crate::commands) fn blame(&self, error: RecipeError) -> Error {
+        let is_typed = matches!(error.kind(), RecipeErrorKind::Range { value, .. } if self.relief == Some(*value));
+        match is_typed {
+            true => advise(error).wrong_value(),
+            false => advise(error),
+        }
+    }
+
+    /// These options as words of a command line.
+    pub(in crate::commands) fn words(&self) -> Vec<String> {
+        let maps = self.map_kinds().iter().map(|kind| kind.name());
+        let maps = maps.collect::<Vec<_>>().join(",");
+        let options = [
+            Some(format!("--size={}", self.size)),
+            self.maps.as_ref().map(|_| format!("--maps={maps}")),
+            self.seed.map(|seed| format!("--seed={seed}")),
+            self.normal_y
+                .map(|way| format!("--normal-y={}", way.name())),
+            self.relief.map(|relief| format!("--relief={relief}")),
+        ];
+        options.into_iter().flatten().collect()
+    }
+}

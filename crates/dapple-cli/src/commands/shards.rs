@@ -1,0 +1,254 @@
+//! `dapple shards`: the list of commands that bake a picture in shards.
+
+mod openjd;
+
+use super::bake::MaterialArgs;
+use crate::args::Size;
+use crate::baking::{advise_shard, read_images, read_recipe};
+use crate::error::{Exit, Hint, usage};
+use crate::job::{Context, eprintln_if_possible};
+use crate::shards::{List, Task, Wanted};
+use crate::words::Word;
+use anyhow::Result;
+use dapple::recipe::{Bake, BakeMemory, BakeOptions, MapKind, Plan, Region};
+use serde::{Serialize, Serializer};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  dapple shards flagstone --size 256 --shard 64 -o parts/ > list
+  dapple shards rock --size 200000 --shard 2048 --maps height,normal -o rock/ > list
+  dapple shards clouds --size 512 --shard 256 --frames 24 -o sky/ --format json
+  dapple shards rock --size 8192 --shard 1024 -o rock/ --format openjd > job.json
+
+A shard has the bits that the whole picture has there, so that any number of machines bake them, in any order. Each is
+written whole or not at all, and one that is there is not made again: after anything that went wrong, run the list again.
+Then `dapple join rock/ -o rock.exr` puts them together.
+
+On one machine, in a shell or with GNU parallel (with --threads 1 the list says so to each bake):
+  sh list
+  parallel --jobs 4 < list
+
+On a cluster with SLURM, as the last line of a script with `#SBATCH --array=1-9604`, or of one with `--array=0-999` where
+arrays may not be that long:
+  sed -n \"${SLURM_ARRAY_TASK_ID}p\" list | sh
+  awk \"NR % 1000 == ${SLURM_ARRAY_TASK_ID}\" list | sh -e
+
+On a render farm with Open Job Description, from a template in this folder:
+  openjd check job.json
+  openjd run job.json";
+
+dapple::raster::named! {
+    /// The forms of a list of shards.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum ListFormat {
+        /// A line of a shell for each shard.
+        Lines = "lines",
+        /// A document in JSON.
+        Json = "json",
+        /// A job template of Open Job Description.
+        OpenJd = "openjd",
+    }
+}
+
+/// List the commands that bake a picture in shards, on any number of machines.
+#[derive(clap::Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// A built-in recipe, or a file in TOML or JSON.
+    #[arg(value_name = "RECIPE")]
+    recipe: String,
+
+    #[command(flatten)]
+    material: MaterialArgs,
+
+    /// Columns and rows of a shard, in pixels; those at the right and at the bottom may have fewer.
+    #[arg(long, value_name = "WxH")]
+    shard: Size,
+
+    /// A loop of this many pictures, each of them in shards.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    frames: Option<u32>,
+
+    /// The form of the list, which is printed.
+    #[arg(long, value_name = "FORM", value_parser = Word::<ListFormat>::all(), default_value_t = ListFormat::Lines)]
+    format: ListFormat,
+
+    /// The folder of the shards, which gets a file `shards.json` that says what they are.
+    #[arg(short, long, value_name = "DIR", default_value = "shards")]
+    output: PathBuf,
+
+    /// Replace the `shards.json` of other shards. Their files stay, and are not mistaken for these.
+    #[arg(long)]
+    force: bool,
+}
+
+/// Prints the list.
+///
+/// # Errors
+///
+/// A recipe that cannot be baked in shards, and a folder that has others.
+pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    if args.recipe == "-" {
+        let error = usage("a recipe that is baked in shards is read again for each of them");
+        return Err(error.hint("put it into a file"));
+    }
+    let (mut recipe, folder) = read_recipe(&args.recipe)?;
+    args.material.change(&mut recipe, None);
+    let maps = args.material.map_kinds();
+    let wanted = Wanted {
+        size: args.material.size,
+        shard: args.shard,
+        maps,
+        frames: args.frames,
+    };
+    let list = List::new(&args.recipe, &recipe, folder, &wanted)?;
+    let images = read_images(&recipe, folder)?;
+    let plan = Plan::new(&recipe, &images, 0.0).map_err(|error| args.material.blame(error))?;
+    let first = list.tasks()?.next().map(|task| task.region);
+    check(&plan, args, first)?;
+    list.write(&args.output, args.force)?;
+    let mut options = args.material.words();
+    if context.threads > 0 {
+        options.push(format!("--threads={}", context.threads));
+    }
+    let mut out = BufWriter::new(io::stdout().lock());
+    match args.format {
+        ListFormat::Lines => lines(args, &options, &list, &mut out)?,
+        ListFormat::Json => json(&list, maps, &mut out)?,
+        ListFormat::OpenJd => {
+            let template = openjd::template(args, options, &list)?;
+            serde_json::to_writer_pretty(&mut out, &template)?;
+            out.write_all(b"\n")?;
+        }
+    }
+    out.flush()?;
+    if !context.quiet {
+        let count = list.n_tasks()?;
+        eprintln_if_possible(&format!(
+            "{count} shards; `dapple join {}` puts them together",
+            args.output.display()
+        ));
+    }
+    Ok(Exit::Done)
+}
+
+/// Refuses what the bake of a shard refuses.
+fn check(plan: &Plan, args: &Args, region: Option<Region>) -> Result<()> {
+    let options = BakeOptions {
+        size: args.material.size.0,
+        region,
+        maps: args.material.map_kinds().to_vec(),
+        memory: BakeMemory::Banded,
+    };
+    let bake = Bake::new(plan, &options);
+    bake.map_err(|error| advise_shard(error).wrong_value())?;
+    Ok(())
+}
+
+/// Writes a line of a shell for each shard, with the options of the bakes.
+fn lines(args: &Args, options: &[String], list: &List, out: &mut impl Write) -> Result<()> {
+    let output = text_of_path(&args.output)?;
+    for Task { frame, shard, .. } in list.tasks()? {
+        let mut words = vec!["dapple".to_owned(), "bake".to_owned(), args.recipe.clone()];
+        words.extend_from_slice(options);
+        words.push(format!("--shard={shard}"));
+        words.extend(frame.map(|frame| format!("--frame={frame}")));
+        words.extend(["-o".to_owned(), output.to_owned()]);
+        let words: Vec<_> = words.iter().map(|word| quoted(word)).collect();
+        writeln!(out, "{}", words.join(" "))?;
+    }
+    Ok(())
+}
+
+/// Writes the list with all shards as a document.
+fn json(list: &List, maps: &[MapKind], out: &mut impl Write) -> Result<()> {
+    let document = Document {
+        list,
+        shards: Entries { list, maps },
+    };
+    serde_json::to_writer_pretty(&mut *out, &document)?;
+    Ok(out.write_all(b"\n")?)
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    list: &'a List,
+    shards: Entries<'a>,
+}
+
+/// The shards of a list, each of which is made when it is written.
+struct Entries<'a> {
+    list: &'a List,
+    maps: &'a [MapKind],
+}
+
+/// A shard in the document.
+#[derive(Serialize)]
+struct Entry {
+    index: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<String>,
+    first: [u32; 2],
+    size: [u32; 2],
+    files: Vec<PathBuf>,
+}
+
+impl Serialize for Entries<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let tasks = self.list.tasks().map_err(serde::ser::Error::custom)?;
+        let entry = |(index, task): (u64, Task)| {
+            let place = task.shard.place;
+            let file = |&kind: &MapKind| self.list.file(task.frame, place, kind);
+            Entry {
+                index,
+                frame: task.frame.map(|frame| frame.to_string()),
+                first: task.region.first,
+                size: task.region.size,
+                files: self.maps.iter().map(file).collect(),
+            }
+        };
+        serializer.collect_seq((0..).zip(tasks).map(entry))
+    }
+}
+
+/// A path as a text.
+fn text_of_path(path: &Path) -> Result<&str> {
+    path.to_str().ok_or_else(|| {
+        usage(format!(
+            "{} is not in UTF-8, which a list has to be",
+            path.display()
+        ))
+    })
+}
+
+/// A word as shells take it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./,:=+@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quoted;
+
+    #[test]
+    fn words_are_quoted_where_a_shell_would_change_them() {
+        for (word, expected) in [
+            ("a/b-c_1,2.toml", "a/b-c_1,2.toml"),
+            ("my rock", "'my rock'"),
+            ("it's", r"'it'\''s'"),
+            ("$HOME", "'$HOME'"),
+            ("~/rock", "'~/rock'"),
+            ("", "''"),
+            ("größe", "'größe'"),
+        ] {
+            assert_eq!(quoted(word), expected);
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! The shards of a recipe in a folder: what they are, where their files lie, and which ones belong together.
+//!
+//! Files of one list lie in a folder whose name has a part of the list's checksum: that of the version of dapple, the recipe
+//! as it is baked, the content of its images, and the sizes. A file under its name is therefore finished and right, whoever
+//! baked it, and a recipe that has changed finds none of the old files. The list itself is `shards.json` beside that folder.
+
+use crate::args::{Frame, Shard, Size, file_name};
+use crate::error::Hint;
+use crate::input;
+use crate::output::{self, Outputs, Target};
+use anyhow::{Context as _, Result, anyhow};
+use dapple::recipe::{MapKind, Recipe, Region, Shards};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// The file of a list.
+const FILE: &str = "shards.json";
+/// How many digits of the checksum are in the name of a folder.
+const DIGITS: usize = 12;
+
+/// The shards of a recipe.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct List {
+    /// The version of dapple.
+    dapple: String,
+    /// The recipe, as it was typed.
+    recipe: String,
+    /// The name of the recipe.
+    pub(crate) name: String,
+    /// The checksum of all that the bits of a shard depend on.
+    sha256: String,
+    /// Columns and rows of the picture.
+    pub(crate) size: [u32; 2],
+    /// Columns and rows of a shard.
+    pub(crate) shard: [u32; 2],
+    /// The names of the maps.
+    maps: Vec<String>,
+    /// How many pictures the loop has, if it is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) frames: Option<u32>,
+}
+
+/// A shard of a list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Task {
+    /// The picture of the loop that it is a part of.
+    pub(crate) frame: Option<Frame>,
+    /// What the command line says of it.
+    pub(crate) shard: Shard,
+    /// Its pixels.
+    pub(crate) region: Region,
+}
+
+/// What a list is made for.
+pub(crate) struct Wanted<'a> {
+    pub(crate) size: Size,
+    pub(crate) shard: Size,
+    pub(crate) maps: &'a [MapKind],
+    pub(crate) frames: Option<u32>,
+}
+
+impl List {
+    /// The list of a recipe, as it is baked, whose images lie in `folder`.
+    ///
+    /// # Errors
+    ///
+    /// If an image cannot be read.
+    pub(crate) fn new(
+        typed: &str,
+        recipe: &Recipe,
+        folder: &Path,
+        wanted: &Wanted<'_>,
+    ) -> Result<Self> {
+        let version = env!("CARGO_PKG_VERSION");
+        let files = recipe.image_files().into_iter();
+        let images = files.map(|file| input::sha256(&folder.join(file)));
+        let images = images.collect::<Result<Vec<_>>>()?;
+        let Wanted {
+            size,
+            shard,
+            maps,
+            frames,
+        } = wanted;
+        let all = (version, recipe, images, size, shard, frames);
+        Ok(Self {
+            dapple: version.to_owned(),
+            recipe: typed.to_owned(),
+            name: recipe.name.clone(),
+            sha256: output::sha256(&serde_json::to_vec(&all)?),
+            size: size.0,
+            shard: shard.0,
+            maps: maps.iter().map(|kind| kind.name().to_owned()).collect(),
+            frames: *frames,
+        })
+    }
+
+    /// The list in a folder, if there is one.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be read.
+    pub(crate) fn read(folder: &Path) -> Result<Option<Self>> {
+        let path = folder.join(FILE);
+        if !path.exists() {
+            return Ok(None);
+        }
+        let text = input::text(&path)?;
+        let list = serde_json::from_str(&text);
+        let list = list.with_context(|| format!("{} is no list of shards", path.display()))?;
+        Ok(Some(list))
+    }
+
+    /// Writes the list into a folder; `may_replace` allows it to replace a list of other shards.
+    ///
+    /// # Errors
+    ///
+    /// If there is one of other shards, or the file cannot be written.
+    pub(crate) fn write(&self, folder: &Path, may_replace: bool) -> Result<()> {
+        if !may_replace {
+            self.check_folder(folder)?;
+        }
+        let mut outputs = Outputs::new(true);
+        outputs.make_folder(folder)?;
+        let output = outputs.claim(&Target::Path(folder.join(FILE)))?;
+        let mut text = serde_json::to_string_pretty(self)?;
+        text.push('\n');
+        outputs.write(output, text.as_bytes())?;
+        outputs.commit()
+    }
+
+    /// Refuses a folder that has a list of other shards.
+    ///
+    /// # Errors
+    ///
+    /// If it has one.
+    pub(crate) fn check_folder(&self, folder: &Path) -> Result<()> {
+        let Some(other) = Self::read(folder)? else {
+            return Ok(());
+        };
+        if other.sha256 == self.sha256 {
+            return Ok(());
+        }
+        let error = anyhow!(
+            "{} lists shards of {}, and not these: the recipe, an image of it, a size, the loop, or the version of dapple is another",
+            folder.join(FILE).display(),
+            other.name,
+        );
+        Err(error.hint("take another folder, or list the shards again with `dapple shards --force`; files of the other list stay"))
+    }
+
+    /// The maps.
+    ///
+    /// # Errors
+    ///
+    /// If one has an unknown name, as in a list of another version.
+    pub(crate) fn map_kinds(&self) -> Result<Vec<MapKind>> {
+        let kind = |name: &String| {
+            MapKind::from_name(name).ok_or_else(|| anyhow!("there is no map {name:?}"))
+        };
+        self.maps.iter().map(kind).collect()
+    }
+
+    /// How many shards there are side by side, and one below the other.
+    ///
+    /// # Errors
+    ///
+    /// If a size is zero.
+    pub(crate) fn grid(&self) -> Result<[u32; 2]> {
+        Ok(self.shards()?.grid())
+    }
+
+    /// All shards, the pictures of a loop one after the other.
+    ///
+    /// # Errors
+    ///
+    /// If a size is zero.
+    pub(crate) fn tasks(&self) -> Result<impl Iterator<Item = Task>> {
+        let shards = self.shards()?;
+        let size = Size(self.shard);
+        let task = move |frame, region: Region| {
+            let place = [0, 1].map(|axis| region.first[axis] / size.0[axis]);
+            let shard = Shard { place, size };
+            Task {
+                frame,
+                shard,
+                region,
+            }
+        };
+        let of_frame = move |frame| shards.iter().map(move |region| task(frame, region));
+        Ok(Frame::all(self.frames).flat_map(of_frame))
+    }
+
+    /// The number of shards, those of all pictures together.
+    ///
+    /// # Errors
+    ///
+    /// If a size is zero.
+    pub(crate) fn n_tasks(&self) -> Result<u64> {
+        let n_frames = self.frames.unwrap_or(1);
+        Ok(self.shards()?.len().saturating_mul(n_frames.into()))
+    }
+
+    /// A row of shards of a picture, from left to right.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such row.
+    pub(crate) fn row(&self, frame: Option<Frame>, row: u32) -> Result<Vec<Task>> {
+        let [columns, _] = self.grid()?;
+        let task = |column| {
+            let (place, size) = ([column, row], Size(self.shard));
+            let shard = Shard { place, size };
+            let region = shard.region(Size(self.size))?;
+            Ok(Task {
+                frame,
+                shard,
+                region,
+            })
+        };
+        (0..columns).map(task).collect()
+    }
+
+    /// The file of a map of a shard, in the folder of the list. A row of shards has a folder, so that none has very many files.
+    pub(crate) fn file(&self, frame: Option<Frame>, place: [u32; 2], kind: MapKind) -> PathBuf {
+        let [column, row] = place;
+        let digits = self.sha256.get(..DIGITS).unwrap_or(&self.sha256);
+        let list = format!("{}-{digits}", file_name(&self.name));
+        let frame = frame.map_or(String::new(), |frame| format!("{}_", frame.label()));
+        let file = format!("x{column}_y{row}_{}.exr", kind.name());
+        [list, format!("{frame}y{row}"), file].iter().collect()
+    }
+
+    fn shards(&self) -> Result<Shards> {
+        Ok(Shards::new(self.size, self.shard)?)
+    }
+}

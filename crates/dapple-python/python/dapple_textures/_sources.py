@@ -1,0 +1,191 @@
+"""What can be baked in parts: recipes and fields, as data that any process makes again."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from ._native import DappleError, Field, Plan, Recipe, _field_from_description, _plan_from_parts
+from ._types import refusal
+
+Image = npt.NDArray[np.float32]
+
+#: Recipes and fields that stay ready in a process: those of the frames that it works on.
+_READY = 16
+
+
+class Source(Protocol):
+    """Something that has planes of numbers at the pixels of an array of any size."""
+
+    @property
+    def planes(self) -> tuple[str, ...]:
+        """The names of what it can give."""
+
+    def channels(self, plane: str) -> int:
+        """How many numbers a pixel of a plane has."""
+
+    def render(
+        self, shape: tuple[int, ...], planes: Sequence[str], window: tuple[slice, ...]
+    ) -> dict[str, Image]:
+        """The numbers of a window of an array of this shape, for each plane."""
+
+    def to_data(self) -> dict[str, Any]:
+        """All of it as data that JSON can hold."""
+
+
+@dataclass(frozen=True)
+class RecipeSource:
+    """The maps of a recipe, and of all pictures of a loop in time where the array has a first axis for it."""
+
+    recipe: str
+    images: tuple[tuple[str, tuple[int, ...], bytes], ...]
+    time: float
+    hash: str
+
+    @classmethod
+    def of(cls, plan: Plan) -> RecipeSource:
+        plan.check_local()
+        _, (recipe, images, time) = plan.__reduce__()
+        packed = tuple((name, image.shape, image.tobytes()) for name, image in sorted(images.items()))
+        return cls(recipe, packed, time, plan.hash)
+
+    @property
+    def planes(self) -> tuple[str, ...]:
+        return tuple(self.plan(self.time).map_info)
+
+    def channels(self, plane: str) -> int:
+        info = self.plan(self.time).map_info
+        if plane not in info:
+            raise _unknown("map", plane, info)
+        return int(info[plane].channels)
+
+    def plan(self, time: float) -> Plan:
+        """The plan at a time."""
+        return _plan(self, time)
+
+    def render(
+        self, shape: tuple[int, ...], planes: Sequence[str], window: tuple[slice, ...]
+    ) -> dict[str, Image]:
+        *frames, rows, columns = window
+        size = (shape[-2], shape[-1])
+        if not frames:
+            return self.plan(self.time).bake(size, list(planes), window=(rows, columns))
+        pictures = [
+            self.plan((self.time + frame / shape[0]) % 1.0).bake(size, list(planes), window=(rows, columns))
+            for frame in range(frames[0].start, frames[0].stop)
+        ]
+        return {plane: np.stack([picture[plane] for picture in pictures]) for plane in planes}
+
+    def to_data(self) -> dict[str, Any]:
+        images = [
+            {"name": name, "shape": list(shape), "float32": base64.b64encode(data).decode()}
+            for name, shape, data in self.images
+        ]
+        return {"recipe": json.loads(self.recipe), "images": images, "time": self.time}
+
+
+@dataclass(frozen=True)
+class FieldSource:
+    """A field over a rectangle or a box."""
+
+    description: str
+    extent: tuple[float, ...]
+    origin: tuple[float, ...]
+
+    planes = ("value",)
+
+    def channels(self, plane: str) -> int:
+        if plane != "value":
+            raise _unknown("plane of a field", plane, self.planes)
+        return 1
+
+    def render(
+        self, shape: tuple[int, ...], planes: Sequence[str], window: tuple[slice, ...]
+    ) -> dict[str, Image]:
+        field = _field(self.description)
+        values = field.render(shape, extent=self.extent, origin=self.origin, window=window)
+        return {plane: values for plane in planes}
+
+    def to_data(self) -> dict[str, Any]:
+        return {"field": self.description, "extent": self.extent, "origin": self.origin}
+
+
+def source(
+    what: Recipe | Plan | Field,
+    *,
+    extent: float | Sequence[float] | None = None,
+    origin: float | Sequence[float] = 0.0,
+) -> RecipeSource | FieldSource:
+    """What can be baked in parts, of a recipe, a plan or a field.
+
+    `extent` and `origin` are those of `Field.render`, and belong to fields alone. A recipe with a node that sees the whole
+    tile is refused, with the way out.
+    """
+    if isinstance(what, Recipe):
+        what = what.plan()
+    if isinstance(what, Plan):
+        if extent is not None:
+            raise refusal("conflict", "a recipe has an extent of its own: leave `extent` out")
+        return RecipeSource.of(what)
+    if not isinstance(what, Field):
+        raise TypeError(f"a Recipe, a Plan or a Field is needed, not {type(what).__name__}")
+    if extent is None:
+        extent = [period or 1.0 for period in what.period]
+    _, (description,) = what.__reduce__()
+    axes = what.ndim
+    return FieldSource(description, _numbers(extent, axes), _numbers(origin, axes))
+
+
+def from_data(data: dict[str, Any]) -> RecipeSource | FieldSource:
+    """The source that data holds."""
+    if "field" in data:
+        return FieldSource(data["field"], tuple(data["extent"]), tuple(data["origin"]))
+    images = {
+        image["name"]: np.frombuffer(base64.b64decode(image["float32"]), np.float32).reshape(image["shape"])
+        for image in data["images"]
+    }
+    return RecipeSource.of(_plan_from_parts(json.dumps(data["recipe"]), images, data["time"]))
+
+
+def digest(data: object) -> str:
+    """The SHA-256 of data."""
+    text = json.dumps(data, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def sha256(values: npt.NDArray[Any]) -> str:
+    """The SHA-256 of the bytes of an array in C order, little-endian."""
+    values = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
+    return hashlib.sha256(values.data).hexdigest()
+
+
+def _numbers(value: float | Sequence[float], axes: int) -> tuple[float, ...]:
+    numbers = np.broadcast_to(np.asarray(value, dtype=np.float64), axes)
+    return tuple(float(number) for number in numbers)
+
+
+def _unknown(what: str, name: str, known: Sequence[str] | dict[str, Any]) -> DappleError:
+    return refusal("name", f"the {what} is `{name}`, but it must be one of {', '.join(known)}")
+
+
+@lru_cache(maxsize=_READY)
+def _plan(source: RecipeSource, time: float) -> Plan:
+    images = {
+        name: np.frombuffer(data, np.float32).reshape(shape) for name, shape, data in source.images
+    }
+    return _plan_from_parts(source.recipe, images, time)
+
+
+@lru_cache(maxsize=_READY)
+def _field(description: str) -> Field:
+    field = _field_from_description(description)
+    assert isinstance(field, Field)
+    return field

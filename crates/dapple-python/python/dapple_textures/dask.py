@@ -1,0 +1,165 @@
+"""Recipes and fields on Dask: lazy arrays of any size, and Zarr stores that survive their workers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any
+
+import dask.array as da
+import numpy as np
+from dask import delayed
+from distributed import Client, KilledWorker, Worker, WorkerPlugin, as_completed, get_client
+
+from . import _sources, jobs
+from ._native import Field, Plan, Recipe, set_threads
+from ._types import refusal
+
+#: Shards that are in the hands of the scheduler for each thread of the workers: enough that none waits, and few enough
+#: that a job of any length takes little memory there.
+_AHEAD = 4
+
+#: How often a shard is begun again after its workers died.
+_ATTEMPTS = 10
+
+
+def bake(
+    what: Recipe | Plan | Field,
+    shape: int | Sequence[int],
+    plane: str | None = None,
+    *,
+    chunks: int | Sequence[int] = 2048,
+    extent: float | Sequence[float] | None = None,
+    origin: float | Sequence[float] = 0.0,
+) -> da.Array:
+    """A lazy array of any size: a map of a recipe, or the values of a field.
+
+    Parameters
+    ----------
+    what : a recipe or a plan, or a field.
+    shape : (rows, columns); (frames, rows, columns) of a recipe is a loop in time, and (depth, rows, columns) of a field
+        of three axes a volume. A number is both rows and columns.
+    plane : the map of a recipe, "height" by default. Normals, colors and ORM have a last axis of 3 channels.
+    chunks : the shape of a chunk; a number is both rows and columns, and 1 along further axes.
+    extent, origin : those of `Field.render`, for fields alone.
+    """
+    source = _sources.source(what, extent=extent, origin=origin)
+    plane = plane or ("value" if isinstance(source, _sources.FieldSource) else "height")
+    shape = (shape, shape) if isinstance(shape, int) else tuple(int(side) for side in shape)
+    chunk = jobs._sides(chunks, shape)
+    channels = source.channels(plane)
+    last = (channels,) if channels > 1 else ()
+    sides = da.core.normalize_chunks((*chunk, *last), shape=(*shape, *last), dtype=np.float32)
+    return da.map_blocks(
+        _block,
+        # One object for all chunks, so that it is sent to a worker once.
+        delayed(source, name=f"dapple-source-{_sources.digest(source.to_data())}", pure=True),
+        shape=shape,
+        plane=plane,
+        chunks=sides,
+        dtype=np.float32,
+        meta=np.empty((0,) * len(sides), np.float32),
+        name=f"dapple-{_sources.digest([source.to_data(), plane, shape, sides])}",
+    )
+
+
+def _block(
+    source: _sources.Source, *, shape: tuple[int, ...], plane: str, block_info: dict[Any, Any]
+) -> _sources.Image:
+    location = block_info[None]["array-location"]
+    window = tuple(slice(first, end) for first, end in location[: len(shape)])
+    return source.render(shape, [plane], window)[plane]
+
+
+@dataclass(frozen=True)
+class Report:
+    """What became of a job."""
+
+    #: The job, whose arrays are whole now.
+    job: jobs.Job
+    #: The shards that were baked; the others were there before.
+    baked: int
+    #: How often a shard was begun again after its worker died.
+    restarted: int
+
+
+def bake_to_zarr(
+    what: Recipe | Plan | Field,
+    shape: int | Sequence[int],
+    planes: str | Sequence[str],
+    store: Any,
+    *,
+    shard: int | Sequence[int] = 2048,
+    resume: bool = True,
+    client: Client | None = None,
+    **options: Any,
+) -> Report:
+    """Bakes into a Zarr store on all workers of a cluster, however large the arrays are.
+
+    A worker writes a shard and gives back its hash, so nothing is lost with a worker but the shard that it was at, which
+    another one begins again. After the whole cluster died, the same call goes on where it ended. The arguments are those
+    of `jobs.create`; with `resume=False` a job that was begun before is refused. `client` is the current client by
+    default.
+    """
+    client = client or get_client()
+    job = jobs.create(what, shape, planes, store, shard=shard, **options)
+    missing = job.missing()
+    if not resume and len(missing) < len(job):
+        raise refusal("store", f"{store} holds shards of this job already", "pass `resume=True`")
+    client.register_plugin(OneThreadEach(), name="dapple-threads")
+    restarted = sum(_run(client, job, missing))
+    return Report(job, len(missing), restarted)
+
+
+def _run(client: Client, job: jobs.Job, missing: list[int]) -> Iterator[int]:
+    """Bakes shards on the workers, and tells of each how often it was begun again."""
+    waiting = iter(missing)
+    threads = sum(client.nthreads().values())
+    running = as_completed()
+    attempts: dict[int, int] = {}
+
+    def submit(index: int) -> None:
+        attempts[index] = attempts.get(index, -1) + 1
+        future = client.submit(_bake_shard, job.store, job.hash, index, pure=False)
+        future.dapple_index = index
+        running.add(future)
+
+    for index in islice(waiting, max(1, threads) * _AHEAD):
+        submit(index)
+    for future in running:
+        index = future.dapple_index
+        if future.status == "error":
+            error = future.exception()
+            if not isinstance(error, KilledWorker) or attempts[index] >= _ATTEMPTS:
+                raise error
+            submit(index)
+            continue
+        future.release()
+        yield attempts.pop(index)
+        for index in islice(waiting, 1):
+            submit(index)
+
+
+#: The jobs that a worker has opened.
+_OPEN: dict[str, jobs.Job] = {}
+
+
+def _bake_shard(store: Any, digest: str, index: int) -> jobs.Record:
+    """Bakes a shard in a worker."""
+    job = _OPEN.get(digest)
+    if job is None:
+        job = jobs.Job(store)
+        if job.hash != digest:
+            raise refusal("store", f"{store} holds another job than the scheduler was given")
+        _OPEN.clear()
+        _OPEN[digest] = job
+    return job.bake(index)
+
+
+class OneThreadEach(WorkerPlugin):
+    """Gives each task of a worker one thread, so that tasks and threads together are as many as the worker has."""
+
+    def setup(self, worker: Worker) -> None:
+        """Sets the threads of the package to those of the worker."""
+        set_threads(worker.state.nthreads)

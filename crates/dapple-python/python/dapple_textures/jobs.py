@@ -1,0 +1,365 @@
+"""Pictures that outgrow one machine: a list of shards in a Zarr store, and "bake this shard".
+
+A window is, bit for bit, the crop of the whole. So any number of processes on any number of machines bake the shards of
+one store, in any order, and may die while they do: a shard is written whole or not at all, and one that is there is not
+baked again. The store holds the recipe, so its place is all that a worker needs:
+
+    python -m dapple_textures.jobs create rock.zarr rock.toml --size 200000 --maps height,normal --shard 2048
+    python -m dapple_textures.jobs bake rock.zarr --part $SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT
+    python -m dapple_textures.jobs status rock.zarr
+
+This needs `zarr` 3 and no engine; `dapple_textures.dask` does the same on a Dask cluster.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import zarr
+from zarr.core.sync import sync
+from zarr.storage import StorePath
+
+from . import _sources
+from ._native import Field, Plan, Recipe, __version__
+from ._types import refusal
+
+#: The attribute of the store that holds the job.
+_ATTRIBUTE = "dapple_textures"
+
+
+@dataclass(frozen=True)
+class Record:
+    """What became of a shard."""
+
+    #: Its number, from 0.
+    index: int
+    #: The SHA-256 of the numbers of each plane that was baked; a plane that was there already is not among them.
+    hashes: dict[str, str]
+
+
+class Job:
+    """The shards of an array of any size, in a Zarr store: made by `create`, or opened where it was made.
+
+    `len` of it is the number of shards. It can be pickled.
+    """
+
+    def __init__(self, store: Any) -> None:
+        """Opens the job of a store: a path, the address of an object store, or a Zarr store."""
+        self.store = store
+        group = zarr.open_group(store, mode="r+")
+        data = group.attrs.get(_ATTRIBUTE)
+        if not isinstance(data, dict):
+            raise refusal("store", f"{store} holds no job: make one with `create`")
+        if data["version"] != __version__:
+            message = f"the job was made by version {data['version']}, but this is {__version__}"
+            raise refusal("version", message, "use one version on all machines")
+        self._data: dict[str, Any] = data
+        self._group = group
+        self.source = _sources.from_data(data["source"])
+        #: The planes that are made.
+        self.planes: tuple[str, ...] = tuple(data["planes"])
+        #: The shape of the whole, without channels.
+        self.shape: tuple[int, ...] = tuple(data["shape"])
+        #: The shape of a shard, without channels.
+        self.shard: tuple[int, ...] = tuple(data["shard"])
+        #: How many shards there are along each axis.
+        self.grid: tuple[int, ...] = _grid(self.shape, self.shard)
+
+    def __reduce__(self) -> tuple[type[Job], tuple[Any]]:
+        return Job, (self.store,)
+
+    def __len__(self) -> int:
+        return math.prod(self.grid)
+
+    @property
+    def hash(self) -> str:
+        """The SHA-256 of all that the job is made of."""
+        return _sources.digest(self._data)
+
+    def window(self, index: int) -> tuple[slice, ...]:
+        """Where a shard lies."""
+        return _window(self.shape, self.shard, self._place(index))
+
+    def array(self, plane: str) -> zarr.Array[Any]:
+        """A plane as a Zarr array; what is not baked yet is NaN."""
+        array = self._group[plane]
+        assert isinstance(array, zarr.Array)
+        # A metallic of 0 everywhere is written, too: what is not there is not baked.
+        return array.with_config({"write_empty_chunks": True})
+
+    def missing(self) -> list[int]:
+        """The shards of which a plane is not there yet, in their order."""
+        whole = set(range(len(self)))
+        for plane in self.planes:
+            whole -= whole & self._missing(plane)
+        return sorted(set(range(len(self))) - whole)
+
+    def bake(self, index: int) -> Record:
+        """Bakes what is not there of a shard, and writes it."""
+        place = self._place(index)
+        planes = [plane for plane in self.planes if not self._is_there(plane, place)]
+        if not planes:
+            return Record(index, {})
+        window = _window(self.shape, self.shard, place)
+        made = self.source.render(self.shape, planes, window)
+        hashes = {}
+        for plane, values in made.items():
+            self.array(plane)[window] = values
+            hashes[plane] = _sources.sha256(values)
+        return Record(index, hashes)
+
+    def bake_all(self, indices: Iterable[int] | None = None) -> Iterator[Record]:
+        """Bakes shards one after the other: by default all that are missing."""
+        for index in self.missing() if indices is None else indices:
+            yield self.bake(index)
+
+    def part(self, number: int, count: int) -> range:
+        """The shards of part `number` (from 0) where `count` workers share all of them evenly."""
+        if not 0 <= number < count:
+            raise refusal("range", f"the part is {number}, but it must be from 0 to {count - 1}")
+        return range(number, len(self), count)
+
+    def openjd(self, *, parts: int | None = None, python: str = "python") -> dict[str, Any]:
+        """An Open Job Description template (2023-09) whose tasks bake the shards: for OpenJD farms such as Deadline Cloud.
+
+        `parts` is the number of tasks, by default one for each shard, and at most 1024.
+        """
+        parts = min(len(self), 1024) if parts is None else parts
+        if not 1 <= parts <= len(self):
+            raise refusal("range", f"the number of parts is {parts}, but it must be from 1 to {len(self)}")
+        return {
+            "specificationVersion": "jobtemplate-2023-09",
+            "name": "dapple-textures",
+            "parameterDefinitions": [
+                {"name": "Store", "type": "STRING", "default": str(self.store)},
+                {"name": "Python", "type": "STRING", "default": python},
+            ],
+            "steps": [
+                {
+                    "name": "Bake",
+                    "parameterSpace": {
+                        "taskParameterDefinitions": [
+                            {"name": "Part", "type": "INT", "range": f"0-{parts - 1}"}
+                        ]
+                    },
+                    "script": {
+                        "actions": {
+                            "onRun": {
+                                "command": "{{Param.Python}}",
+                                "args": [
+                                    "-m",
+                                    "dapple_textures.jobs",
+                                    "bake",
+                                    "{{Param.Store}}",
+                                    "--part",
+                                    f"{{{{Task.Param.Part}}}}/{parts}",
+                                ],
+                            }
+                        }
+                    },
+                }
+            ],
+        }
+
+    def __repr__(self) -> str:
+        return f"<Job of {len(self)} shards of {self.shard} in {self.store!r}: {', '.join(self.planes)}>"
+
+    def _place(self, index: int) -> tuple[int, ...]:
+        if not 0 <= index < len(self):
+            raise refusal("range", f"the shard is {index}, but it must be from 0 to {len(self) - 1}")
+        return tuple(int(part) for part in np.unravel_index(index, self.grid))
+
+    def _key(self, plane: str, place: tuple[int, ...]) -> tuple[StorePath, str]:
+        array = self.array(plane)
+        channels = (0,) * (array.ndim - len(place))
+        return array.store_path, array.metadata.encode_chunk_key((*place, *channels))
+
+    def _is_there(self, plane: str, place: tuple[int, ...]) -> bool:
+        path, key = self._key(plane, place)
+        return bool(sync((path / key).exists()))
+
+    def _missing(self, plane: str) -> set[int]:
+        path, _ = self._key(plane, (0,) * len(self.grid))
+        prefix = f"{path.path}/" if path.path else ""
+
+        async def keys() -> set[str]:
+            return {key.removeprefix(prefix) async for key in path.store.list_prefix(f"{prefix}c/")}
+
+        there = sync(keys())
+        places = np.ndindex(*self.grid)
+        return {index for index, place in enumerate(places) if self._key_of(plane, place) not in there}
+
+    def _key_of(self, plane: str, place: tuple[int, ...]) -> str:
+        channels = self.source.channels(plane)
+        return "/".join(["c", *map(str, place), *(["0"] if channels > 1 else [])])
+
+
+def create(
+    what: Recipe | Plan | Field,
+    shape: int | Sequence[int],
+    planes: str | Sequence[str],
+    store: Any,
+    *,
+    shard: int | Sequence[int] = 2048,
+    chunk: int | Sequence[int] | None = None,
+    compressors: Any = "auto",
+    extent: float | Sequence[float] | None = None,
+    origin: float | Sequence[float] = 0.0,
+) -> Job:
+    """Makes the arrays of a job in a store, or opens the job where the same one was made before.
+
+    Parameters
+    ----------
+    what : a recipe or plan, whose maps are baked, or a field, whose plane is "value".
+    shape : (rows, columns); (frames, rows, columns) of a recipe is a loop in time, and (depth, rows, columns) of a field
+        of three axes a volume. A number is both rows and columns.
+    planes : the names of the maps.
+    store : a path, the address of an object store (with fsspec), or a Zarr store.
+    shard : the shape of what a worker writes as one file or object; of further axes it is 1.
+    chunk : the shape of what a reader loads at once; the whole shard by default. It must divide the shard.
+    compressors : those of Zarr; by default Zarr's own.
+    extent, origin : those of `Field.render`, for fields alone.
+    """
+    source = _sources.source(what, extent=extent, origin=origin)
+    planes = (planes,) if isinstance(planes, str) else tuple(planes)
+    shape = (shape, shape) if isinstance(shape, int) else tuple(int(side) for side in shape)
+    if not planes or len(set(planes)) < len(planes):
+        raise refusal("planes", "at least one plane is needed, and each once")
+    shard = _sides(shard, shape)
+    chunk = shard if chunk is None else _sides(chunk, shape)
+    if any(side < 1 for side in (*shape, *shard, *chunk)) or any(s % c for s, c in zip(shard, chunk)):
+        message = f"the shape is {shape}, a shard {shard} and a chunk {chunk}, but sides must be at least 1, and a chunk divides a shard"
+        raise refusal("shape", message)
+    data = {
+        "version": __version__,
+        "source": source.to_data(),
+        "planes": list(planes),
+        "shape": list(shape),
+        "shard": list(shard),
+    }
+    # As it is read again.
+    data = json.loads(json.dumps(data))
+    group = zarr.open_group(store, mode="a")
+    before = group.attrs.get(_ATTRIBUTE)
+    if before is not None and before != data:
+        message = f"{store} holds another job"
+        raise refusal("store", message, "choose another place, or remove what is there")
+    if before is None and list(group.keys()):
+        raise refusal("store", f"{store} is not empty", "choose another place")
+    for plane in planes if before is None else ():
+        channels = source.channels(plane)
+        last = (channels,) if channels > 1 else ()
+        group.create_array(
+            plane,
+            shape=(*shape, *last),
+            shards=(*shard, *last) if chunk != shard else None,
+            chunks=(*chunk, *last),
+            dtype=np.float32,
+            fill_value=np.nan,
+            compressors=compressors,
+            dimension_names=(*_axes(len(shape), source), *(["channel"] if last else [])),
+        )
+    group.attrs[_ATTRIBUTE] = data
+    return Job(store)
+
+
+def _axes(count: int, source: object) -> tuple[str, ...]:
+    first = "t" if isinstance(source, _sources.RecipeSource) else "z"
+    return ("w", first, "y", "x")[4 - count :] if count != 3 else (first, "y", "x")
+
+
+def _sides(side: int | Sequence[int], shape: Sequence[int]) -> tuple[int, ...]:
+    """A side of rows and columns, or one for each axis; no longer than the whole."""
+    if isinstance(side, int):
+        side = [1] * (len(shape) - 2) + [side, side]
+    sides = tuple(int(part) for part in side)
+    if len(sides) != len(shape):
+        raise refusal("count", f"a shard has {len(sides)} sides, but {len(shape)} are needed")
+    return sides
+
+
+def _grid(shape: Sequence[int], shard: Sequence[int]) -> tuple[int, ...]:
+    return tuple(-(-side // part) for side, part in zip(shape, shard))
+
+
+def _window(
+    shape: Sequence[int], shard: Sequence[int], place: Sequence[int]
+) -> tuple[slice, ...]:
+    return tuple(
+        slice(at * part, min((at + 1) * part, side)) for side, part, at in zip(shape, shard, place)
+    )
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """The command `python -m dapple_textures.jobs`."""
+    parser = argparse.ArgumentParser(prog="python -m dapple_textures.jobs", description=__doc__.split("\n\n")[0])
+    commands = parser.add_subparsers(dest="command", required=True)
+    make = commands.add_parser("create", help="make the arrays of a job")
+    make.add_argument("store")
+    make.add_argument("recipe", help="a file in TOML or JSON, or the name of a built-in recipe")
+    make.add_argument("--size", required=True, help="COLUMNSxROWS of the whole, or one number for both")
+    make.add_argument("--maps", default="height", help="with commas between them")
+    make.add_argument("--frames", type=int, help="pictures of a loop in time")
+    make.add_argument("--shard", type=int, default=2048)
+    make.add_argument("--chunk", type=int)
+    bake = commands.add_parser("bake", help="bake shards that are missing")
+    bake.add_argument("store")
+    bake.add_argument("--part", help="K/N: the K-th of N parts of all shards, from 0; all by default")
+    status = commands.add_parser("status", help="say what is missing")
+    status.add_argument("store")
+    options = parser.parse_args(arguments)
+    if options.command == "create":
+        job = _create(options)
+    else:
+        job = Job(options.store)
+    if options.command == "bake":
+        indices: Iterable[int] = job.missing()
+        if options.part:
+            number, _, count = options.part.partition("/")
+            indices = job.part(int(number), int(count))
+        for record in job.bake_all(indices):
+            state = "baked" if record.hashes else "was there"
+            print(f"shard {record.index}: {state}", flush=True)
+        return 0
+    missing = job.missing()
+    print(job)
+    print(f"{len(missing)} of {len(job)} shards are missing")
+    return 0
+
+
+def _create(options: argparse.Namespace) -> Job:
+    columns, _, rows = options.size.partition("x")
+    size = (int(rows or columns), int(columns))
+    shape = size if options.frames is None else (options.frames, *size)
+    recipe = read_recipe(options.recipe)
+    plan = recipe.plan(images=read_images(recipe, Path(options.recipe).parent))
+    return create(
+        plan, shape, options.maps.split(","), options.store, shard=options.shard, chunk=options.chunk
+    )
+
+
+def read_recipe(name: str) -> Recipe:
+    """The recipe of a file in TOML or JSON, or the built-in one of this name."""
+    if name in Recipe.builtin_names():
+        return Recipe.builtin(name)
+    text = Path(name).read_text(encoding="utf-8")
+    return Recipe.from_json(text) if name.endswith(".json") else Recipe.from_toml(text)
+
+
+def read_images(recipe: Recipe, folder: Path) -> dict[str, Any]:
+    """The images that a recipe names, from files of a folder."""
+    from . import read_image
+
+    return {name: read_image(folder / name) for name in recipe.image_files}
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,230 @@
+//! Spline wavelets: rasters halved, doubled and taken apart into bands.
+
+use crate::arrays;
+use crate::data;
+use crate::error::{Error, Result};
+use crate::grid::size;
+use crate::maps::per_axis;
+use crate::pictures::{Pixels, array_of_planes};
+use crate::seed::SeedArgument;
+use crate::threads;
+use dapple::raster::Raster;
+use dapple::wavelet::{Bands, Border, SplineFilter, WaveletError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// A filter from its options.
+fn filter(options: Option<&Bound<'_, PyDict>>) -> Result<SplineFilter> {
+    data::options_or(
+        "options",
+        options.map(|options| options.as_any()),
+        SplineFilter::default(),
+    )
+}
+
+/// What a step gives for each channel, as an array.
+fn each<'py>(
+    py: Python<'py>,
+    image: &Bound<'py, PyAny>,
+    step: impl Fn(&Raster<f32>) -> core::result::Result<Raster<f32>, WaveletError> + Send,
+) -> Result<Bound<'py, PyAny>> {
+    let planes = Pixels::read("image", image)?.planes()?;
+    let planes = threads::run(py, || {
+        planes
+            .iter()
+            .map(step)
+            .collect::<core::result::Result<_, _>>()
+    })??;
+    array_of_planes(py, planes)
+}
+
+/// An image of half the size: the spline of half the resolution that is nearest to it, (rows / 2, columns / 2[, channels]).
+///
+/// Pixels are coefficients of B-splines; the filter of Cook and DeRose (2005), exact.
+///
+/// Parameters
+/// ----------
+/// image : (rows, columns) or (rows, columns, channels); sides that repeat must be even.
+/// borders : what lies past the edges: `"periodic"` or `"mirror"`, or one for each axis, x first.
+/// options : `degree` (`"constant"`, `"linear"`, `"quadratic"`, `"cubic"`), `phase` (`"centered"`, `"cook_de_rose"`), `fit`
+///     (`"function"`, `"coefficients"`).
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> dp.wavelet_halve(np.ones((4, 6))).tolist()
+/// [[1.0, 1.0, 1.0], [1.0, 1.0, 1.0]]
+#[pyfunction]
+#[pyo3(signature = (image, *, borders = None, **options),
+    text_signature = "(image, *, borders=\"periodic\", **options)")]
+pub(crate) fn wavelet_halve<'py>(
+    py: Python<'py>,
+    image: &Bound<'py, PyAny>,
+    borders: Option<&Bound<'py, PyAny>>,
+    options: Option<&Bound<'py, PyDict>>,
+) -> Result<Bound<'py, PyAny>> {
+    let borders = per_axis("borders", borders, Border::Periodic)?;
+    let filter = filter(options)?;
+    each(py, image, |plane| filter.down(plane, borders))
+}
+
+/// An image of twice the size that is the same spline, (2 rows, 2 columns[, channels]).
+///
+/// Parameters
+/// ----------
+/// image, borders, options : as for `wavelet_halve`, which gives the image back.
+/// size : (rows, columns) of the result, where a side that is mirrored is odd.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> small = np.random.default_rng(1).random((8, 8), "f4")
+/// >>> bool(np.allclose(dp.wavelet_halve(dp.wavelet_double(small)), small, atol=1e-5))
+/// True
+#[pyfunction]
+#[pyo3(signature = (image, size = None, *, borders = None, **options),
+    text_signature = "(image, size=None, *, borders=\"periodic\", **options)")]
+pub(crate) fn wavelet_double<'py>(
+    py: Python<'py>,
+    image: &Bound<'py, PyAny>,
+    size: Option<&Bound<'py, PyAny>>,
+    borders: Option<&Bound<'py, PyAny>>,
+    options: Option<&Bound<'py, PyDict>>,
+) -> Result<Bound<'py, PyAny>> {
+    let borders = per_axis("borders", borders, Border::Periodic)?;
+    let (filter, size) = (filter(options)?, size.map(self::size).transpose()?);
+    each(py, image, |plane| {
+        let doubled = plane.size().map(|side| side.saturating_mul(2));
+        filter.up(plane, size.unwrap_or(doubled), borders)
+    })
+}
+
+/// The bands of an image: what is lost each time it is halved, finest first, and the rest.
+///
+/// Parameters
+/// ----------
+/// image, borders, options : as for `wavelet_halve`.
+/// levels : how often it is halved; sides that repeat are multiples of 2**levels.
+///
+/// Returns
+/// -------
+/// `Bands(details, coarse)`, which `wavelet_synthesize` adds up again.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> image = np.random.default_rng(1).random((16, 32, 3), "f4")
+/// >>> bands = dp.wavelet_analyze(image, levels=2)
+/// >>> [detail.shape for detail in bands.details], bands.coarse.shape
+/// ([(16, 32, 3), (8, 16, 3)], (4, 8, 3))
+/// >>> bool(np.allclose(dp.wavelet_synthesize(bands), image, atol=1e-6))
+/// True
+#[pyfunction]
+#[pyo3(signature = (image, *, levels = 1, borders = None, **options),
+    text_signature = "(image, *, levels=1, borders=\"periodic\", **options)")]
+pub(crate) fn wavelet_analyze<'py>(
+    py: Python<'py>,
+    image: &Bound<'py, PyAny>,
+    levels: u32,
+    borders: Option<&Bound<'py, PyAny>>,
+    options: Option<&Bound<'py, PyDict>>,
+) -> Result<Bound<'py, PyAny>> {
+    let borders = per_axis("borders", borders, Border::Periodic)?;
+    let filter = filter(options)?;
+    let planes = Pixels::read("image", image)?.planes()?;
+    let bands = threads::run(py, || {
+        let bands = planes
+            .iter()
+            .map(|plane| filter.analyze(plane, levels, borders));
+        bands.collect::<core::result::Result<Vec<_>, _>>()
+    })??;
+    let mut coarse = Vec::new();
+    let mut details = vec![Vec::new(); levels as usize];
+    for channel in bands {
+        coarse.push(channel.coarse);
+        for (band, detail) in details.iter_mut().zip(channel.details) {
+            band.push(detail);
+        }
+    }
+    let details = details
+        .into_iter()
+        .map(|planes| array_of_planes(py, planes));
+    let details = details.collect::<Result<Vec<_>>>()?;
+    let bands = py.import("dapple_textures._pictures")?.getattr("Bands")?;
+    Ok(bands.call1((details, array_of_planes(py, coarse)?))?)
+}
+
+/// The image of its bands; see `wavelet_analyze`, whose borders and options these are.
+///
+/// Parameters
+/// ----------
+/// bands : (details, coarse): a list of images, finest first, and the rest.
+#[pyfunction]
+#[pyo3(signature = (bands, *, borders = None, **options),
+    text_signature = "(bands, *, borders=\"periodic\", **options)")]
+pub(crate) fn wavelet_synthesize<'py>(
+    py: Python<'py>,
+    bands: &Bound<'py, PyAny>,
+    borders: Option<&Bound<'py, PyAny>>,
+    options: Option<&Bound<'py, PyDict>>,
+) -> Result<Bound<'py, PyAny>> {
+    let borders = per_axis("borders", borders, Border::Periodic)?;
+    let filter = filter(options)?;
+    let (details, coarse): (Vec<Bound<'py, PyAny>>, Bound<'py, PyAny>) = bands.extract()?;
+    let mut channels: Vec<Bands> = Pixels::read("coarse", &coarse)?
+        .planes()?
+        .into_iter()
+        .map(|coarse| Bands {
+            details: Vec::new(),
+            coarse,
+        })
+        .collect();
+    for detail in &details {
+        let planes = Pixels::read("details", detail)?.planes()?;
+        if planes.len() != channels.len() {
+            let message = "the bands have not the same number of channels";
+            return Err(Error::new("channels", message));
+        }
+        for (channel, plane) in channels.iter_mut().zip(planes) {
+            channel.details.push(plane);
+        }
+    }
+    let planes = threads::run(py, || {
+        let planes = channels
+            .iter()
+            .map(|bands| filter.synthesize(bands, borders));
+        planes.collect::<core::result::Result<_, _>>()
+    })??;
+    array_of_planes(py, planes)
+}
+
+/// Wavelet noise as an array that repeats without a seam, (rows, columns), from the weights of its bands.
+///
+/// Each band is noise of one octave, with nothing of another (Cook and DeRose 2005). The mean is 0, and the variance the sum of the
+/// squares of the weights.
+///
+/// Parameters
+/// ----------
+/// size : (rows, columns), or a number for both: multiples of 2**n for n weights.
+/// weights : of 1 to 16 bands, finest first: band b has its power between 2**-b / 4 and 2**-b / 2 cycles per pixel.
+/// seed : int, from 0 to 2**64 - 1.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> tile = dp.wavelet_tile((64, 128), [0.25, 0.5, 1.0], seed=7)
+/// >>> tile.shape, bool(abs(tile.mean()) < 1e-3)
+/// ((64, 128), True)
+#[pyfunction]
+#[pyo3(signature = (size, weights = vec![1.0], *, seed = SeedArgument::default()),
+    text_signature = "(size, weights=(1.0,), *, seed=0)")]
+pub(crate) fn wavelet_tile<'py>(
+    py: Python<'py>,
+    size: &Bound<'py, PyAny>,
+    weights: Vec<f32>,
+    seed: SeedArgument,
+) -> Result<Bound<'py, PyAny>> {
+    let size = self::size(size)?;
+    let tile = threads::run(py, || dapple::wavelet::wavelet_tile(size, &weights, seed.0))??;
+    arrays::numbers(py, tile)
+}

@@ -1,0 +1,176 @@
+//! Blend maps, and materials that are blended.
+
+use crate::arrays;
+use crate::data;
+use crate::error::{Error, Result};
+use crate::maps::per_axis;
+use crate::pictures::{self, Content, Layout, numbers};
+use crate::threads;
+use dapple::color::LinearRgb;
+use dapple::raster::{Raster, Wrap};
+use dapple::tile::{Blend, BlendMap, Layer, Map, TileError};
+use pyo3::prelude::*;
+
+/// A blend tile of a texture, (rows, columns): low in its cracks, high on what stands out (after Du, Wang and Meng).
+///
+/// `rank_equalize` spreads its values evenly, so that weights are areas in `blend`.
+///
+/// Parameters
+/// ----------
+/// texture : (rows, columns), or (rows, columns, 3) in linear light.
+/// feature_size : the size of the features, such as the diameter of stones, in pixels, from 1 to 4096.
+/// contrast : how steep the map is around its median, at least 0.
+/// wrap : what lies past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> stones = dp.worley(seed=7, period=4).render(64)
+/// >>> dp.blend_map(stones, feature_size=16).shape
+/// (64, 64)
+#[pyfunction]
+#[pyo3(signature = (texture, *, feature_size = 32.0, contrast = 1.0, wrap = None),
+    text_signature = "(texture, *, feature_size=32.0, contrast=1.0, wrap=\"repeat\")")]
+pub(crate) fn blend_map<'py>(
+    py: Python<'py>,
+    texture: &Bound<'py, PyAny>,
+    feature_size: f64,
+    contrast: f64,
+    wrap: Option<&Bound<'py, PyAny>>,
+) -> Result<Bound<'py, PyAny>> {
+    let options = BlendMap {
+        feature_size,
+        contrast,
+        wrap: per_axis("wrap", wrap, Wrap::Repeat)?,
+    };
+    let (_, maps) = pictures::read("texture", texture)?;
+    let map = match maps.as_slice() {
+        [Map::Value(values)] => threads::run(py, || options.apply(values))??,
+        [Map::Color(colors)] => threads::run(py, || options.apply_color(colors))??,
+        _ => {
+            let message = "the texture of a blend map is numbers, or colors without alpha";
+            return Err(Error::new("channels", message));
+        }
+    };
+    arrays::numbers(py, map)
+}
+
+/// Layers blended by weights, by heights, or along the features of a blend tile.
+///
+/// Parameters
+/// ----------
+/// layers : images of one size, or dictionaries of maps with the same names. Where a layer alone has a weight, it comes back.
+/// weights : for each layer a number or (rows, columns), at least 0; 1 by default.
+/// heights : for each layer (rows, columns) or None.
+/// tile : a blend tile, (rows, columns), from 0 to 1; see `blend_map`.
+/// weighting : `"given"` uses the weights as they are; `{"height": {"depth": 0.1}}` shows the higher layer; `{"mask": {"gain": 8}}` cuts the
+///     tile at thresholds: the first layer lies where it is lowest.
+/// mixing : `"linear"`, `"keep_variance"`, or `{"pyramid": {"levels": 4}}`, which mixes in bands.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> sand, rock = np.full((4, 4), 0.75), np.full((4, 4), 0.25)
+/// >>> float(dp.blend([sand, rock])[0, 0])
+/// 0.5
+/// >>> float(dp.blend([sand, rock], weights=[0, 2])[0, 0])
+/// 0.25
+#[pyfunction]
+#[pyo3(signature = (layers, *, weights = None, heights = None, tile = None, weighting = None, mixing = None),
+    text_signature = "(layers, *, weights=None, heights=None, tile=None, weighting=\"given\", mixing=\"linear\")")]
+pub(crate) fn blend<'py>(
+    py: Python<'py>,
+    layers: &Bound<'py, PyAny>,
+    weights: Option<&Bound<'py, PyAny>>,
+    heights: Option<&Bound<'py, PyAny>>,
+    tile: Option<&Bound<'py, PyAny>>,
+    weighting: Option<&Bound<'py, PyAny>>,
+    mixing: Option<&Bound<'py, PyAny>>,
+) -> Result<Bound<'py, PyAny>> {
+    let (layout, mut layers) = pictures::read_all("layers", layers)?;
+    let count = layers.len();
+    let size = layers[0][0].size();
+    let weights = column("weights", weights, count, |weight| {
+        match weight.extract::<f32>() {
+            Ok(weight) => Ok(Raster::filled(size, weight)?),
+            Err(_) => numbers("weights", weight),
+        }
+    })?;
+    let full = Raster::filled(size, 1.0)?;
+    let heights = column("heights", heights, count, |height| {
+        numbers("heights", height)
+    })?;
+    let tile = tile.map(|tile| numbers("tile", tile)).transpose()?;
+    let how = Blend {
+        weighting: data::options_or("weighting", weighting, Default::default())?,
+        mixing: data::options_or("mixing", mixing, Default::default())?,
+    };
+    let maps = threads::run(py, || -> core::result::Result<Vec<Map>, TileError> {
+        for maps in &mut layers {
+            multiply(&layout, maps, |color, alpha| color * alpha)?;
+        }
+        let layers = layers.iter().zip(&weights).zip(&heights);
+        let layers = layers.map(|((maps, weight), height)| Layer {
+            maps,
+            weight: weight.as_ref().unwrap_or(&full),
+            height: height.as_ref(),
+        });
+        let layers: Vec<_> = layers.collect();
+        let mut maps = match &tile {
+            Some(tile) => dapple::tile::blend_by_tile(&layers, tile, &how)?,
+            None => dapple::tile::blend(&layers, &how)?,
+        };
+        multiply(&layout, &mut maps, |color, alpha| match alpha > 0.0 {
+            true => LinearRgb::from(color.to_array().map(|part| part / alpha)),
+            false => LinearRgb::BLACK,
+        })?;
+        Ok(maps)
+    })??;
+    layout.python(py, maps)
+}
+
+/// What each layer has, None where it has nothing.
+fn column<'py, T>(
+    what: &str,
+    data: Option<&Bound<'py, PyAny>>,
+    count: usize,
+    read: impl Fn(&Bound<'py, PyAny>) -> Result<T>,
+) -> Result<Vec<Option<T>>> {
+    let mut column = Vec::new();
+    match data {
+        None => column.resize_with(count, || None),
+        Some(data) => {
+            for item in data.try_iter()? {
+                let item = item?;
+                column.push(if item.is_none() {
+                    None
+                } else {
+                    Some(read(&item)?)
+                });
+            }
+        }
+    }
+    if column.len() == count {
+        return Ok(column);
+    }
+    let message = format!("there are {} {what}, but {count} layers", column.len());
+    Err(Error::new("count", message))
+}
+
+/// Changes colors by their alpha. Colors are mixed with it multiplied in, so that what is transparent lends none.
+fn multiply(
+    layout: &Layout,
+    maps: &mut [Map],
+    by: impl Fn(LinearRgb, f32) -> LinearRgb + Sync,
+) -> core::result::Result<(), TileError> {
+    let mut at = 0;
+    for kind in &layout.kinds {
+        if kind.content == Content::Color
+            && let [Map::Color(colors), Map::Value(alpha)] = &mut maps[at..at + kind.n_maps()]
+        {
+            *colors = colors.zip_map(alpha, |&color, &alpha| by(color, alpha))?;
+        }
+        at += kind.n_maps();
+    }
+    Ok(())
+}

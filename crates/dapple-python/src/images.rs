@@ -1,0 +1,409 @@
+//! Image files: PNG, OpenEXR, JPEG, NumPy arrays and raw heights.
+
+use crate::data;
+use crate::error::{Error, Result};
+use crate::pictures::{Content, Kind, Pixels};
+use crate::threads;
+use dapple::color::{Code, LinearRgb, LinearRgba, Normal};
+use dapple::image::{self, Depth, Encoding, Image, Limits, PngPixels, RowWriter};
+use dapple::raster::{Raster, RasterView};
+use dapple::recipe::ImageAlpha;
+use dapple::tile::Map;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::fs::{self, File};
+use std::io::{self, Cursor, Write};
+use std::path::{Path, PathBuf};
+
+/// How an image is read: what its numbers are, and where its alpha goes.
+struct Reading {
+    content: Option<Content>,
+    alpha: Alpha,
+}
+
+/// Where the alpha of an image goes.
+#[derive(PartialEq)]
+enum Alpha {
+    /// It is kept where a pixel is not opaque.
+    Needed,
+    /// It is there in any case.
+    Always,
+    /// There is none.
+    Without(ImageAlpha),
+}
+
+impl Reading {
+    fn new(content: Option<&str>, alpha: Option<&str>) -> Result<Self> {
+        let content = content.map(|name| data::named("content", name));
+        let alpha = match alpha {
+            None => Alpha::Needed,
+            Some("keep") => Alpha::Always,
+            Some(text) => Alpha::Without(data::read("alpha", text.into())?),
+        };
+        Ok(Self {
+            content: content.transpose()?,
+            alpha,
+        })
+    }
+
+    /// The maps of an image, and what they are.
+    fn maps(&self, image: &Image) -> Result<(Kind, Vec<Map>)> {
+        let of = |content, maps: Vec<Map>, n_channels| {
+            (
+                Kind {
+                    content,
+                    n_channels,
+                },
+                maps,
+            )
+        };
+        match self.content {
+            Some(Content::Gray) => {
+                return Ok(of(Content::Gray, vec![Map::Value(image.gray()?)], 1));
+            }
+            Some(Content::Normal) => {
+                return Ok(of(Content::Normal, vec![Map::Normal(normals(image)?)], 3));
+            }
+            Some(Content::Data) => {
+                let maps: Vec<_> = channels(image)?.into_iter().map(Map::Value).collect();
+                let n_channels = maps.len();
+                return Ok(of(Content::Data, maps, n_channels));
+            }
+            Some(Content::Color) | None => {}
+        }
+        if self.content.is_none()
+            && self.alpha != Alpha::Always
+            && let Ok(values) = image.gray()
+        {
+            return Ok(of(Content::Gray, vec![Map::Value(values)], 1));
+        }
+        let pixels = image.color_alpha()?;
+        let is_opaque = || pixels.pixels().iter().all(|pixel| pixel.alpha == 1.0);
+        let plain = match self.alpha {
+            Alpha::Needed if is_opaque() => ImageAlpha::Drop,
+            Alpha::Needed | Alpha::Always => {
+                let color = Map::Color(pixels.map(|pixel| pixel.color));
+                let alpha = Map::Value(pixels.map(|pixel| pixel.alpha));
+                return Ok(of(Content::Color, vec![color, alpha], 4));
+            }
+            Alpha::Without(how) => how,
+        };
+        let color = match plain {
+            ImageAlpha::Drop => pixels.map(|pixel| pixel.color),
+            // As the command does it.
+            ImageAlpha::Over(below) => {
+                pixels.map(|pixel| pixel.color * pixel.alpha + below * (1.0 - pixel.alpha))
+            }
+        };
+        Ok(of(Content::Color, vec![Map::Color(color)], 3))
+    }
+}
+
+/// The codes of a PNG image from 0 to 1, one raster for each channel, without any curve.
+fn channels(image: &Image) -> Result<Vec<Raster<f32>>> {
+    fn codes<T: Code, const N: usize>(raster: &Raster<[T; N]>) -> Vec<Raster<f32>> {
+        (0..N)
+            .map(|channel| raster.map(|pixel| pixel[channel].to_unit()))
+            .collect()
+    }
+    let png = match image {
+        Image::Png(png) | Image::Jpeg(png) => png,
+        Image::Exr(exr) => {
+            if let Ok(values) = exr.gray() {
+                return Ok(vec![values.clone()]);
+            }
+            let mut names = vec!["R", "G", "B"];
+            names.extend(exr.plane("A").is_ok().then_some("A"));
+            let planes = names.into_iter().map(|name| Ok(exr.plane(name)?.clone()));
+            return planes.collect();
+        }
+        _ => {
+            return Err(Error::new(
+                "unsupported",
+                "the format has no channels of data",
+            ));
+        }
+    };
+    Ok(match &png.pixels {
+        PngPixels::Gray8(raster) => vec![raster.map(|code| code.to_unit())],
+        PngPixels::Gray16(raster) => vec![raster.map(|code| code.to_unit())],
+        PngPixels::GrayAlpha8(raster) => codes(raster),
+        PngPixels::GrayAlpha16(raster) => codes(raster),
+        PngPixels::Rgb8(raster) => codes(raster),
+        PngPixels::Rgb16(raster) => codes(raster),
+        PngPixels::Rgba8(raster) => codes(raster),
+        PngPixels::Rgba16(raster) => codes(raster),
+    })
+}
+
+/// The normals that the channels of an image stand for, as the command reads them.
+fn normals(image: &Image) -> Result<Raster<Normal>> {
+    fn of<T: Code, const N: usize>(raster: &Raster<[T; N]>) -> Raster<Normal> {
+        raster.map(|codes| Normal::from_codes([codes[0], codes[1], codes[2]]))
+    }
+    let pixels = match image {
+        Image::Png(png) | Image::Jpeg(png) => &png.pixels,
+        exr => {
+            let codes = |parts: &LinearRgb| parts.to_array().map(u16::from_unit);
+            return Ok(exr.color()?.map(|parts| Normal::from_codes(codes(parts))));
+        }
+    };
+    match pixels {
+        PngPixels::Rgb8(raster) => Ok(of(raster)),
+        PngPixels::Rgb16(raster) => Ok(of(raster)),
+        PngPixels::Rgba8(raster) => Ok(of(raster)),
+        PngPixels::Rgba16(raster) => Ok(of(raster)),
+        _ => {
+            let message = "normals have three channels, and the image is gray";
+            Err(Error::new("channels", message))
+        }
+    }
+}
+
+/// The array of an image file, float32: PNG, JPEG or OpenEXR, whatever its name ends with.
+///
+/// Gray images are numbers as they are, (rows, columns); PNG and JPEG from 0 to 1. Colors are linear light, (rows, columns, 3), or
+/// (rows, columns, 4) where a pixel is not opaque; alpha is not multiplied into them.
+///
+/// Parameters
+/// ----------
+/// path : the file.
+/// content : what the numbers are, where that is not seen: `"gray"`, `"color"` (a gray image, too), `"normal"` (unit vectors of a
+///     normal map), or `"data"` (all channels as they are, such as occlusion, roughness and metallic).
+/// alpha : None keeps it where it is needed; `"keep"` always; `"drop"`; or `"over:#808080"` lays the image over a color.
+/// max_pixels, max_bytes : what is larger is refused before memory is taken for it.
+///
+/// Examples
+/// --------
+/// >>> import os, tempfile, dapple_textures as dp
+/// >>> path = os.path.join(tempfile.mkdtemp(), "cells.png")
+/// >>> dp.write_image(path, dp.worley(seed=7).render((64, 96), extent=(6, 4)))
+/// >>> dp.read_image(path).shape
+/// (64, 96)
+#[pyfunction]
+#[pyo3(signature = (path, *, content = None, alpha = None, max_pixels = 268_435_456, max_bytes = 4_294_967_296),
+    text_signature = "(path, *, content=None, alpha=None, max_pixels=268435456, max_bytes=4294967296)")]
+pub(crate) fn read_image<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    content: Option<&str>,
+    alpha: Option<&str>,
+    max_pixels: u64,
+    max_bytes: u64,
+) -> Result<Bound<'py, PyAny>> {
+    let limits = Limits {
+        pixels: max_pixels,
+        bytes: max_bytes,
+    };
+    let reading = Reading::new(content, alpha)?;
+    let (kind, maps) = threads::run(py, || reading.maps(&image::read_image(path, &limits)?))??;
+    kind.array(py, maps)
+}
+
+/// The array of the bytes of an image file; see `read_image`.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.decode_image(dp.encode_image([[0.0, 1.0]])).tolist()
+/// [[0.0, 1.0]]
+#[pyfunction]
+#[pyo3(signature = (data, *, content = None, alpha = None, max_pixels = 268_435_456, max_bytes = 4_294_967_296),
+    text_signature = "(data, *, content=None, alpha=None, max_pixels=268435456, max_bytes=4294967296)")]
+pub(crate) fn decode_image<'py>(
+    py: Python<'py>,
+    data: &[u8],
+    content: Option<&str>,
+    alpha: Option<&str>,
+    max_pixels: u64,
+    max_bytes: u64,
+) -> Result<Bound<'py, PyAny>> {
+    let limits = Limits {
+        pixels: max_pixels,
+        bytes: max_bytes,
+    };
+    let reading = Reading::new(content, alpha)?;
+    let (kind, maps) = threads::run(py, || reading.maps(&image::decode_image(data, &limits)?))??;
+    kind.array(py, maps)
+}
+
+/// Writes an array as an image file, whose ending says the format: `.png`, `.exr`, `.npy` or `.r16`.
+///
+/// The file is written beside its place and then renamed: others see the old one, or the whole new one. The bytes are those that
+/// the command `dapple` writes.
+///
+/// Parameters
+/// ----------
+/// path : the file.
+/// image : (rows, columns), or (rows, columns, 3 or 4), floating point.
+/// content : `"gray"`, `"color"`, `"normal"` or `"data"`; by default gray for one channel and color for more. Color is
+///     linear here and in EXR and NPY, and sRGB in PNG. Normals are `(part + 1) / 2` in PNG and EXR. Data stays as it is.
+/// depth : 8 or 16 bits of PNG; 8 by default for color, 16 for everything else.
+///
+/// Examples
+/// --------
+/// >>> import os, tempfile, dapple_textures as dp
+/// >>> path = os.path.join(tempfile.mkdtemp(), "stones.png")
+/// >>> dp.write_image(path, dp.ramp(dp.worley(seed=7).render(64, extent=4), "terrain"))
+/// >>> dp.read_image(path).shape
+/// (64, 64, 3)
+#[pyfunction]
+#[pyo3(signature = (path, image, *, content = None, depth = None))]
+pub(crate) fn write_image(
+    py: Python<'_>,
+    path: PathBuf,
+    image: &Bound<'_, PyAny>,
+    content: Option<&str>,
+    depth: Option<u32>,
+) -> Result<()> {
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    let bytes = encoded(py, image, &ending.to_lowercase(), content, depth)?;
+    py.detach(|| replace(&path, &bytes)).map_err(|error| {
+        let message = format!("{} cannot be written: {error}", path.display());
+        Error::new("io", message)
+    })
+}
+
+/// The bytes of an array as an image file; see `write_image`.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.encode_image([[0.0, 1.0]], "png", depth=8)[:4]
+/// b'\x89PNG'
+#[pyfunction]
+#[pyo3(signature = (image, format = "png", *, content = None, depth = None))]
+pub(crate) fn encode_image<'py>(
+    py: Python<'py>,
+    image: &Bound<'py, PyAny>,
+    format: &str,
+    content: Option<&str>,
+    depth: Option<u32>,
+) -> Result<Bound<'py, PyBytes>> {
+    let bytes = encoded(py, image, format, content, depth)?;
+    Ok(PyBytes::new(py, &bytes))
+}
+
+fn encoded(
+    py: Python<'_>,
+    image: &Bound<'_, PyAny>,
+    format: &str,
+    content: Option<&str>,
+    depth: Option<u32>,
+) -> Result<Vec<u8>> {
+    let pixels = Pixels::read("image", image)?;
+    let content = content.map(|name| data::named("content", name));
+    let kind = Kind::new("image", content.transpose()?, pixels.n_channels)?;
+    let encoding = encoding(format, kind, depth)?;
+    let (size, values) = (pixels.size, pixels.values());
+    Ok(threads::run(py, || encode(kind, size, &values, encoding))??)
+}
+
+/// How a format writes its numbers.
+fn encoding(format: &str, kind: Kind, depth: Option<u32>) -> Result<Encoding> {
+    let default = if kind.content == Content::Color {
+        8
+    } else {
+        16
+    };
+    match (format, depth) {
+        ("png", depth) => match depth.unwrap_or(default) {
+            8 => Ok(Encoding::Png(Depth::Eight)),
+            16 => Ok(Encoding::Png(Depth::Sixteen)),
+            depth => {
+                let message = format!("the depth is {depth}, but PNG has 8 or 16 bits");
+                Err(Error::new("depth", message))
+            }
+        },
+        ("exr", None) => Ok(Encoding::Exr),
+        ("npy", None) => Ok(Encoding::Npy),
+        ("r16", None) => Ok(Encoding::R16),
+        ("exr" | "npy" | "r16", Some(_)) => Err(Error::new(
+            "depth",
+            format!("the depth of {format} is fixed"),
+        )),
+        _ => {
+            let message =
+                format!("images are written as png, exr, npy or r16, and not as {format:?}");
+            Err(Error::new("format", message))
+        }
+    }
+}
+
+/// The bytes of an image file of numbers that lie pixel by pixel.
+pub(crate) fn encode(
+    kind: Kind,
+    size: [u32; 2],
+    values: &[f32],
+    encoding: Encoding,
+) -> Result<Vec<u8>> {
+    let sink = Cursor::new(Vec::new());
+    let content = match (kind.content, kind.n_channels) {
+        (Content::Gray, _) | (Content::Data, 1) => image::Content::Gray,
+        (Content::Color, 3) => image::Content::Color,
+        (Content::Color, _) => image::Content::ColorAlpha,
+        (Content::Normal, _) => image::Content::Normal,
+        (Content::Data, 3) => image::Content::Packed,
+        (Content::Data, _) => image::Content::PackedFour,
+    };
+    let mut rows = RowWriter::new(sink, size, content, encoding)?;
+    let color = |at: &[f32]| LinearRgb::new(at[0], at[1], at[2]);
+    let color_alpha = |at: &[f32]| LinearRgba {
+        color: color(at),
+        alpha: at[3].clamp(0.0, 1.0),
+    };
+    let normal = |at: &[f32]| Normal {
+        x: at[0],
+        y: at[1],
+        z: at[2],
+    };
+    let width = size[0] as usize;
+    for band in values.chunks((width * kind.n_channels).max(1) * BAND) {
+        let height = band.len() / (width * kind.n_channels).max(1);
+        let size = [size[0], height as u32];
+        match content {
+            image::Content::Gray => rows.write_gray(RasterView::new(band, width, size)?)?,
+            image::Content::Color => {
+                let pixels: Vec<_> = band.chunks_exact(3).map(color).collect();
+                rows.write_color(RasterView::new(&pixels, width, size)?)?;
+            }
+            image::Content::ColorAlpha => {
+                let pixels: Vec<_> = band.chunks_exact(4).map(color_alpha).collect();
+                rows.write_color_alpha(RasterView::new(&pixels, width, size)?)?;
+            }
+            image::Content::Normal => {
+                let pixels: Vec<_> = band.chunks_exact(3).map(normal).collect();
+                rows.write_normals(RasterView::new(&pixels, width, size)?)?;
+            }
+            image::Content::Packed => {
+                rows.write_packed(RasterView::new(band.as_chunks().0, width, size)?)?;
+            }
+            image::Content::PackedFour => {
+                rows.write_packed_four(RasterView::new(band.as_chunks().0, width, size)?)?;
+            }
+        }
+    }
+    Ok(rows.finish()?.into_inner())
+}
+
+/// How many rows are turned into colors at a time.
+const BAND: usize = 256;
+
+/// Makes `bytes` the content of the file at `path`, which is new or the old one until all of it is written.
+///
+/// A file that is there keeps its permissions, and one that a link leads to, the link.
+pub(crate) fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let folder = path.parent().unwrap_or(Path::new(""));
+    // Made here, so that its permissions are those of any new file.
+    let create = |path: &Path| File::options().write(true).create_new(true).open(path);
+    let mut file = tempfile::Builder::new()
+        .prefix(".dapple-")
+        .make_in(folder, create)?;
+    file.as_file_mut().write_all(bytes)?;
+    if let Ok(found) = fs::metadata(&path) {
+        file.as_file().set_permissions(found.permissions())?;
+    }
+    file.persist(path)?;
+    Ok(())
+}

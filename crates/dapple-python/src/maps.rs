@@ -1,0 +1,352 @@
+//! Maps from heights, color ramps, and the sRGB curve.
+
+use crate::arrays;
+use crate::data;
+use crate::error::{Error, Result};
+use crate::grid::pair;
+use crate::pictures::{Content, Kind, numbers};
+use crate::threads;
+use dapple::color::{
+    Code, ColorRamp, ColorStop, CurvatureOptions, HeightPlane, Interpolation, LinearRgb,
+    NormalOptions, NormalY, OcclusionOptions, Outside, Palette, RampSpace,
+};
+use dapple::raster::glam::DVec2;
+use dapple::raster::{Named, Wrap};
+use dapple::tile::Map;
+use numpy::{Element, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+use serde_json::Value;
+
+/// What lies past the edges: a name for both axes, or one for each, x first.
+pub(crate) fn per_axis<T: Named>(
+    what: &str,
+    data: Option<&Bound<'_, PyAny>>,
+    default: T,
+) -> Result<[T; 2]> {
+    let Some(data) = data else {
+        return Ok([default; 2]);
+    };
+    if let Ok(name) = data.cast::<PyString>() {
+        return Ok([data::named(what, name.to_str()?)?; 2]);
+    }
+    let [x, y]: [String; 2] = data.extract()?;
+    Ok([data::named(what, &x)?, data::named(what, &y)?])
+}
+
+/// How heights lie in the plane.
+fn plane(
+    relief: f64,
+    extent: Option<&Bound<'_, PyAny>>,
+    wrap: Option<&Bound<'_, PyAny>>,
+) -> Result<HeightPlane> {
+    Ok(HeightPlane {
+        strength: relief,
+        extent: extent.map_or(Ok(DVec2::ONE), |extent| pair("extent", extent))?,
+        wrap: per_axis("wrap", wrap, Wrap::Repeat)?,
+    })
+}
+
+/// The normal map of heights, (rows, columns, 3): unit vectors with x to the right and z out of the picture.
+///
+/// A height `h` has the normal `normalize(-relief ∂h/∂x, ±relief ∂h/∂y, 1)` (Blinn 1978). Slopes are per unit of the plane and not per
+/// pixel: the resolution does not change the normals.
+///
+/// Parameters
+/// ----------
+/// height : (rows, columns).
+/// relief : how many units of the plane a height of 1 stands for; negative turns hills into dents.
+/// extent : (x, y), or a number for both: what the array covers of the plane, as in `Field.render`; 1 by default.
+/// wrap : what lies past the edges: `"repeat"`, `"clamp"` or `"mirror"`, or one for each axis, x first.
+/// y : `"up"` (OpenGL, Blender, glTF) or `"down"` (DirectX).
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> slope = np.linspace(0, 1, 8, endpoint=False)[None].repeat(8, 0)
+/// >>> normal = dp.normal_map(slope, wrap="clamp")
+/// >>> normal.shape, bool(np.allclose(normal[4, 4], np.array([-1, 0, 1]) / 2**0.5))
+/// ((8, 8, 3), True)
+#[pyfunction]
+#[pyo3(signature = (height, *, relief = 1.0, extent = None, wrap = None, y = "up"),
+    text_signature = "(height, *, relief=1.0, extent=None, wrap=\"repeat\", y=\"up\")")]
+pub(crate) fn normal_map<'py>(
+    py: Python<'py>,
+    height: &Bound<'py, PyAny>,
+    relief: f64,
+    extent: Option<&Bound<'py, PyAny>>,
+    wrap: Option<&Bound<'py, PyAny>>,
+    y: &str,
+) -> Result<Bound<'py, PyAny>> {
+    let y = match y {
+        "up" => NormalY::OpenGl,
+        "down" => NormalY::DirectX,
+        y => {
+            let message = format!("y is `{y}`, but it must be up or down");
+            return Err(Error::new("name", message));
+        }
+    };
+    let plane = plane(relief, extent, wrap)?;
+    let height = numbers("height", height)?;
+    let options = NormalOptions { plane, y };
+    let normals = threads::run(py, || dapple::color::normal_map(&height, &options))??;
+    let kind = Kind {
+        content: Content::Normal,
+        n_channels: 3,
+    };
+    kind.array(py, vec![Map::Normal(normals)])
+}
+
+/// Ambient occlusion of heights, (rows, columns): the part of the sky that each place sees, from 0 to 1.
+///
+/// Horizons in 16 directions, without random turns (after Bavoil, Sainz and Dimitrov 2008; Jimenez and others 2016). A plane of any slope
+/// sees exactly 1.
+///
+/// Parameters
+/// ----------
+/// height, relief, extent, wrap : as for `normal_map`.
+/// radius : how far away a height still hides the sky, in units of the plane.
+/// fade : from which part of the radius on that gets less, from 0 to 1.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> groove = np.abs(np.linspace(-0.5, 0.5, 64))[None].repeat(64, 0)
+/// >>> seen = dp.ambient_occlusion(groove, radius=0.5)
+/// >>> bool(seen[32, 32] < 0.6 < seen[32, 60])
+/// True
+#[pyfunction]
+#[pyo3(signature = (height, *, relief = 1.0, extent = None, wrap = None, radius = 0.0625, fade = 0.5),
+    text_signature = "(height, *, relief=1.0, extent=None, wrap=\"repeat\", radius=0.0625, fade=0.5)")]
+pub(crate) fn ambient_occlusion<'py>(
+    py: Python<'py>,
+    height: &Bound<'py, PyAny>,
+    relief: f64,
+    extent: Option<&Bound<'py, PyAny>>,
+    wrap: Option<&Bound<'py, PyAny>>,
+    radius: f64,
+    fade: f64,
+) -> Result<Bound<'py, PyAny>> {
+    let plane = plane(relief, extent, wrap)?;
+    let options = OcclusionOptions {
+        plane,
+        radius,
+        fade,
+    };
+    let height = numbers("height", height)?;
+    let seen = threads::run(py, || dapple::color::ambient_occlusion(&height, &options))??;
+    arrays::numbers(py, seen)
+}
+
+/// Mean curvature of heights, (rows, columns), in 1 / units of the plane: positive on ridges and hills, negative in grooves.
+///
+/// A hill that is part of a sphere has one over its radius everywhere (do Carmo 1976, section 3.3).
+///
+/// Parameters
+/// ----------
+/// height, relief, extent, wrap : as for `normal_map`.
+/// radius : over how far differences are taken, in units of the plane; at least one pixel is.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> x = np.linspace(-0.5, 0.5, 64)
+/// >>> bowl = 0.5 * (x[:, None] ** 2 + x ** 2)  # second derivatives of 1
+/// >>> bent = dp.curvature(bowl, wrap="clamp")
+/// >>> bool(abs(bent[32, 32] + 1) < 0.05)
+/// True
+#[pyfunction]
+#[pyo3(signature = (height, *, relief = 1.0, extent = None, wrap = None, radius = 0.007_812_5),
+    text_signature = "(height, *, relief=1.0, extent=None, wrap=\"repeat\", radius=0.0078125)")]
+pub(crate) fn curvature<'py>(
+    py: Python<'py>,
+    height: &Bound<'py, PyAny>,
+    relief: f64,
+    extent: Option<&Bound<'py, PyAny>>,
+    wrap: Option<&Bound<'py, PyAny>>,
+    radius: f64,
+) -> Result<Bound<'py, PyAny>> {
+    let plane = plane(relief, extent, wrap)?;
+    let options = CurvatureOptions { plane, radius };
+    let height = numbers("height", height)?;
+    let bent = threads::run(py, || dapple::color::curvature(&height, &options))??;
+    arrays::numbers(py, bent)
+}
+
+/// Colors of numbers by a ramp, (rows, columns, 3), in linear light.
+///
+/// Parameters
+/// ----------
+/// values : (rows, columns).
+/// colors : the name of a palette (see `palettes`); or a list of colors, evenly from 0 to 1; or of (position, color). A color is
+///     `"#rrggbb"` in sRGB, or three linear numbers.
+/// space : where colors are mixed: `"oklab"`, `"srgb"` or `"linear"`.
+/// interpolation : `"linear"`, `"smooth"` or `"stepped"`.
+/// outside : what lies before the first and after the last color: `"clamp"` or `"repeat"`.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.ramp([[0.0, 0.5, 1.0]], ["#000000", "#ffffff"], space="linear")[0, :, 0].tolist()
+/// [0.0, 0.5, 1.0]
+/// >>> dp.ramp([[0.2]], "lagoon").shape
+/// (1, 1, 3)
+#[pyfunction]
+#[pyo3(signature = (values, colors = None, *, space = "oklab", interpolation = "linear", outside = "clamp"),
+    text_signature = "(values, colors=\"gray\", *, space=\"oklab\", interpolation=\"linear\", outside=\"clamp\")")]
+pub(crate) fn ramp<'py>(
+    py: Python<'py>,
+    values: &Bound<'py, PyAny>,
+    colors: Option<&Bound<'py, PyAny>>,
+    space: &str,
+    interpolation: &str,
+    outside: &str,
+) -> Result<Bound<'py, PyAny>> {
+    let ramp = match colors {
+        None => Palette::Gray.ramp(),
+        Some(colors) => match colors.cast::<PyString>() {
+            Ok(name) => data::named::<Palette>("palette", name.to_str()?)?.ramp(),
+            Err(_) => stops(&data::value(colors)?)?,
+        },
+    };
+    let ramp = ramp
+        .with_space(data::named::<RampSpace>("space", space)?)
+        .with_interpolation(data::named::<Interpolation>(
+            "interpolation",
+            interpolation,
+        )?)
+        .with_outside(data::named::<Outside>("outside", outside)?);
+    let values = numbers("values", values)?;
+    let colors = threads::run(py, || ramp.apply(&values))?;
+    let kind = Kind::new("ramp", Some(Content::Color), 3)?;
+    kind.array(py, vec![Map::Color(colors)])
+}
+
+/// A ramp of a list of colors, or of positions with colors.
+fn stops(colors: &Value) -> Result<ColorRamp> {
+    let refused = || {
+        Error::new(
+            "options",
+            "the colors are a palette's name, or a list of colors or of (position, color)",
+        )
+    };
+    let items = colors.as_array().ok_or_else(refused)?;
+    let pair = |item: &Value| -> Option<(f32, Value)> {
+        let [position, color] = item.as_array()?.as_slice() else {
+            return None;
+        };
+        Some((position.as_f64()? as f32, color.clone()))
+    };
+    let pairs: Vec<_> = items.iter().filter_map(pair).collect();
+    if pairs.is_empty() {
+        let colors: Vec<LinearRgb> = items.iter().map(color).collect::<Result<_>>()?;
+        return Ok(ColorRamp::even(&colors)?);
+    }
+    if pairs.len() != items.len() {
+        return Err(refused());
+    }
+    let stop = |(position, of): &(f32, Value)| -> Result<ColorStop> {
+        let position = *position;
+        Ok(ColorStop {
+            position,
+            color: color(of)?,
+        })
+    };
+    let stops: Vec<ColorStop> = pairs.iter().map(stop).collect::<Result<_>>()?;
+    Ok(ColorRamp::new(stops)?)
+}
+
+/// A color from `#rrggbb` or three linear numbers.
+fn color(color: &Value) -> Result<LinearRgb> {
+    match color {
+        Value::String(text) => Ok(LinearRgb::from_hex(text)?),
+        numbers => Ok(data::read::<[f32; 3]>("color", numbers.clone())?.into()),
+    }
+}
+
+/// The palettes of `ramp`: for each name its colors, (n, 3) in linear light, from that of low values to that of high ones.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> list(dp.palettes())
+/// ['gray', 'lagoon', 'ember', 'terrain', 'cow', 'giraffe', 'labels']
+#[pyfunction]
+pub(crate) fn palettes(py: Python<'_>) -> Result<Bound<'_, PyDict>> {
+    let palettes = PyDict::new(py);
+    for palette in Palette::ALL {
+        let colors = palette.colors();
+        let n_colors = colors.len();
+        let colors: Vec<[f32; 3]> = colors.into_iter().map(LinearRgb::to_array).collect();
+        let colors = arrays::array(py, colors.into_flattened(), &[n_colors, 3])?;
+        palettes.set_item(palette.name(), colors)?;
+    }
+    Ok(palettes)
+}
+
+/// The sRGB codes of linear light, of any shape: exactly the nearest code, at every value (IEC 61966-2-1).
+///
+/// Values below 0 and NaN give 0, those above 1 the largest code. Alpha is no light: leave it out.
+///
+/// Parameters
+/// ----------
+/// linear : linear light from 0 to 1.
+/// depth : 8 for uint8, 16 for uint16.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.srgb_from_linear([0.0, 0.2140411, 1.0])
+/// array([  0, 128, 255], dtype=uint8)
+#[pyfunction]
+#[pyo3(signature = (linear, *, depth = 8))]
+pub(crate) fn srgb_from_linear<'py>(
+    py: Python<'py>,
+    linear: numpy::PyArrayLikeDyn<'py, f32, numpy::AllowTypeChange>,
+    depth: u32,
+) -> Result<Bound<'py, PyAny>> {
+    match depth {
+        8 => codes(py, &linear, u8::srgb_from_linear),
+        16 => codes(py, &linear, u16::srgb_from_linear),
+        _ => {
+            let message = format!("the depth is {depth}, but it must be 8 or 16");
+            Err(Error::new("depth", message))
+        }
+    }
+}
+
+/// The linear light of sRGB codes, of any shape, float32: uint8 from 0 to 255, or uint16 from 0 to 65535 (IEC 61966-2-1).
+///
+/// `srgb_from_linear` gives every code back. Alpha is no light: divide it by the largest code.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> dp.linear_from_srgb(np.array([0, 255], "u1")).tolist()
+/// [0.0, 1.0]
+#[pyfunction]
+pub(crate) fn linear_from_srgb<'py>(
+    py: Python<'py>,
+    codes: &Bound<'py, PyAny>,
+) -> Result<Bound<'py, PyAny>> {
+    if let Ok(codes) = codes.cast::<PyArrayDyn<u8>>() {
+        return self::codes(py, &codes.readonly(), u8::linear_from_srgb);
+    }
+    if let Ok(codes) = codes.cast::<PyArrayDyn<u16>>() {
+        return self::codes(py, &codes.readonly(), u16::linear_from_srgb);
+    }
+    let message = "sRGB codes are an array of uint8 or of uint16";
+    Err(PyTypeError::new_err(message).into())
+}
+
+/// An array of what each element of another becomes.
+fn codes<'py, T: Element + Copy + Sync, U: Element>(
+    py: Python<'py>,
+    array: &numpy::PyReadonlyArrayDyn<'py, T>,
+    code: fn(T) -> U,
+) -> Result<Bound<'py, PyAny>> {
+    let view = array.as_array();
+    let made: Vec<U> = py.detach(|| view.iter().map(|&value| code(value)).collect());
+    arrays::array(py, made, array.shape())
+}

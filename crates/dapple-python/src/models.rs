@@ -1,0 +1,595 @@
+//! Meshes from arrays and files, and textures that are grown over them.
+
+use crate::arrays;
+use crate::data;
+use crate::error::{Error, Result};
+use crate::images::encode;
+use crate::pictures::{self, Content, Kind, Layout};
+use crate::seed::SeedArgument;
+use crate::synthesis::{Coherence, Matching, check_sizes, exemplar};
+use crate::{threads, watch};
+use dapple::color::{Code, LinearRgb, LinearRgba, NormalY};
+use dapple::image::{Depth, Encoding};
+use dapple::mesh::glam::{DVec2, DVec3};
+use dapple::mesh::{CREASE, EncodedImage, Mesh, Repair, Surface};
+use dapple::mesh_io::{self, MaterialPlace, MeshFormat};
+use dapple::raster::Raster;
+use dapple::synth::{
+    Atlas, Axes, Direction, Hierarchy, HierarchyOptions, Orientation, SurfaceTexture, SynthError,
+    Synthesizer, bake_colors, bake_normals, bake_values, site_model, textured_model,
+};
+use dapple::tile::Map;
+use numpy::{AllowTypeChange, PyArrayLikeDyn, PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+
+dapple::raster::named! {
+    /// How a mesh is laid out in a texture.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum AtlasKind {
+        /// Right triangles whose sizes follow the areas of the faces.
+        Area = "area",
+        /// Right triangles of one size, as in the paper.
+        Uniform = "uniform",
+        /// The mesh's own texture coordinates.
+        Uv = "uv",
+    }
+}
+
+/// Vectors of `N` numbers from an array whose last axes have this shape.
+fn vectors<const N: usize>(
+    what: &str,
+    data: &Bound<'_, PyAny>,
+    axes: &[usize],
+) -> Result<Vec<[f64; N]>> {
+    let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> = data.extract()?;
+    let array = array.as_array();
+    if array.ndim() != axes.len() + 1 || array.shape()[1..] != *axes {
+        let message = format!(
+            "the {what} have the shape {:?}, but they must be (n, {})",
+            array.shape(),
+            axes.iter()
+                .map(usize::to_string)
+                .collect::<Vec<_>>()
+                .join(", ")
+        );
+        return Err(Error::new("shape", message));
+    }
+    let numbers: Vec<f64> = array.iter().copied().collect();
+    Ok(numbers.as_chunks().0.to_vec())
+}
+
+/// A mesh of anything with `.vertices` and `.faces`, or of a pair of arrays.
+fn mesh(data: &Bound<'_, PyAny>) -> Result<Mesh> {
+    let (vertices, faces): (Bound<'_, PyAny>, Bound<'_, PyAny>) =
+        if data.hasattr("vertices")? && data.hasattr("faces")? {
+            (data.getattr("vertices")?, data.getattr("faces")?)
+        } else {
+            data.extract().map_err(|_| {
+                let message = format!(
+                    "a mesh has `.vertices` and `.faces`, or is a pair of arrays, and not {}",
+                    data.get_type()
+                );
+                Error::new("type", message)
+            })?
+        };
+    let vertices = vectors::<3>("vertices", &vertices, &[3])?;
+    if let Ok(array) = faces.cast::<PyUntypedArray>()
+        && !matches!(array.dtype().getattr("kind")?.extract::<char>()?, 'i' | 'u')
+    {
+        let message = "faces are whole numbers, those of their vertices";
+        return Err(Error::new("type", message));
+    }
+    let faces: Vec<[i64; 3]> = {
+        let array: PyArrayLikeDyn<'_, i64, AllowTypeChange> = faces.extract()?;
+        let array = array.as_array();
+        if array.ndim() != 2 || array.shape()[1] != 3 {
+            let message = format!(
+                "the faces have the shape {:?}, but they must be (n, 3)",
+                array.shape()
+            );
+            return Err(Error::new("shape", message));
+        }
+        let numbers: Vec<i64> = array.iter().copied().collect();
+        numbers.as_chunks().0.to_vec()
+    };
+    // What is below 0 or too large is no vertex; the largest number never is.
+    let faces = faces
+        .iter()
+        .map(|face| face.map(|at| u32::try_from(at).unwrap_or(u32::MAX)));
+    let vertices = vertices.into_iter().map(DVec3::from).collect();
+    Ok(Mesh::new(vertices, &faces.collect::<Vec<_>>())?)
+}
+
+/// Positions as an array (n, 3).
+fn positions<'py>(py: Python<'py>, positions: &[DVec3]) -> Result<Bound<'py, PyAny>> {
+    let numbers: Vec<[f64; 3]> = positions.iter().map(|at| at.to_array()).collect();
+    arrays::array(py, numbers.into_flattened(), &[positions.len(), 3])
+}
+
+/// The vertices of faces as an array (n, 3).
+fn faces<'py>(py: Python<'py>, mesh: &Mesh) -> Result<Bound<'py, PyAny>> {
+    let faces = mesh.faces().iter().flatten();
+    let numbers = faces.map(|vertex| i64::from(vertex.0)).collect();
+    arrays::array(py, numbers, &[mesh.faces().len(), 3])
+}
+
+/// Columns of the corners of faces as an array (n, 3, N).
+fn corners<'py, const N: usize>(
+    py: Python<'py>,
+    corners: impl ExactSizeIterator<Item = [[f64; N]; 3]>,
+) -> Result<Bound<'py, PyAny>> {
+    let n_faces = corners.len();
+    let numbers: Vec<f64> = corners.flatten().flatten().collect();
+    arrays::array(py, numbers, &[n_faces, 3, N])
+}
+
+/// The mesh of a file: OBJ, PLY, glTF, GLB or OFF, by its ending.
+///
+/// Returns
+/// -------
+/// `MeshFile(vertices, faces, uv, normals, colors, texture, left_out)`: vertices (n, 3); faces (m, 3); of the corners of faces uv
+/// (m, 3, 2), v down, and normals (m, 3, 3); of vertices linear colors (n, 4); the image of the base color. What a file does not have
+/// is None; `left_out` names what it has and was not read.
+///
+/// Examples
+/// --------
+/// >>> import os, tempfile, dapple_textures as dp
+/// >>> path = os.path.join(tempfile.mkdtemp(), "triangle.obj")
+/// >>> _ = open(path, "w").write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+/// >>> dp.read_model(path).faces.tolist()
+/// [[0, 1, 2]]
+#[pyfunction]
+pub(crate) fn read_model(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAny>> {
+    let model = threads::run(py, || mesh_io::read_model(&path))??;
+    let uv = model
+        .uvs
+        .as_ref()
+        .map(|uvs| corners(py, uvs.iter().map(|face| face.map(|uv| uv.to_array()))));
+    let normals = model.normals_of_corners().map(|normals| {
+        corners(
+            py,
+            normals
+                .iter()
+                .map(|face| face.map(|normal| normal.to_array())),
+        )
+    });
+    let colors = model.colors.as_ref().map(|colors| {
+        let part = |at: &LinearRgba| [at.color.r, at.color.g, at.color.b, at.alpha];
+        let numbers: Vec<f32> = colors.iter().flat_map(part).collect();
+        arrays::array(py, numbers, &[colors.len(), 4])
+    });
+    let texture = model.material.base_color.as_ref().map(|image| {
+        let decode = py.import("dapple_textures")?.getattr("decode_image")?;
+        let content = PyDict::new(py);
+        content.set_item("content", "color")?;
+        decode.call((image.bytes(),), Some(&content))
+    });
+    let fields = (
+        positions(py, model.mesh.positions())?,
+        faces(py, &model.mesh)?,
+        uv.transpose()?,
+        normals.transpose()?,
+        colors.transpose()?,
+        texture.transpose()?,
+        model.left_out.clone(),
+    );
+    let file = py.import("dapple_textures._meshes")?.getattr("MeshFile")?;
+    Ok(file.call1(fields)?)
+}
+
+/// What is wrong with a mesh, counted: a dictionary.
+///
+/// Parameters
+/// ----------
+/// mesh : anything with `.vertices` (n, 3) and `.faces` (m, 3), as trimesh has them, or a pair of such arrays.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> report = dp.mesh_report(([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 5, 5]], [[0, 1, 2]]))
+/// >>> report["boundary_edges"], report["unused_vertices"]
+/// (3, 1)
+#[pyfunction]
+pub(crate) fn mesh_report<'py>(
+    py: Python<'py>,
+    mesh: &Bound<'py, PyAny>,
+) -> Result<Bound<'py, PyDict>> {
+    let mesh = self::mesh(mesh)?;
+    let report = threads::run(py, || mesh.report())?;
+    let counts = PyDict::new(py);
+    for (name, count) in [
+        ("vertices", report.vertices),
+        ("faces", report.faces),
+        ("components", report.components),
+        ("boundary_edges", report.boundary_edges),
+        ("non_manifold_edges", report.non_manifold_edges),
+        ("non_manifold_vertices", report.non_manifold_vertices),
+        ("winding_edges", report.winding_edges),
+        ("degenerate_faces", report.degenerate_faces),
+        ("duplicate_faces", report.duplicate_faces),
+        ("back_to_back_faces", report.back_to_back_faces),
+        ("duplicate_vertices", report.duplicate_vertices),
+        ("unused_vertices", report.unused_vertices),
+    ] {
+        counts.set_item(name, count)?;
+    }
+    Ok(counts)
+}
+
+/// A mesh with a texture that was grown over it, and the maps that follow it. Made by `synthesize_on`.
+#[pyclass(frozen, module = "dapple_textures")]
+pub(crate) struct Model {
+    synthesizer: Synthesizer,
+    atlas: Atlas,
+    shading: Vec<[DVec3; 3]>,
+    is_double_sided: bool,
+    layout: Layout,
+    /// The maps of the atlas, in the order of the layout.
+    baked: Vec<Map>,
+    /// The colors of the sites.
+    colors: Vec<LinearRgba>,
+}
+
+/// Covers a mesh with a texture that looks like an example, after Turk (2001): points on the surface take pixels of the example.
+///
+/// Faults of the mesh are repaired first.
+///
+/// Parameters
+/// ----------
+/// mesh : anything with `.vertices` (n, 3) and `.faces` (m, 3), such as a `trimesh.Trimesh`, or a pair of such arrays.
+/// exemplar : (rows, columns), or (rows, columns, 3) in linear light; or a dictionary of maps, of which the first is matched and
+///     the others follow it: `normal` and `orm` go into the material of the files, too.
+/// texels : the side of the square texture in pixels, up to 16384.
+/// sites : how many points of the surface get a color, 1 to 2**28.
+/// directions : (positions, vectors), each (n, 3): which way the down of the example runs there; in between they are interpolated.
+/// down : the direction of pieces of the surface without any.
+/// atlas : how faces are laid out: `"area"` (by their areas), `"uniform"`, or `"uv"` (`mesh.uv`, (m, 3, 2), v down).
+/// padding : pixels around each piece of the texture that continue it.
+/// crease : the angle of an edge in degrees above which it is shaded as a crease.
+/// axes : which way neighborhoods go on over the surface: `"followed"` or `"carried"`.
+/// seed, edges, levels, coherence, evenness, paper, progress : as for `synthesize`.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> checker = np.kron([[0, 1], [1, 0]], np.ones((8, 8)))
+/// >>> roof = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
+/// >>> model = dp.synthesize_on(roof, checker, texels=64, sites=500, edges="wrap", levels=2)
+/// >>> model.texture.shape, model.uv.shape
+/// ((64, 64), (2, 3, 2))
+#[pyfunction]
+#[pyo3(signature = (mesh, exemplar, *, texels = 1024, sites = 65536, directions = None, down = [0.0, -1.0, 0.0],
+    atlas = "area", padding = None, crease = None, axes = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
+    coherence = None, evenness = None, paper = false, progress = None),
+    text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), atlas=\"area\", \
+    padding=None, crease=30.0, axes=None, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, paper=False, \
+    progress=None)")]
+#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+pub(crate) fn synthesize_on<'py>(
+    py: Python<'py>,
+    mesh: &Bound<'py, PyAny>,
+    exemplar: &Bound<'py, PyAny>,
+    texels: u32,
+    sites: usize,
+    directions: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+    down: [f64; 3],
+    atlas: &str,
+    padding: Option<u32>,
+    crease: Option<f64>,
+    axes: Option<&str>,
+    seed: SeedArgument,
+    edges: &str,
+    levels: usize,
+    coherence: Option<Coherence>,
+    evenness: Option<f32>,
+    paper: bool,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> Result<Model> {
+    let atlas = data::named("atlas", atlas)?;
+    let uvs = match atlas {
+        AtlasKind::Uv => Some(vectors::<2>("uv", &mesh.getattr("uv")?, &[3, 2])?),
+        _ => None,
+    };
+    let mesh = self::mesh(mesh)?;
+    let (layout, maps) = pictures::read("exemplar", exemplar)?;
+    check_sizes(&maps)?;
+    if layout
+        .kinds
+        .iter()
+        .any(|kind| kind.content == Content::Color && kind.n_channels == 4)
+    {
+        let message = "a mesh cannot keep alpha: give three channels";
+        return Err(Error::new("channels", message));
+    }
+    let example = self::exemplar(&maps, edges)?;
+    let options = Matching {
+        seed,
+        levels,
+        coherence,
+        evenness,
+        axes: axes
+            .map(|axes| data::named::<Axes>("axes", axes))
+            .transpose()?,
+        paper,
+    };
+    let hierarchy = HierarchyOptions {
+        n_sites: sites,
+        n_levels: levels,
+        seed: seed.0.child("sites", 0),
+        ..HierarchyOptions::default()
+    };
+    let options = options.options()?;
+    let directions = self::directions(directions)?;
+    let crease = crease.map_or(CREASE, f64::to_radians);
+    let cover = |heard: watch::Heard<'_>| -> Result<Model> {
+        let (repaired, repair) = mesh.repair();
+        let surface = Surface::new(repaired)?;
+        let atlas = match (atlas, padding) {
+            (AtlasKind::Area, None) => Atlas::by_area(&surface, texels)?,
+            (AtlasKind::Area, Some(padding)) => Atlas::by_area_padded(&surface, texels, padding)?,
+            (AtlasKind::Uniform, None) => Atlas::uniform(&surface, texels)?,
+            (AtlasKind::Uniform, Some(padding)) => {
+                Atlas::uniform_padded(&surface, texels, padding)?
+            }
+            (AtlasKind::Uv, padding) => {
+                let uvs = own_uvs(&surface, &mesh, &repair, &uvs.unwrap_or_default())?;
+                Atlas::from_uvs(&surface, &uvs, [texels; 2], padding.unwrap_or(texels))?
+            }
+        };
+        let shading = surface.mesh().corner_normals(crease);
+        let is_double_sided = repair.before.back_to_back_faces > 0;
+        let hierarchy = Hierarchy::new(&surface, &hierarchy)?;
+        let orientation = Orientation::with_axis(&hierarchy, &directions, down.into())?;
+        let synthesizer = Synthesizer::from_parts(surface, hierarchy, orientation, None)?;
+        let texture = synthesizer.synthesize_with(&example, &options, heard)?;
+        let bake = |map: &Map| bake(&synthesizer, &texture, &atlas, &shading, map);
+        let baked = maps
+            .iter()
+            .map(bake)
+            .collect::<core::result::Result<_, _>>()?;
+        Ok(Model {
+            colors: site_colors(&texture, &maps[0])?,
+            synthesizer,
+            atlas,
+            shading,
+            is_double_sided,
+            layout,
+            baked,
+        })
+    };
+    watch::run(py, progress, cover)?
+}
+
+/// The directions of a texture at positions.
+fn directions(directions: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>) -> Result<Vec<Direction>> {
+    let Some((positions, vectors)) = directions else {
+        return Ok(Vec::new());
+    };
+    let positions = self::vectors::<3>("positions of directions", &positions, &[3])?;
+    let vectors = self::vectors::<3>("vectors of directions", &vectors, &[3])?;
+    if positions.len() != vectors.len() {
+        let message = format!(
+            "there are {} positions, but {} vectors",
+            positions.len(),
+            vectors.len()
+        );
+        return Err(Error::new("count", message));
+    }
+    let pairs = positions.into_iter().zip(vectors);
+    let direction = |(at, vector): ([f64; 3], [f64; 3])| Direction {
+        at: at.into(),
+        vector: vector.into(),
+    };
+    Ok(pairs.map(direction).collect())
+}
+
+/// The mesh's own texture coordinates, for the faces that repair has left.
+fn own_uvs(
+    surface: &Surface,
+    before: &Mesh,
+    repair: &Repair,
+    uvs: &[[f64; 2]],
+) -> Result<Vec<[DVec2; 3]>> {
+    let refused = |message: &str| Error::new("uv", message);
+    let uvs = uvs.as_chunks::<3>().0;
+    if uvs.len() != before.faces().len() {
+        return Err(refused("uv has another number of faces than the mesh"));
+    }
+    let mesh = surface.mesh();
+    let faces = mesh.faces().iter().zip(&repair.face_before);
+    let whole = faces.map(|(face, &at)| {
+        // Repair may have turned the face, or joined its vertices with others at the same places.
+        let corners = before.corners(at);
+        let own = face.map(|vertex| {
+            let here = mesh.positions()[vertex.index()];
+            let corner = corners.iter().position(|&other| other == here)?;
+            Some(DVec2::from(uvs[at.index()][corner]))
+        });
+        Some([own[0]?, own[1]?, own[2]?])
+    });
+    let whole: Option<_> = whole.collect();
+    whole.ok_or_else(|| refused("a face was cut in repair, and its texture coordinates are gone"))
+}
+
+/// A map of the example as a texture of the mesh.
+fn bake(
+    synthesizer: &Synthesizer,
+    texture: &SurfaceTexture,
+    atlas: &Atlas,
+    shading: &[[DVec3; 3]],
+    map: &Map,
+) -> core::result::Result<Map, SynthError> {
+    Ok(match map {
+        Map::Value(raster) => {
+            Map::Value(bake_values(synthesizer, &texture.transfer(raster)?, atlas)?)
+        }
+        Map::Color(raster) => {
+            Map::Color(bake_colors(synthesizer, &texture.transfer(raster)?, atlas)?)
+        }
+        Map::Normal(raster) => {
+            let normals = texture.transfer(raster)?;
+            let y = NormalY::OpenGl;
+            Map::Normal(bake_normals(synthesizer, &normals, y, atlas, shading)?)
+        }
+    })
+}
+
+/// The color of a gray value as it is displayed: its sRGB code is the value, as in a gray PNG file.
+fn color_of(value: f32) -> LinearRgb {
+    LinearRgb::from_srgb([u16::from_unit(value); 3])
+}
+
+fn site_colors(
+    texture: &SurfaceTexture,
+    map: &Map,
+) -> core::result::Result<Vec<LinearRgba>, SynthError> {
+    let colors = match map {
+        Map::Color(raster) => texture.transfer(raster)?,
+        Map::Value(raster) => {
+            let values = texture.transfer(raster)?;
+            values.into_iter().map(color_of).collect()
+        }
+        Map::Normal(_) => Vec::new(),
+    };
+    Ok(colors.into_iter().map(LinearRgba::opaque).collect())
+}
+
+#[pymethods]
+impl Model {
+    /// The vertices of the repaired mesh, (n, 3).
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        positions(py, self.synthesizer.surface().mesh().positions())
+    }
+
+    /// The vertices of each face, (m, 3).
+    #[getter]
+    fn faces<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        faces(py, self.synthesizer.surface().mesh())
+    }
+
+    /// The texture coordinates of the corners of each face, (m, 3, 2), from 0 to 1; v goes down, as the rows of the texture do.
+    #[getter]
+    fn uv<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        let uvs = self.atlas.uvs();
+        corners(py, uvs.iter().map(|face| face.map(|uv| uv.to_array())))
+    }
+
+    /// The normals of the corners of each face, (m, 3, 3).
+    #[getter]
+    fn normals<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        let normals = self.shading.iter();
+        corners(py, normals.map(|face| face.map(|normal| normal.to_array())))
+    }
+
+    /// The texture: what the first map of the example became, (texels, texels[, 3]).
+    #[getter]
+    fn texture<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        let maps = self.picture(0);
+        self.layout.kinds[0].array(py, maps)
+    }
+
+    /// All maps by name; that of an example without names is `texture`.
+    #[getter]
+    fn maps<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>> {
+        let maps = PyDict::new(py);
+        for (at, name) in self.layout.names_or("texture").into_iter().enumerate() {
+            maps.set_item(name, self.layout.kinds[at].array(py, self.picture(at))?)?;
+        }
+        Ok(maps)
+    }
+
+    /// Whether the mesh has faces that are seen from both sides.
+    #[getter]
+    fn double_sided(&self) -> bool {
+        self.is_double_sided
+    }
+
+    /// Writes the mesh with its texture: `.glb` in one file, `.obj` with files beside it; `.ply` has the points of the surface as a mesh,
+    /// with a color for each. Every file is the old one or the whole new one.
+    ///
+    /// The maps `normal` (y up) and `orm` go into the material.
+    fn export(&self, py: Python<'_>, path: PathBuf) -> Result<()> {
+        threads::run(py, || -> Result<()> {
+            let format =
+                MeshFormat::of_path(&path).filter(|format| format.written_ending().is_some());
+            let has_material =
+                format.is_none_or(|format| format.material_place() != MaterialPlace::Nowhere);
+            let model = match has_material {
+                true => self.model()?,
+                false => site_model(&self.synthesizer, self.colors.clone())?,
+            };
+            Ok(mesh_io::write_model(&path, &model)?)
+        })?
+    }
+
+    /// A `trimesh.Trimesh` with the texture as its material. Corners of faces are vertices of their own.
+    fn to_trimesh<'py>(model: &Bound<'py, Self>) -> Result<Bound<'py, PyAny>> {
+        let helper = model.py().import("dapple_textures._meshes")?;
+        Ok(helper.call_method1("to_trimesh", (model,))?)
+    }
+
+    fn __repr__(&self) -> String {
+        let mesh = self.synthesizer.surface().mesh();
+        format!(
+            "Model({} vertices, {} faces, {} texels, maps {})",
+            mesh.positions().len(),
+            mesh.faces().len(),
+            self.atlas.size()[0],
+            self.layout.names_or("texture").join(", ")
+        )
+    }
+}
+
+impl Model {
+    /// The maps of a picture.
+    fn picture(&self, at: usize) -> Vec<Map> {
+        let before: usize = self.layout.kinds[..at]
+            .iter()
+            .map(|kind| kind.n_maps())
+            .sum();
+        self.baked[before..before + self.layout.kinds[at].n_maps()].to_vec()
+    }
+
+    /// The mesh with its material, whose textures are PNG.
+    fn model(&self) -> Result<dapple::mesh::Model> {
+        let base = match &self.baked[0] {
+            Map::Value(values) => values.map(|&value| color_of(value)),
+            Map::Color(colors) => colors.clone(),
+            Map::Normal(_) => return Err(Error::new("channels", "normals are no colors")),
+        };
+        let surface = self.synthesizer.surface();
+        let base = png(Content::Color, &base.map(|color| color.to_array()))?;
+        let mut model = textured_model(surface, &self.atlas, self.shading.clone(), base)?;
+        model.material.double_sided = self.is_double_sided;
+        for (at, name) in self.layout.names_or("texture").into_iter().enumerate() {
+            match (name, self.picture(at).as_slice()) {
+                ("normal", [Map::Normal(normals)]) => {
+                    let normals = normals.map(|normal| normal.to_array());
+                    model.material.normal = Some(png(Content::Normal, &normals)?);
+                }
+                ("orm", [Map::Value(o), Map::Value(r), Map::Value(m)]) => {
+                    let or = o.zip_map(r, |&o, &r| [o, r])?;
+                    let image = png(Content::Data, &or.zip_map(m, |&[o, r], &m| [o, r, m])?)?;
+                    model.material.occlusion = Some(image.clone());
+                    model.material.metallic_roughness = Some(image);
+                }
+                _ => {}
+            }
+        }
+        Ok(model)
+    }
+}
+
+/// An image of three channels as PNG with 8 bits.
+fn png(content: Content, raster: &Raster<[f32; 3]>) -> Result<EncodedImage> {
+    let kind = Kind {
+        content,
+        n_channels: 3,
+    };
+    let values = raster.pixels().as_flattened();
+    let bytes = encode(kind, raster.size(), values, Encoding::Png(Depth::Eight))?;
+    Ok(EncodedImage::new(bytes)?)
+}

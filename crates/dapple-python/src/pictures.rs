@@ -1,0 +1,344 @@
+//! Pictures of one to four numbers a pixel, alone or several by name, as the maps of the library and back.
+//!
+//! An array (rows, columns) is numbers, (rows, columns, 3) a color in linear light, and (rows, columns, 4) a color with
+//! alpha, which travels as one more map. In a dictionary, `normal` is unit vectors and `orm` three numbers for themselves.
+
+use crate::arrays;
+use crate::error::{Error, Result};
+use dapple::color::{LinearRgb, Normal};
+use dapple::raster::Raster;
+use dapple::tile::Map;
+use numpy::ndarray::ArrayViewD;
+use numpy::{AllowTypeChange, PyArrayLikeDyn, PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyMapping};
+use std::borrow::Cow;
+
+dapple::raster::named! {
+    /// What the numbers of a picture are.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(crate) enum Content {
+        /// Heights, masks and the like.
+        Gray = "gray",
+        /// Color in linear light, with or without alpha.
+        Color = "color",
+        /// Unit vectors.
+        Normal = "normal",
+        /// Numbers for themselves.
+        Data = "data",
+    }
+}
+
+/// What a picture is, without its pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Kind {
+    pub(crate) content: Content,
+    pub(crate) n_channels: usize,
+}
+
+/// Whether a picture stands alone or among others with names, and what they are.
+#[derive(Clone)]
+pub(crate) struct Layout {
+    /// None for a picture that stands alone.
+    pub(crate) names: Option<Vec<String>>,
+    pub(crate) kinds: Vec<Kind>,
+}
+
+impl Kind {
+    /// What a picture with so many channels holds, unless its caller says it.
+    pub(crate) fn new(what: &str, content: Option<Content>, n_channels: usize) -> Result<Self> {
+        let content = content.unwrap_or(match n_channels {
+            1 => Content::Gray,
+            _ => Content::Color,
+        });
+        let fits = match content {
+            Content::Gray => n_channels == 1,
+            Content::Color => [3, 4].contains(&n_channels),
+            Content::Normal => n_channels == 3,
+            Content::Data => [1, 3, 4].contains(&n_channels),
+        };
+        if fits {
+            return Ok(Self {
+                content,
+                n_channels,
+            });
+        }
+        let message = format!(
+            "the {what} has {n_channels} channels, but {content} is (rows, columns) for one number a pixel, or \
+             (rows, columns, 3 or 4)"
+        );
+        Err(Error::new("channels", message))
+    }
+
+    /// How many maps it takes.
+    pub(crate) fn n_maps(self) -> usize {
+        match self.content {
+            Content::Gray | Content::Normal => 1,
+            Content::Color => self.n_channels - 2,
+            Content::Data => self.n_channels,
+        }
+    }
+
+    /// The maps of a picture's numbers, which lie pixel by pixel.
+    fn maps(self, size: [u32; 2], values: Cow<'_, [f32]>) -> Result<Vec<Map>> {
+        let n = self.n_channels;
+        let channel = |channel| -> Result<Map> {
+            let values = values.iter().skip(channel).step_by(n).copied();
+            Ok(Map::Value(Raster::from_vec(size, values.collect())?))
+        };
+        Ok(match self.content {
+            Content::Gray => vec![Map::Value(Raster::from_vec(size, values.into_owned())?)],
+            Content::Data => (0..n).map(channel).collect::<Result<_>>()?,
+            Content::Normal => {
+                let pixels = values.chunks_exact(3).map(|at| Normal {
+                    x: at[0],
+                    y: at[1],
+                    z: at[2],
+                });
+                vec![Map::Normal(Raster::from_vec(size, pixels.collect())?)]
+            }
+            Content::Color => {
+                let pixels = values
+                    .chunks_exact(n)
+                    .map(|at| LinearRgb::new(at[0], at[1], at[2]));
+                let color = Map::Color(Raster::from_vec(size, pixels.collect())?);
+                let alpha = (3..n).map(channel);
+                [Ok(color)]
+                    .into_iter()
+                    .chain(alpha)
+                    .collect::<Result<_>>()?
+            }
+        })
+    }
+
+    /// The array of its maps.
+    pub(crate) fn array<'py>(self, py: Python<'py>, maps: Vec<Map>) -> Result<Bound<'py, PyAny>> {
+        let Some(size) = maps.first().map(Map::size) else {
+            return Err(Error::new("count", "a picture has at least one map"));
+        };
+        let [width, height] = size.map(|side| side as usize);
+        let n = self.n_channels;
+        let mut maps = maps.into_iter();
+        let values = match (maps.next(), maps.len()) {
+            (Some(Map::Value(values)), 0) => return arrays::numbers(py, values),
+            (Some(Map::Color(colors)), 0) => flattened(colors, LinearRgb::to_array),
+            (Some(Map::Normal(normals)), _) => flattened(normals, Normal::to_array),
+            (Some(first), _) => {
+                let mut values = vec![0.0; width * height * n];
+                let mut channel = 0;
+                for map in [first].into_iter().chain(maps) {
+                    channel += interleave(&map, &mut values[channel..], n);
+                }
+                values
+            }
+            (None, _) => Vec::new(),
+        };
+        arrays::array(py, values, &[height, width, n])
+    }
+}
+
+/// The numbers of pixels, one after the other, in the memory of the pixels.
+fn flattened<T>(raster: Raster<T>, numbers: fn(T) -> [f32; 3]) -> Vec<f32> {
+    let pixels: Vec<[f32; 3]> = raster.into_pixels().into_iter().map(numbers).collect();
+    pixels.into_flattened()
+}
+
+/// Puts the channels of a map at the front of every pixel of `n` numbers, and says how many they are.
+fn interleave(map: &Map, values: &mut [f32], n: usize) -> usize {
+    match map {
+        Map::Value(raster) => {
+            for (at, &value) in values.chunks_mut(n).zip(raster.pixels()) {
+                at[0] = value;
+            }
+            1
+        }
+        Map::Color(raster) => {
+            for (at, color) in values.chunks_mut(n).zip(raster.pixels()) {
+                at[..3].copy_from_slice(&color.to_array());
+            }
+            3
+        }
+        Map::Normal(raster) => {
+            for (at, normal) in values.chunks_mut(n).zip(raster.pixels()) {
+                at[..3].copy_from_slice(&normal.to_array());
+            }
+            3
+        }
+    }
+}
+
+/// An array of a picture while it is read.
+pub(crate) struct Pixels<'py> {
+    array: PyArrayLikeDyn<'py, f32, AllowTypeChange>,
+    /// Columns and rows.
+    pub(crate) size: [u32; 2],
+    pub(crate) n_channels: usize,
+}
+
+impl<'py> Pixels<'py> {
+    /// Refuses what is no picture, and whole numbers, which are codes and not yet linear light.
+    pub(crate) fn read(what: &str, data: &Bound<'py, PyAny>) -> Result<Self> {
+        if let Ok(array) = data.cast::<PyUntypedArray>() {
+            let dtype = array.dtype();
+            if matches!(dtype.getattr("kind")?.extract::<char>()?, 'u' | 'i' | 'c') {
+                let message = format!(
+                    "the {what} is an array of {dtype}, but pixels are floating point: divide data by its largest code, \
+                     or take `linear_from_srgb` for colors"
+                );
+                return Err(Error::new("type", message));
+            }
+        }
+        let array: PyArrayLikeDyn<'_, f32, AllowTypeChange> = data.extract()?;
+        let shape = array.as_array().shape().to_vec();
+        let n_channels = match shape.as_slice() {
+            [_, _] => 1,
+            &[_, _, n] if n > 1 => n,
+            _ => {
+                let message = format!(
+                    "the {what} has the shape {shape:?}, but it must be (rows, columns), or (rows, columns, channels) with \
+                     more than one channel"
+                );
+                return Err(Error::new("shape", message));
+            }
+        };
+        let size = arrays::raster_size(what, &shape)?;
+        Ok(Self {
+            array,
+            size,
+            n_channels,
+        })
+    }
+
+    /// The numbers, pixel by pixel: where they lie if that is in order, else copied.
+    pub(crate) fn values(&self) -> Cow<'_, [f32]> {
+        let view: ArrayViewD<'_, f32> = self.array.as_array();
+        match view.to_slice() {
+            Some(values) => Cow::Borrowed(values),
+            None => Cow::Owned(view.iter().copied().collect()),
+        }
+    }
+
+    /// Each channel as a raster.
+    pub(crate) fn planes(&self) -> Result<Vec<Raster<f32>>> {
+        let values = self.values();
+        let plane = |channel| {
+            let values = values.iter().skip(channel).step_by(self.n_channels);
+            Ok(Raster::from_vec(self.size, values.copied().collect())?)
+        };
+        (0..self.n_channels).map(plane).collect()
+    }
+}
+
+/// Channels as an array: (rows, columns) of one, and (rows, columns, channels) of several.
+pub(crate) fn array_of_planes(
+    py: Python<'_>,
+    planes: Vec<Raster<f32>>,
+) -> Result<Bound<'_, PyAny>> {
+    let kind = Kind {
+        content: Content::Data,
+        n_channels: planes.len(),
+    };
+    kind.array(py, planes.into_iter().map(Map::Value).collect())
+}
+
+/// The maps of a picture, or of several in a dictionary, one after the other.
+pub(crate) fn read(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, Vec<Map>)> {
+    let (mut maps, mut kinds) = (Vec::new(), Vec::new());
+    let mut add = |what: &str, data: &Bound<'_, PyAny>, content| -> Result<()> {
+        let pixels = Pixels::read(what, data)?;
+        let kind = Kind::new(what, content, pixels.n_channels)?;
+        maps.extend(kind.maps(pixels.size, pixels.values())?);
+        kinds.push(kind);
+        Ok(())
+    };
+    let names = match data.cast::<PyMapping>() {
+        Err(_) => {
+            add(what, data, None)?;
+            None
+        }
+        Ok(pictures) => {
+            let pictures: Vec<(String, Bound<'_, PyAny>)> = pictures.items()?.extract()?;
+            for (name, picture) in &pictures {
+                let content = match name.as_str() {
+                    "normal" => Some(Content::Normal),
+                    "orm" => Some(Content::Data),
+                    _ => None,
+                };
+                add(name, picture, content)?;
+            }
+            Some(pictures.into_iter().map(|(name, _)| name).collect())
+        }
+    };
+    if kinds.is_empty() {
+        return Err(Error::new(
+            "count",
+            format!("the {what} is a dictionary without maps"),
+        ));
+    }
+    Ok((Layout { names, kinds }, maps))
+}
+
+/// The maps of a list of pictures or of dictionaries, which must all be alike.
+pub(crate) fn read_all(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, Vec<Vec<Map>>)> {
+    let mut all = Vec::new();
+    let mut first: Option<Layout> = None;
+    for (index, item) in data.try_iter()?.enumerate() {
+        let (layout, maps) = read(what, &item?)?;
+        let first = first.get_or_insert_with(|| layout.clone());
+        if first.names != layout.names || first.kinds != layout.kinds {
+            let message = format!("the {what} {index} has other maps or channels than the first");
+            return Err(Error::new("channels", message));
+        }
+        all.push(maps);
+    }
+    let layout = first.ok_or_else(|| Error::new("count", format!("there is no {what}")))?;
+    Ok((layout, all))
+}
+
+/// Numbers (rows, columns).
+pub(crate) fn numbers(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>> {
+    let pixels = Pixels::read(what, data)?;
+    if pixels.n_channels != 1 {
+        let message = format!(
+            "the {what} has {} channels, but 1 is needed",
+            pixels.n_channels
+        );
+        return Err(Error::new("channels", message));
+    }
+    Ok(Raster::from_vec(pixels.size, pixels.values().into_owned())?)
+}
+
+impl Layout {
+    /// The name of each picture; one for a picture that stands alone.
+    pub(crate) fn names_or<'a>(&'a self, alone: &'a str) -> Vec<&'a str> {
+        match &self.names {
+            None => vec![alone],
+            Some(names) => names.iter().map(String::as_str).collect(),
+        }
+    }
+
+    /// The maps of each picture, from those of all.
+    pub(crate) fn split<T>(&self, maps: impl IntoIterator<Item = T>) -> Vec<Vec<T>> {
+        let mut maps = maps.into_iter();
+        let kinds = self.kinds.iter();
+        kinds
+            .map(|kind| maps.by_ref().take(kind.n_maps()).collect())
+            .collect()
+    }
+
+    /// What was read: a picture, or a dictionary of them.
+    pub(crate) fn python<'py>(&self, py: Python<'py>, maps: Vec<Map>) -> Result<Bound<'py, PyAny>> {
+        let pictures = self.split(maps).into_iter().zip(&self.kinds);
+        let mut arrays = pictures.map(|(maps, kind)| kind.array(py, maps));
+        let Some(names) = &self.names else {
+            return arrays
+                .next()
+                .unwrap_or_else(|| Ok(py.None().into_bound(py)));
+        };
+        let pictures = PyDict::new(py);
+        for (name, array) in names.iter().zip(arrays) {
+            pictures.set_item(name, array?)?;
+        }
+        Ok(pictures.into_any())
+    }
+}

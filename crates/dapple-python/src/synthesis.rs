@@ -1,0 +1,174 @@
+//! Textures from an example, in the plane.
+
+use crate::arrays;
+use crate::data;
+use crate::error::{Error, Result};
+use crate::grid::size;
+use crate::pictures;
+use crate::seed::SeedArgument;
+use crate::tiles::flags;
+use crate::watch;
+use dapple::synth::{
+    Axes, Edges, Exemplar, Options, PlaneTexture, SynthError, synthesize_plane_with,
+};
+use dapple::tile::Map;
+use pyo3::prelude::*;
+
+/// How pixels of the example are found, as callers say it.
+#[derive(FromPyObject)]
+pub(crate) enum Coherence {
+    /// A factor.
+    Factor(f32),
+    /// `auto`.
+    Word(String),
+}
+
+/// The options that the plane and meshes share.
+pub(crate) struct Matching {
+    pub(crate) seed: SeedArgument,
+    pub(crate) levels: usize,
+    pub(crate) coherence: Option<Coherence>,
+    pub(crate) evenness: Option<f32>,
+    pub(crate) axes: Option<Axes>,
+    pub(crate) paper: bool,
+}
+
+impl Matching {
+    /// The options of the library, as the command reads them.
+    pub(crate) fn options(self) -> Result<Options> {
+        let default = match self.paper {
+            true => Options::paper(),
+            false => Options::default(),
+        };
+        let coherence = match self.coherence {
+            None => default.coherence,
+            Some(Coherence::Factor(factor)) => dapple::synth::Coherence::Factor(factor),
+            Some(Coherence::Word(word)) => word.parse().map_err(|_| {
+                let message = format!("the coherence is `{word}`, but it must be auto or a number");
+                Error::new("name", message)
+            })?,
+        };
+        Ok(Options {
+            seed: self.seed.0,
+            n_levels: self.levels,
+            schedule: None,
+            coherence,
+            evenness: self.evenness.unwrap_or(default.evenness),
+            axes: self.axes.unwrap_or(default.axes),
+            center: default.center,
+        })
+    }
+}
+
+/// The example whose first map is matched; the others follow it.
+pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
+    let edges: Edges = data::named("edges", edges)?;
+    match maps {
+        [Map::Color(colors), ..] => Ok(Exemplar::new(colors, edges)?),
+        [Map::Value(values), ..] => Ok(Exemplar::from_planes(&[(values, 1.0)], edges)?),
+        _ => {
+            let message = "normals are no example: let colors or heights be the first map";
+            Err(Error::new("channels", message))
+        }
+    }
+}
+
+/// A texture of any size that looks like an example, after Turk (2001).
+///
+/// Every pixel is one of the example's, around which it looks most like what is around it here.
+///
+/// Parameters
+/// ----------
+/// exemplar : (rows, columns), or (rows, columns, 3 or 4) in linear light, best 64 to 256 pixels wide; or a dictionary of maps, of which
+///     the first is matched (color in sRGB, numbers as they are) and the others follow it.
+/// size : (rows, columns), or a number for both; at most 2**26 pixels.
+/// seed : int, from 0 to 2**64 - 1.
+/// wrap : along which axes the texture repeats, x first; one for both. These sides are multiples of 2**(levels - 1).
+/// edges : what lies past the edges of the example: `"cut"`, or `"wrap"` where it repeats.
+/// levels : 1 to 16, each with half the resolution: more for larger features.
+/// coherence : how much worse a match may be that continues what lies beside it: `"auto"` or a number of at least 0; higher copies larger
+///     pieces.
+/// evenness : how evenly the example is used, 0 to 1000; 1 by default.
+/// paper : match as in the paper: the least difference wins.
+/// sources : give (texture, sources), too: for every pixel the (column, row) of the example that it is from, (rows, columns, 2).
+/// progress : called with the part that is done, from 0 to 1. Ctrl-C stops the call.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> checker = np.kron([[0, 1], [1, 0]], np.ones((4, 4)))
+/// >>> texture, sources = dp.synthesize(checker, (24, 20), edges="wrap", sources=True)
+/// >>> bool((texture == checker[sources[..., 1], sources[..., 0]]).all())
+/// True
+#[pyfunction]
+#[pyo3(signature = (exemplar, size, *, seed = SeedArgument::default(), wrap = None, edges = "cut", levels = 3, coherence = None,
+    evenness = None, paper = false, sources = false, progress = None),
+    text_signature = "(exemplar, size, *, seed=0, wrap=False, edges=\"cut\", levels=3, coherence=None, evenness=None, \
+    paper=False, sources=False, progress=None)")]
+#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+pub(crate) fn synthesize<'py>(
+    py: Python<'py>,
+    exemplar: &Bound<'py, PyAny>,
+    size: &Bound<'py, PyAny>,
+    seed: SeedArgument,
+    wrap: Option<&Bound<'py, PyAny>>,
+    edges: &str,
+    levels: usize,
+    coherence: Option<Coherence>,
+    evenness: Option<f32>,
+    paper: bool,
+    sources: bool,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> Result<Bound<'py, PyAny>> {
+    let (layout, maps) = pictures::read("exemplar", exemplar)?;
+    check_sizes(&maps)?;
+    let exemplar = self::exemplar(&maps, edges)?;
+    let size = self::size(size)?;
+    let matching = Matching {
+        seed,
+        levels,
+        coherence,
+        evenness,
+        axes: None,
+        paper,
+    };
+    let options = matching.options()?;
+    let wrap = flags(wrap, false)?.map(|wraps| if wraps { Edges::Wrap } else { Edges::Cut });
+    let texture = watch::run(py, progress, |heard| {
+        synthesize_plane_with(&exemplar, size, wrap, &options, heard)
+    })??;
+    let transferred = maps.iter().map(|map| transfer(&texture, map));
+    let picture = layout.python(py, transferred.collect::<core::result::Result<_, _>>()?)?;
+    if !sources {
+        return Ok(picture);
+    }
+    let places = texture.sources().pixels().iter().flatten();
+    let places = places.map(|&at| i64::from(at)).collect();
+    let [width, height] = size.map(|side| side as usize);
+    let places = arrays::array(py, places, &[height, width, 2])?;
+    Ok((picture, places).into_pyobject(py)?.into_any())
+}
+
+/// Refuses maps of different sizes.
+pub(crate) fn check_sizes(maps: &[Map]) -> Result<()> {
+    for map in maps {
+        if map.size() != maps[0].size() {
+            let message = format!(
+                "the maps of an example have one size, but one has {:?} columns and rows, and the first {:?}",
+                map.size(),
+                maps[0].size()
+            );
+            return Err(Error::new("size", message));
+        }
+    }
+    Ok(())
+}
+
+/// A map of the example at the pixels that the texture took.
+fn transfer(texture: &PlaneTexture, map: &Map) -> core::result::Result<Map, SynthError> {
+    Ok(match map {
+        Map::Value(raster) => Map::Value(texture.transfer(raster)?),
+        Map::Color(raster) => Map::Color(texture.transfer(raster)?),
+        Map::Normal(raster) => Map::Normal(texture.transfer(raster)?),
+    })
+}

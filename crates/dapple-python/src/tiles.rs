@@ -1,0 +1,477 @@
+//! Images made to repeat, their seam reports, and maps that are covered with tiles.
+
+use crate::arrays;
+use crate::data;
+use crate::error::{Error, Result};
+use crate::grid::size;
+use crate::pictures::{self, Content, Kind, Layout, numbers};
+use crate::seed::SeedArgument;
+use crate::threads;
+use dapple::tile::{
+    BorderSource, ChannelReport, CornerTiles as Corners, Disturbance, Map, MatchBorders, Method,
+    SeamOptions, SeamReports, Seamless, SoftCut, TileError,
+};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList, PyString};
+use serde_json::{Map as Object, Value, json};
+
+/// A yes or no for both axes, or one for each, x first.
+pub(crate) fn flags(data: Option<&Bound<'_, PyAny>>, default: bool) -> Result<[bool; 2]> {
+    let Some(data) = data else {
+        return Ok([default; 2]);
+    };
+    match data.extract::<bool>() {
+        Ok(flag) => Ok([flag; 2]),
+        Err(_) => Ok(data.extract()?),
+    }
+}
+
+/// The pixel of the plane where a map begins, x first.
+fn first(data: Option<&Bound<'_, PyAny>>) -> Result<[i64; 2]> {
+    Ok(data.map_or(Ok([0; 2]), |first| first.extract())?)
+}
+
+/// A method of making images repeat, by its name and its options.
+fn method(
+    name: &Bound<'_, PyAny>,
+    options: Option<&Bound<'_, PyDict>>,
+    size: [u32; 2],
+) -> Result<Method> {
+    let options = options.map_or(Ok(Value::Null), |options| data::value(options.as_any()))?;
+    let given = match options {
+        Value::Object(given) => given,
+        _ => Object::new(),
+    };
+    let Ok(name) = name.cast::<PyString>() else {
+        return data::options("method", name);
+    };
+    let name = name.to_str()?;
+    let data = match name {
+        "soft_cut" => json!({ name: soft_cut(given, size) }),
+        "spline_project" | "periodic_then_project" => json!({ name: given }),
+        "feather" if !given.is_empty() => json!({ name: { "margin": given } }),
+        "feather" => json!({ name: "half_shift" }),
+        "poisson" if given.keys().all(|option| option == "wrap_gradient") => {
+            json!({ name: given.get("wrap_gradient").unwrap_or(&json!("zero")) })
+        }
+        _ if given.is_empty() => json!(name),
+        _ => json!({ name: given }),
+    };
+    data::read(&format!("method {name}"), data)
+}
+
+/// The options of a soft cut, whose margin is at most a quarter of the shorter side where none is given, as the command has it.
+fn soft_cut(mut options: Object<String, Value>, size: [u32; 2]) -> Object<String, Value> {
+    let default = SoftCut::default();
+    let room = (size[0].min(size[1]) / 4).max(1);
+    let margin = options
+        .entry("margin")
+        .or_insert(default.margin.min(room).into());
+    let half = margin.as_f64().unwrap_or_default() as f32 / 2.0;
+    options
+        .entry("half_width")
+        .or_insert(default.half_width.min(half).into());
+    options
+}
+
+/// An image made to repeat, or all maps of a material along the same cut.
+///
+/// Parameters
+/// ----------
+/// image : (rows, columns), or (rows, columns, 3 or 4) in linear light; or a dictionary of such maps, of which `normal` is unit
+///     vectors and `orm` three numbers.
+/// method : how, with its own options by keyword, or a dictionary as in a recipe.
+///
+///     * `"soft_cut"` cuts along the line of least difference, and is smaller by the margin: `margin`, `half_width`, `crossfade`.
+///     * `"periodic"` keeps all detail and the size (Moisan 2011); `"poisson"` likewise, with `wrap_gradient`.
+///     * `"spline_project"` is the tile of Du, Wang and Meng, which smooths, and `"periodic_then_project"`: `levels`, `phase`, `basis`,
+///       `pixels`.
+///     * `"feather"` is a crossfade: `margin`, `crossfade`. `"mirror"` is the image beside its mirror image.
+/// axes : along which axes it is to repeat, x first; one for both.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> photo = np.random.default_rng(1).random((96, 128, 3))
+/// >>> dp.make_tile(photo, margin=16).shape
+/// (80, 112, 3)
+/// >>> dp.make_tile({"albedo": photo, "height": photo[..., 0]}, method="periodic")["height"].shape
+/// (96, 128)
+#[pyfunction]
+#[pyo3(signature = (image, *, method = None, axes = None, **options),
+    text_signature = "(image, *, method=\"soft_cut\", axes=True, **options)")]
+pub(crate) fn make_tile<'py>(
+    py: Python<'py>,
+    image: &Bound<'py, PyAny>,
+    method: Option<&Bound<'py, PyAny>>,
+    axes: Option<&Bound<'py, PyAny>>,
+    options: Option<&Bound<'py, PyDict>>,
+) -> Result<Bound<'py, PyAny>> {
+    let (layout, maps) = pictures::read("image", image)?;
+    let default = PyString::new(py, "soft_cut");
+    let method = method.unwrap_or(default.as_any());
+    let seamless = Seamless {
+        method: self::method(method, options, maps[0].size())?,
+        axes: flags(axes, true)?,
+    };
+    let tile = threads::run(py, || seamless.apply_maps(&maps))??;
+    layout.python(py, tile)
+}
+
+/// How well an image repeats, and what it has kept of the image that it was made of.
+///
+/// Steps across the wrap are compared with those inside at four scales; beside a source, lost detail, lost contrast, and what is unlike
+/// anything in it. Colors are judged as they are displayed, in sRGB.
+///
+/// Parameters
+/// ----------
+/// tile : an image, or a dictionary of maps.
+/// source : what it was made of, of the same kind; None where there is none.
+/// axes : along which axes it repeats, x first; one for both.
+/// lattice : how many pixels apart the boundaries are that are like the wrap, such as 2**levels for `"spline_project"`.
+///
+/// Returns
+/// -------
+/// A `SeamReport`, or one for each map by name.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, dapple_textures as dp
+/// >>> report = dp.seam_report(np.linspace(0, 1, 64)[None].repeat(64, 0))
+/// >>> report.passes, report.faults
+/// (False, [('', 'the seam shows, most at 1 px')])
+#[pyfunction]
+#[pyo3(signature = (tile, source = None, *, axes = None, lattice = None),
+    text_signature = "(tile, source=None, *, axes=True, lattice=1)")]
+pub(crate) fn seam_report<'py>(
+    py: Python<'py>,
+    tile: &Bound<'py, PyAny>,
+    source: Option<&Bound<'py, PyAny>>,
+    axes: Option<&Bound<'py, PyAny>>,
+    lattice: Option<&Bound<'py, PyAny>>,
+) -> Result<Bound<'py, PyAny>> {
+    let lattice = lattice.map_or(Ok([1; 2]), |lattice| match lattice.extract::<u32>() {
+        Ok(pixels) => Ok([pixels; 2]),
+        Err(_) => lattice.extract(),
+    })?;
+    let axes = flags(axes, true)?;
+    let options = SeamOptions { axes, lattice };
+    let (layout, tile) = pictures::read("tile", tile)?;
+    let source = source.map(|source| pictures::read("source", source));
+    let source = match source.transpose()? {
+        Some((other, _)) if other.kinds != layout.kinds || other.names != layout.names => {
+            let message = "the source has other maps or channels than the tile";
+            return Err(Error::new("channels", message));
+        }
+        source => source.map(|(_, maps)| maps),
+    };
+    let reports = threads::run(
+        py,
+        || -> core::result::Result<Vec<SeamReports>, TileError> {
+            let of = |(at, tile): (usize, &Map)| match &source {
+                None => SeamReports::of_map(tile, &options),
+                Some(source) => SeamReports::beside(&source[at], tile, &options),
+            };
+            tile.iter().enumerate().map(of).collect()
+        },
+    )??;
+    let pictures = layout.split(reports).into_iter().zip(&layout.kinds);
+    let reports = pictures.map(|(reports, kind)| report(py, &reports, *kind));
+    let reports: Vec<_> = reports.collect::<Result<_>>()?;
+    match &layout.names {
+        None => Ok(reports
+            .into_iter()
+            .next()
+            .unwrap_or(py.None().into_bound(py))),
+        Some(names) => {
+            let named = PyDict::new(py);
+            for (name, report) in names.iter().zip(reports) {
+                named.set_item(name, report)?;
+            }
+            Ok(named.into_any())
+        }
+    }
+}
+
+/// The report of a picture, from those of its maps, as Python's `SeamReport`.
+fn report<'py>(py: Python<'py>, reports: &[SeamReports], kind: Kind) -> Result<Bound<'py, PyAny>> {
+    let (mut channels, mut faults, mut texts) = (Vec::new(), Vec::new(), Vec::new());
+    for (at, map) in reports.iter().enumerate() {
+        let name = match kind.content {
+            Content::Data => at.to_string(),
+            Content::Color if at == 1 => "a".to_owned(),
+            _ => String::new(),
+        };
+        texts.push(match name.is_empty() {
+            true => map.to_string(),
+            false => format!("{name}:\n{map}"),
+        });
+        for of in map.channels() {
+            let name = if name.is_empty() { &of.channel } else { &name };
+            let found = of.report.faults().into_iter();
+            faults.extend(found.map(|fault| (name.clone(), fault.to_string())));
+            channels.push(ChannelReport {
+                channel: name.clone(),
+                report: of.report.clone(),
+            });
+        }
+    }
+    let badness = reports.iter().map(SeamReports::badness).fold(0.0, f64::max);
+    let passes = reports.iter().all(SeamReports::passes);
+    let channels = json!(channels).to_string();
+    let channels = py.import("json")?.call_method1("loads", (channels,))?;
+    let report = py
+        .import("dapple_textures._pictures")?
+        .getattr("SeamReport")?;
+    Ok(report.call1((passes, faults, badness, channels, texts.join("\n")))?)
+}
+
+/// Copies of a tile side by side, cut off at a size.
+///
+/// Parameters
+/// ----------
+/// tile : an image of any number of channels, or a dictionary of maps.
+/// size : (rows, columns), or a number for both.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.repeat([[1.0, 2.0]], (2, 3)).tolist()
+/// [[1.0, 2.0, 1.0], [1.0, 2.0, 1.0]]
+#[pyfunction]
+pub(crate) fn repeat<'py>(
+    py: Python<'py>,
+    tile: &Bound<'py, PyAny>,
+    size: &Bound<'py, PyAny>,
+) -> Result<Bound<'py, PyAny>> {
+    let (layout, maps) = pictures::read("tile", tile)?;
+    let size = self::size(size)?;
+    let maps = threads::run(py, || -> core::result::Result<Vec<Map>, TileError> {
+        let repeated = maps.iter().map(|map| {
+            Ok(match map {
+                Map::Value(raster) => Map::Value(dapple::tile::repeat(raster, size)?),
+                Map::Color(raster) => Map::Color(dapple::tile::repeat(raster, size)?),
+                Map::Normal(raster) => Map::Normal(dapple::tile::repeat(raster, size)?),
+            })
+        });
+        repeated.collect()
+    })??;
+    layout.python(py, maps)
+}
+
+/// A map that is covered with copies of a tile, each of which is varied inside and keeps its borders.
+///
+/// A window is the crop of the whole.
+///
+/// Parameters
+/// ----------
+/// tile : an image that repeats, or a dictionary of maps, of at least 56 pixels a side with the default widths.
+/// size : (rows, columns), or a number for both.
+/// seed : int, from 0 to 2**64 - 1.
+/// first : (x, y) of the first pixel in the plane, in which copy (0, 0) begins in pixel (0, 0).
+/// frozen : how many pixels along the borders stay.
+/// margin : over how many pixels next to these a copy goes over into what is shifted.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> tile = dp.worley(seed=7, period=8).render(64)
+/// >>> land = dp.disturb(tile, 200, seed=1)
+/// >>> bool((land[:, 64] == dp.repeat(tile, 200)[:, 64]).all())
+/// True
+#[pyfunction]
+#[pyo3(signature = (tile, size, *, seed = SeedArgument::default(), first = None, frozen = 4, margin = 24),
+    text_signature = "(tile, size, *, seed=0, first=(0, 0), frozen=4, margin=24)")]
+pub(crate) fn disturb<'py>(
+    py: Python<'py>,
+    tile: &Bound<'py, PyAny>,
+    size: &Bound<'py, PyAny>,
+    seed: SeedArgument,
+    first: Option<&Bound<'py, PyAny>>,
+    frozen: u32,
+    margin: u32,
+) -> Result<Bound<'py, PyAny>> {
+    let (layout, maps) = pictures::read("tile", tile)?;
+    let (first, size) = (self::first(first)?, self::size(size)?);
+    let disturbance = Disturbance {
+        frozen,
+        margin,
+        seed: seed.0,
+    };
+    let maps = threads::run(py, || disturbance.render_maps(&maps, first, size))??;
+    layout.python(py, maps)
+}
+
+/// Tiles with one border, that of the first, so that they fit beside each other in any order.
+///
+/// Parameters
+/// ----------
+/// tiles : images of one size, or dictionaries of maps.
+/// width : over how many pixels along the borders they go over into it.
+/// source : `"border"` takes that of the first tile, which repeats; `"middle"` what it has along its middle, where it need not.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> tiles = [dp.worley(seed=seed, period=4).render(64) for seed in (1, 2)]
+/// >>> a, b = dp.match_borders(tiles, width=16)
+/// >>> bool((a[0] == b[0]).all() and (a[:, -1] == b[:, -1]).all())
+/// True
+#[pyfunction]
+#[pyo3(signature = (tiles, *, width = None, source = None),
+    text_signature = "(tiles, *, width=16, source=\"border\")")]
+pub(crate) fn match_borders<'py>(
+    py: Python<'py>,
+    tiles: &Bound<'py, PyAny>,
+    width: Option<u32>,
+    source: Option<&str>,
+) -> Result<Bound<'py, PyList>> {
+    let (layout, tiles) = pictures::read_all("tiles", tiles)?;
+    let options = borders(width, source)?;
+    let matched = threads::run(py, || options.apply_maps(&tiles))??;
+    list(py, &layout, matched)
+}
+
+/// A map that is laid with tiles in random order, whose borders are matched first; of whole tiles, it repeats.
+///
+/// Parameters
+/// ----------
+/// tiles, width, source : as for `match_borders`.
+/// size, seed, first : as for `disturb`.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> tiles = [dp.worley(seed=seed, period=4).render(64) for seed in (1, 2)]
+/// >>> dp.lay_tiles(tiles, (128, 192), seed=3).shape
+/// (128, 192)
+#[pyfunction]
+#[pyo3(signature = (tiles, size, *, seed = SeedArgument::default(), first = None, width = None, source = None),
+    text_signature = "(tiles, size, *, seed=0, first=(0, 0), width=16, source=\"border\")")]
+pub(crate) fn lay_tiles<'py>(
+    py: Python<'py>,
+    tiles: &Bound<'py, PyAny>,
+    size: &Bound<'py, PyAny>,
+    seed: SeedArgument,
+    first: Option<&Bound<'py, PyAny>>,
+    width: Option<u32>,
+    source: Option<&str>,
+) -> Result<Bound<'py, PyAny>> {
+    let (layout, tiles) = pictures::read_all("tiles", tiles)?;
+    let (first, size) = (self::first(first)?, self::size(size)?);
+    let options = borders(width, source)?;
+    let maps = threads::run(py, || options.render(&tiles, seed.0, first, size))??;
+    layout.python(py, maps)
+}
+
+fn borders(width: Option<u32>, source: Option<&str>) -> Result<MatchBorders> {
+    let default = MatchBorders::default();
+    let source = source.map(|name| data::named::<BorderSource>("source", name));
+    Ok(MatchBorders {
+        width: width.unwrap_or(default.width),
+        source: source.transpose()?.unwrap_or(default.source),
+    })
+}
+
+/// A list of pictures.
+fn list<'py>(py: Python<'py>, layout: &Layout, all: Vec<Vec<Map>>) -> Result<Bound<'py, PyList>> {
+    let pictures = all.into_iter().map(|maps| layout.python(py, maps));
+    Ok(PyList::new(py, pictures.collect::<Result<Vec<_>>>()?)?)
+}
+
+/// Tiles that fit beside each other where their corners have the same color, after Lagae and Dutré (2006).
+///
+/// Every tile is made of 2 to 4 sources, one for each color: at a corner it shows the source of that color, and sources meet along the
+/// lines of least difference. All C**4 tiles of C colors cover a plane without repeating.
+///
+/// Parameters
+/// ----------
+/// sources : 2 to 4 images of one size, or dictionaries of maps.
+/// width : the share of the shorter side that cuts may take, above 0 and at most 1.
+/// period : after how many tiles the corners repeat: a number, or (x, y); None where they do not.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> sources = [dp.worley(seed=seed, period=4).render(32) for seed in (1, 2)]
+/// >>> tiles = dp.CornerTiles(sources)
+/// >>> len(tiles.all()), tiles.render((100, 200), seed=3).shape
+/// (16, (100, 200))
+#[pyclass(frozen, module = "dapple_textures")]
+pub(crate) struct CornerTiles {
+    tiles: Corners,
+    layout: Layout,
+}
+
+#[pymethods]
+impl CornerTiles {
+    #[new]
+    #[pyo3(signature = (sources, *, width = 0.5, period = None))]
+    fn new(
+        py: Python<'_>,
+        sources: &Bound<'_, PyAny>,
+        width: f64,
+        period: Option<&Bound<'_, PyAny>>,
+    ) -> Result<Self> {
+        let (layout, sources) = pictures::read_all("sources", sources)?;
+        let period = match period {
+            None => [None; 2],
+            Some(period) => match period.extract::<u32>() {
+                Ok(tiles) => [Some(tiles); 2],
+                Err(_) => period.extract()?,
+            },
+        };
+        let tiles = threads::run(py, || {
+            Corners::new(&sources)?
+                .with_width(width)?
+                .with_period(period)
+        })??;
+        Ok(Self { tiles, layout })
+    }
+
+    /// The tile with these sources at its corners: top left, top right, bottom left, bottom right.
+    fn tile<'py>(&self, py: Python<'py>, corners: [u8; 4]) -> Result<Bound<'py, PyAny>> {
+        let maps = threads::run(py, || self.tiles.tile(corners))??;
+        self.layout.python(py, maps)
+    }
+
+    /// All C**4 tiles: that with the corners a, b, c, d is at the index a + b C + c C**2 + d C**3.
+    fn all<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyList>> {
+        let tiles = threads::run(py, || self.tiles.all())??;
+        list(py, &self.layout, tiles)
+    }
+
+    /// A map with random corners: `size` is (rows, columns), `first` (x, y) of its first pixel. A window is the crop of the whole.
+    #[pyo3(signature = (size, *, seed = SeedArgument::default(), first = None),
+        text_signature = "($self, size, *, seed=0, first=(0, 0))")]
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        size: &Bound<'py, PyAny>,
+        seed: SeedArgument,
+        first: Option<&Bound<'py, PyAny>>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let (first, size) = (self::first(first)?, self::size(size)?);
+        let maps = threads::run(py, || self.tiles.render(seed.0, first, size))??;
+        self.layout.python(py, maps)
+    }
+}
+
+/// The ranks of numbers, from 0 to 1: what is below `x` covers the part `x` of the area.
+///
+/// As the tile of `blend` it lets weights be areas.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> float(dp.rank_equalize([[5.0, 1.0], [2.0, 9.0]]).mean())
+/// 0.5
+#[pyfunction]
+pub(crate) fn rank_equalize<'py>(
+    py: Python<'py>,
+    values: &Bound<'py, PyAny>,
+) -> Result<Bound<'py, PyAny>> {
+    let values = numbers("values", values)?;
+    let ranks = threads::run(py, || dapple::tile::rank_equalize(&values))??;
+    arrays::numbers(py, ranks)
+}

@@ -1,0 +1,188 @@
+"""Shards in a store: whole or not there, and baked once."""
+
+from __future__ import annotations
+
+import json
+import os
+import pickle
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import dapple_textures as dp
+
+pytest.importorskip("zarr")
+
+from dapple_textures import jobs  # noqa: E402
+
+RECIPE = dp.Recipe.builtin("flagstone")
+SHAPE = (200, 300)
+PLANES = ["height", "normal", "metallic"]
+
+
+@pytest.fixture(scope="module")
+def whole():
+    return RECIPE.plan().bake(SHAPE, PLANES)
+
+
+def assert_whole(job, whole):
+    assert job.missing() == []
+    for plane in job.planes:
+        assert np.array_equal(job.array(plane)[:], whole[plane]), plane
+
+
+@pytest.mark.parametrize("chunk", [None, 32])
+def test_shards_in_any_order_make_the_whole(tmp_path, whole, chunk):
+    job = jobs.create(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=64, chunk=chunk)
+    assert len(job) == 20 and job.missing() == list(range(20))
+    assert job.array("normal").shape == (200, 300, 3)
+    for index in np.random.default_rng(1).permutation(20):
+        record = job.bake(int(index))
+        assert list(record.hashes) == PLANES
+    assert_whole(job, whole)
+    assert list(job.bake_all([3, 19])) == [jobs.Record(3, {}), jobs.Record(19, {})]
+
+
+def test_a_job_is_resumed_where_a_plane_is_missing(tmp_path, whole):
+    place = str(tmp_path / "a.zarr")
+    job = jobs.create(RECIPE, SHAPE, PLANES, place, shard=100)
+    first = list(job.bake_all())
+    # As if a machine died between the planes of a shard: a metallic of 0 is a shard like others.
+    os.remove(tmp_path / "a.zarr/metallic/c/1/1")
+    shutil.rmtree(tmp_path / "a.zarr/normal/c/0")
+    (tmp_path / "a.zarr/height/c/0/2.partial").write_bytes(b"half of a shard")
+    again = jobs.create(RECIPE, SHAPE, PLANES, place, shard=100)
+    assert again.missing() == [0, 1, 2, 4]
+    records = {record.index: record.hashes for record in again.bake_all()}
+    assert {index: list(hashes) for index, hashes in records.items()} == {
+        0: ["normal"], 1: ["normal"], 2: ["normal"], 4: ["metallic"]
+    }
+    for index, hashes in records.items():
+        assert hashes.items() <= first[index].hashes.items()
+    assert_whole(again, whole)
+
+
+def test_another_job_in_the_same_place_is_refused(tmp_path):
+    place = str(tmp_path / "a.zarr")
+    job = jobs.create(RECIPE, SHAPE, PLANES, place, shard=64)
+    for arguments, options in [
+        ((RECIPE.with_seed(1), SHAPE, PLANES), {"shard": 64}),
+        ((RECIPE, (200, 301), PLANES), {"shard": 64}),
+        ((RECIPE, SHAPE, ["height"]), {"shard": 64}),
+        ((RECIPE, SHAPE, PLANES), {"shard": 65}),
+    ]:
+        with pytest.raises(dp.DappleError) as caught:
+            jobs.create(*arguments, place, **options)
+        assert caught.value.kind == "store"
+    assert jobs.Job(place).hash == job.hash
+    with pytest.raises(dp.DappleError, match="holds no job"):
+        import zarr
+
+        zarr.open_group(str(tmp_path / "b.zarr"), mode="a")
+        jobs.Job(str(tmp_path / "b.zarr"))
+
+
+def test_another_version_is_refused(tmp_path):
+    place = tmp_path / "a.zarr"
+    jobs.create(RECIPE, SHAPE, PLANES, str(place))
+    text = (place / "zarr.json").read_text()
+    (place / "zarr.json").write_text(text.replace(f'"version": "{dp.__version__}"', '"version": "0.0.1"'))
+    with pytest.raises(dp.DappleError) as caught:
+        jobs.Job(str(place))
+    assert caught.value.kind == "version" and "0.0.1" in str(caught.value)
+
+
+def test_a_recipe_that_sees_the_whole_tile_is_refused_before_anything_is_written(tmp_path):
+    with pytest.raises(dp.DappleError) as caught:
+        jobs.create(dp.Recipe.builtin("stone-and-grass"), 100, "height", str(tmp_path / "a.zarr"))
+    assert caught.value.kind == "global" and "image" in caught.value.hint
+    assert not list(tmp_path.iterdir())
+
+
+def test_loops_in_time_and_volumes(tmp_path):
+    moving = dp.Recipe({"dapple": 1, "extent": [4, 4], "nodes": {"a": {"worley": {"motion": {"cells": 1}}}}, "material": {"height": "a"}})
+    job = jobs.create(moving, (5, 40, 60), "height", str(tmp_path / "loop.zarr"), shard=32)
+    assert job.shard == (1, 32, 32) and len(job) == 20
+    assert len(list(job.bake_all())) == 20
+    for frame in range(5):
+        assert np.array_equal(job.array("height")[frame], moving.plan(time=frame / 5).bake((40, 60))["height"])
+    cells = dp.worley(seed=7, dims=3)
+    job = jobs.create(cells, (20, 30, 40), "value", str(tmp_path / "cells.zarr"), shard=(8, 16, 16), extent=(4, 3, 2), origin=1)
+    list(job.bake_all())
+    assert np.array_equal(job.array("value")[:], cells.render((20, 30, 40), extent=(4, 3, 2), origin=(1, 1, 1)))
+    assert job.array("value").metadata.dimension_names == ("z", "y", "x")
+
+
+def test_a_job_holds_the_images_of_its_recipe(tmp_path):
+    image = np.random.default_rng(1).random((16, 24), np.float32)
+    recipe = dp.Recipe({"dapple": 1, "nodes": {"a": {"image": {"file": "a.png"}}}, "material": {"height": "a"}})
+    plan = recipe.plan(images={"a.png": image})
+    job = pickle.loads(pickle.dumps(jobs.create(plan, 64, "height", str(tmp_path / "a.zarr"), shard=32)))
+    list(job.bake_all())
+    assert np.array_equal(job.array("height")[:], plan.bake(64)["height"])
+
+
+def test_parts_share_all_shards(tmp_path):
+    job = jobs.create(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=64)
+    parts = [index for number in range(3) for index in job.part(number, 3)]
+    assert sorted(parts) == list(range(20))
+    for number, count in [(3, 3), (-1, 3), (0, 0)]:
+        with pytest.raises(dp.DappleError):
+            job.part(number, count)
+    for index in (-1, 20):
+        with pytest.raises(dp.DappleError, match="from 0 to 19"):
+            job.bake(index)
+
+
+@pytest.mark.parametrize(
+    ("options", "kind"),
+    [
+        ({"shard": 0}, "shape"),
+        ({"shard": (1, 2, 3)}, "count"),
+        ({"shard": 64, "chunk": 48}, "shape"),
+        ({"extent": 2.0}, "conflict"),
+        ({"planes": ["hieght"]}, "name"),
+        ({"planes": []}, "planes"),
+        ({"planes": ["height", "height"]}, "planes"),
+    ],
+)
+def test_a_job_is_refused_before_anything_is_written(tmp_path, options, kind):
+    planes = options.pop("planes", PLANES)
+    with pytest.raises(dp.DappleError) as caught:
+        jobs.create(RECIPE, SHAPE, planes, str(tmp_path / "a.zarr"), **options)
+    assert caught.value.kind == kind
+
+
+def run(*arguments):
+    command = [sys.executable, "-m", "dapple_textures.jobs", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+def test_the_command_bakes_in_parts(tmp_path, whole):
+    (tmp_path / "stones.toml").write_text(RECIPE.to_toml())
+    place = tmp_path / "a.zarr"
+    made = run("create", place, tmp_path / "stones.toml", "--size", "300x200", "--maps", ",".join(PLANES), "--shard", 64)
+    assert made.returncode == 0, made.stderr
+    assert "20 of 20 shards are missing" in made.stdout
+    processes = [run("bake", place, "--part", f"{part}/2") for part in range(2)]
+    assert [process.returncode for process in processes] == [0, 0]
+    assert sum(process.stdout.count("baked") for process in processes) == 20
+    assert "0 of 20 shards are missing" in run("status", place).stdout
+    assert_whole(jobs.Job(str(place)), whole)
+    assert run("bake", place, "--part", "0/2").stdout.count("was there") == 10
+
+
+def test_openjd_runs_the_shards(tmp_path, whole):
+    openjd = shutil.which("openjd", path=os.pathsep.join([os.path.dirname(sys.executable), os.environ.get("PATH", "")]))
+    if openjd is None:
+        pytest.skip("openjd-cli is not installed")
+    job = jobs.create(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=100)
+    template = tmp_path / "job.template.json"
+    template.write_text(json.dumps(job.openjd(parts=4, python=sys.executable)))
+    for arguments in (["check", template], ["run", template]):
+        done = subprocess.run([openjd, *map(str, arguments)], capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert_whole(job, whole)

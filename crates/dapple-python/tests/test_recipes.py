@@ -1,0 +1,170 @@
+"""Recipes: data in, maps out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import dapple_textures as dp
+
+DATA = {
+    "dapple": 1,
+    "seed": 7,
+    "extent": [8, 8],
+    "nodes": {
+        "joint": {"worley": {"value": "f2_minus_f1"}},
+        "stones": {"levels": {"input": "joint", "from": [0.04, 0.4]}},
+    },
+    "material": {"height": "stones", "relief": 0.3, "albedo": "#886644"},
+}
+
+
+def changed(**changes):
+    return {**DATA, **changes}
+
+
+def test_a_recipe_is_the_same_from_data_and_from_text():
+    recipe = dp.Recipe(DATA)
+    assert recipe == dp.Recipe.from_toml(recipe.to_toml()) == dp.Recipe.from_json(recipe.to_json())
+    assert dp.Recipe(recipe.to_dict()) == recipe
+    assert (recipe.seed, recipe.extent, recipe.image_files) == (7, (8.0, 8.0), [])
+    other = recipe.with_seed(np.uint64(2**63))
+    assert other.seed == 2**63 and other != recipe and other.hash != recipe.hash
+    numbers = changed(extent=np.array([8.0, 8.0]), seed=np.int64(7))
+    assert dp.Recipe(numbers) == recipe
+
+
+@pytest.mark.parametrize("name", dp.Recipe.builtin_names())
+def test_all_maps_of_the_builtin_recipes_in_windows(name):
+    plan = dp.Recipe.builtin(name).plan()
+    whole = plan.bake((64, 96), dp.map_names())
+    part = plan.bake((64, 96), dp.map_names(), window=np.s_[10:31, 50:96])
+    assert list(whole) == dp.map_names() == list(plan.map_info)
+    for kind, info in plan.map_info.items():
+        assert whole[kind].shape == ((64, 96, 3) if info.channels == 3 else (64, 96))
+        assert np.isfinite(whole[kind]).all()
+        assert np.array_equal(part[kind], whole[kind][10:31, 50:96])
+    lengths = np.linalg.norm(whole["normal"], axis=-1)
+    # Each part is rounded to 24 bits.
+    assert np.abs(lengths - 1).max() < 1e-6
+    assert np.array_equal(whole["orm"][..., 0], whole["ao"])
+
+
+def test_a_large_bake_is_joined_from_bands():
+    plan = dp.Recipe(DATA).plan()
+    tall = plan.bake((3000, 700), ["height", "albedo"])
+    for rows in (slice(0, 10), slice(1490, 1510), slice(2990, 3000)):
+        part = plan.bake((3000, 700), ["height", "albedo"], window=(rows, slice(0, 700)))
+        assert all(np.array_equal(part[kind], tall[kind][rows]) for kind in tall)
+
+
+def test_the_height_is_a_field():
+    plan = dp.Recipe(DATA).plan()
+    maps = plan.bake(128, ["height"])
+    assert np.array_equal(plan.field().render(128, extent=8), maps["height"])
+    assert np.array_equal(plan.field("stones").render(128, extent=8), maps["height"])
+    with pytest.raises(dp.DappleError) as caught:
+        plan.field("stnes")
+    assert (caught.value.kind, caught.value.hint) == ("unknown_node", "stones")
+
+
+def test_images_are_arrays():
+    data = changed(nodes={"photo": {"image": {"file": "photo.png"}}}, material={"albedo": "photo"}, extent=[1, 1])
+    colors = np.random.default_rng(3).random((32, 32, 3)).astype(np.float32)
+    albedo = dp.Recipe(data).plan(images={"photo.png": colors}).bake(32, ["albedo"])["albedo"]
+    assert np.array_equal(albedo, colors)
+    turned = dp.Recipe(data).plan(images={"photo.png": colors.transpose(1, 0, 2)}).bake(32, ["albedo"])
+    assert np.array_equal(turned["albedo"], colors.transpose(1, 0, 2))
+    with pytest.raises(dp.DappleError) as caught:
+        dp.Recipe(data).plan()
+    assert (caught.value.kind, caught.value.node) == ("no_image", "photo")
+    with pytest.raises(dp.DappleError, match="channels"):
+        dp.Recipe(data).plan(images={"photo.png": np.zeros((4, 4, 5), np.float32)})
+    with pytest.raises(dp.DappleError, match="no images"):
+        dp.Recipe(data).plan(images={"photo.png": colors}).field("photo")
+
+
+def test_time_goes_round():
+    nodes = {"a": {"worley": {"motion": {"cells": 2}}}}
+    recipe = dp.Recipe(changed(nodes=nodes, material={"height": "a"}))
+    first, quarter, last = (recipe.plan(time=time).bake(64)["height"] for time in (0.0, 0.25, 1.0))
+    assert np.array_equal(first, last)
+    assert not np.array_equal(first, quarter)
+
+
+def test_a_dataset_has_the_coordinates_of_its_pixels():
+    pytest.importorskip("xarray")
+    plan = dp.Recipe(DATA).plan()
+    whole = plan.bake(64, ["height", "normal"], as_xarray=True)
+    part = plan.bake(64, ["height", "normal"], window=np.s_[8:16, 4:32], as_xarray=True)
+    assert whole.normal.dims == ("y", "x", "channel")
+    assert whole.x.values[0] == 8 / 128
+    assert part.equals(whole.isel(y=slice(8, 16), x=slice(4, 32)))
+
+
+@pytest.mark.parametrize(
+    ("data", "kind", "node", "words"),
+    [
+        (changed(dapple=99), "schema", None, "99"),
+        (changed(nodes={"a": {"wurley": {}}}), "text", None, "did you mean `worley`"),
+        (changed(nodes={"a": {"worley": {"value": "f9"}}}), "text", None, 'at `"value": "f9"`'),
+        (changed(nodes={"a": {"worley": {"frequency": -1}}}), "range", "a", "frequency"),
+        (changed(material={"height": "none"}), "unknown_node", "material", "none"),
+        (changed(nodes={"a": {"add": {"first": "a", "second": 1}}}), "text", None, "at `"),
+        (changed(nodes={"a": {"mix": {"from": "a", "to": 1, "by": 0.5}}}), "cycle", None, "a"),
+    ],
+)
+def test_mistakes_name_their_place(data, kind, node, words):
+    with pytest.raises(dp.DappleError) as caught:
+        dp.Recipe(data).plan()
+    assert (caught.value.kind, caught.value.node) == (kind, node), caught.value
+    assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "data", [None, 7, "dapple = 1", [1], {1: 2}, changed(nodes={"a": {"worley": object()}}), changed(seed=float("inf"))]
+)
+def test_what_is_no_recipe_is_refused(data):
+    with pytest.raises((dp.DappleError, TypeError)):
+        dp.Recipe(data)
+
+
+def test_data_without_an_end_is_refused():
+    data = changed()
+    data["nodes"] = data
+    with pytest.raises(dp.DappleError, match="nested"):
+        dp.Recipe(data)
+
+
+def test_a_bake_is_refused_before_it_begins():
+    plan = dp.Recipe(DATA).plan()
+    for arguments, words in [
+        ((64, ["hieght"]), "one of height"),
+        ((0,), "at least 1"),
+        (((1, 2, 3),), "2 numbers"),
+    ]:
+        with pytest.raises(dp.DappleError, match=words):
+            plan.bake(*arguments)
+    with pytest.raises(dp.DappleError, match="region"):
+        plan.bake(64, window=np.s_[0:65, 0:3])
+    with pytest.raises(dp.DappleError, match="before the picture"):
+        plan.bake(64, window=np.s_[-1:5, 0:3])
+    whole = dp.Recipe.builtin("stone-and-grass").plan()
+    assert not whole.is_local and plan.is_local
+    with pytest.raises(dp.DappleError) as caught:
+        whole.check_local()
+    assert caught.value.kind == "global" and "image" in caught.value.hint
+
+
+def test_shards_cover_every_pixel_once():
+    shards = dp.shards((100, 70), (32, 64))
+    assert shards.grid == (4, 2) and len(shards) == 8
+    covered = np.zeros((100, 70), int)
+    for (row, column), (rows, columns) in shards:
+        covered[row : row + rows, column : column + columns] += 1
+    assert (covered == 1).all()
+    assert shards[-1] == shards[7] == ((96, 64), (4, 6))
+    for index in (8, -9):
+        with pytest.raises(IndexError):
+            shards[index]
+    assert len(dp.shards(2_000_000, 64)) == 31250**2
