@@ -17,6 +17,7 @@ use numpy::{Element, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
+use rayon::prelude::*;
 use serde_json::Value;
 
 /// What lies past the edges: a name for both axes, or one for each, x first.
@@ -341,12 +342,15 @@ pub(crate) fn linear_from_srgb<'py>(
 }
 
 /// An array of what each element of another becomes.
-fn codes<'py, T: Element + Copy + Sync, U: Element>(
+fn codes<'py, T: Element + Copy + Sync, U: Element + Send>(
     py: Python<'py>,
     array: &numpy::PyReadonlyArrayDyn<'py, T>,
     code: fn(T) -> U,
 ) -> Result<Bound<'py, PyAny>> {
     let view = array.as_array();
-    let made: Vec<U> = py.detach(|| view.iter().map(|&value| code(value)).collect());
+    let made: Vec<U> = threads::run(py, || match view.to_slice() {
+        Some(values) => values.par_iter().map(|&value| code(value)).collect(),
+        None => view.iter().map(|&value| code(value)).collect(),
+    })?;
     arrays::array(py, made, array.shape())
 }

@@ -266,7 +266,6 @@ pub(crate) struct Model {
     text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), atlas=\"area\", \
     padding=None, crease=30.0, axes=None, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, paper=False, \
     progress=None)")]
-#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
 pub(crate) fn synthesize_on<'py>(
     py: Python<'py>,
     mesh: &Bound<'py, PyAny>,

@@ -105,7 +105,6 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
     evenness = None, paper = false, sources = false, progress = None),
     text_signature = "(exemplar, size, *, seed=0, wrap=False, edges=\"cut\", levels=3, coherence=None, evenness=None, \
     paper=False, sources=False, progress=None)")]
-#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
 pub(crate) fn synthesize<'py>(
     py: Python<'py>,
     exemplar: &Bound<'py, PyAny>,
