@@ -14,6 +14,7 @@ mod generators;
 mod grid;
 mod images;
 mod maps;
+mod meshes;
 mod models;
 mod pictures;
 mod seed;
@@ -47,7 +48,9 @@ mod _native {
         srgb_from_linear,
     };
     #[pymodule_export]
-    use crate::models::{Model, mesh_report, read_model, synthesize_on};
+    use crate::meshes::{mesh_report, read_model};
+    #[pymodule_export]
+    use crate::models::{Model, synthesize_on};
     #[pymodule_export]
     use crate::synthesis::synthesize;
     #[pymodule_export]
