@@ -13,7 +13,7 @@ from dask import delayed
 from distributed import Client, KilledWorker, Worker, WorkerPlugin, as_completed, get_client
 
 from . import _sources, jobs
-from ._native import Field, Plan, Recipe, set_threads
+from ._native import ColorField, Field, Plan, Recipe, set_threads
 from ._types import refusal
 
 #: Shards that are in the hands of the scheduler for each thread of the workers: enough that none waits, and few enough
@@ -25,7 +25,7 @@ _ATTEMPTS = 10
 
 
 def bake(
-    what: Recipe | Plan | Field,
+    what: Recipe | Plan | Field | ColorField,
     shape: int | Sequence[int],
     plane: str | None = None,
     *,
@@ -85,7 +85,7 @@ class Report:
 
 
 def bake_to_zarr(
-    what: Recipe | Plan | Field,
+    what: Recipe | Plan | Field | ColorField,
     shape: int | Sequence[int],
     planes: str | Sequence[str],
     store: Any,
