@@ -13,7 +13,7 @@ from dask import delayed
 from distributed import Client, KilledWorker, as_completed, get_client
 
 from . import _sources, _workers, jobs
-from ._native import Field, Plan, Recipe
+from ._native import ColorField, Field, Plan, Recipe
 from ._types import refusal
 
 #: Shards that are in the hands of the scheduler for each thread of the workers: enough that none waits, and few enough
@@ -25,7 +25,7 @@ _ATTEMPTS = 10
 
 
 def bake(
-    what: Recipe | Plan | Field,
+    what: Recipe | Plan | Field | ColorField,
     shape: int | Sequence[int],
     plane: str | None = None,
     *,
@@ -77,7 +77,7 @@ class Report:
 
 
 def bake_to_zarr(
-    what: Recipe | Plan | Field,
+    what: Recipe | Plan | Field | ColorField,
     shape: int | Sequence[int],
     planes: str | Sequence[str],
     store: Any,

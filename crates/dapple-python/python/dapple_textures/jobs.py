@@ -28,7 +28,7 @@ from zarr.core.sync import sync
 from zarr.storage import StorePath
 
 from . import _sources
-from ._native import Field, Plan, Recipe, __version__
+from ._native import ColorField, Field, Plan, Recipe, __version__
 from ._types import refusal
 
 #: The attribute of the store that holds the job.
@@ -206,7 +206,7 @@ class Job:
 
 
 def create(
-    what: Recipe | Plan | Field,
+    what: Recipe | Plan | Field | ColorField,
     shape: int | Sequence[int],
     planes: str | Sequence[str],
     store: Any,
