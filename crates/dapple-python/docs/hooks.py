@@ -69,9 +69,8 @@ def run(page: Path, folder: Path) -> Run:
 
 def _run_block(block: re.Match[str], text: str, page: Path, names: dict[str, Any]) -> str:
     if (block["kind"] or "").startswith("{"):
-        path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
         done = subprocess.run(
-            ["bash", "-euo", "pipefail", "-c", block["code"]], env=os.environ | {"PATH": path}, text=True, capture_output=True
+            ["bash", "-euo", "pipefail", "-c", block["code"]], env=_environment(), text=True, capture_output=True
         )
         if done.returncode:
             raise RuntimeError(f"{page.name}: {block['code']}\n{done.stdout}{done.stderr}")
@@ -83,6 +82,14 @@ def _run_block(block: re.Match[str], text: str, page: Path, names: dict[str, Any
     with contextlib.redirect_stdout(printed):
         exec(code, names)
     return printed.getvalue()
+
+
+def _environment() -> dict[str, str]:
+    """The environment of commands: those of this Python, with the package that it has loaded."""
+    import dapple_textures
+
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    return os.environ | {"PATH": path, "PYTHONPATH": str(Path(dapple_textures.__file__).parents[1])}
 
 
 def with_output(text: str, printed: list[str]) -> str:
