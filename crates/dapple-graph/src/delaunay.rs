@@ -18,6 +18,9 @@ mod order;
 mod patch;
 mod star;
 mod tiles;
+mod triangles;
+
+pub use triangles::{Triangle, delaunay_triangles};
 
 use crate::grid::{LazyGrid, TooThin};
 use crate::lattice::{Lattice, check_distinct};

@@ -4,10 +4,14 @@
 //! the order of the library, and is copied otherwise.
 
 use crate::error::{Error, Result};
+use crate::threads;
 use dapple::raster::glam::DVec2;
 use dapple::raster::{Raster, RasterView};
 use numpy::ndarray::{ArrayD, IxDyn};
-use numpy::{AllowTypeChange, Element, IntoPyArray, PyArrayLike, PyArrayLikeDyn};
+use numpy::{
+    AllowTypeChange, Element, IntoPyArray, PyArrayDyn, PyArrayLike, PyArrayLikeDyn, PyArrayMethods,
+    PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 
 /// Values as an array of a shape, without a copy.
@@ -19,6 +23,39 @@ pub(crate) fn array<'py, T: Element>(
     let array = ArrayD::from_shape_vec(IxDyn(shape), values);
     let array = array.map_err(|error| Error::new("shape", error.to_string()))?;
     Ok(array.into_pyarray(py).into_any())
+}
+
+/// An array of a shape whose values are written by `fill`: a new one, or `out`.
+pub(crate) fn filled<'py>(
+    py: Python<'py>,
+    shape: &[usize],
+    out: Option<Bound<'py, PyArrayDyn<f32>>>,
+    fill: impl FnOnce(&mut [f32]) -> Result<()> + Send,
+) -> Result<Bound<'py, PyAny>> {
+    let Some(out) = out else {
+        let n_values = shape.iter().product();
+        let values = threads::run(py, || -> Result<Vec<f32>> {
+            let mut values = vec![0.0; n_values];
+            fill(&mut values)?;
+            Ok(values)
+        })??;
+        return array(py, values, shape);
+    };
+    let mut memory = out.try_readwrite().map_err(PyErr::from)?;
+    if memory.as_array().shape() != shape {
+        let message = format!(
+            "`out` has the shape {:?}, but {shape:?} is needed",
+            memory.as_array().shape(),
+        );
+        return Err(Error::new("shape", message));
+    }
+    let is_ordered = memory.is_c_contiguous();
+    let values = memory.as_slice_mut().ok().filter(|_| is_ordered);
+    let values =
+        values.ok_or_else(|| Error::new("order", "`out` is not in C order without gaps"))?;
+    threads::run(py, || fill(values))??;
+    drop(memory);
+    Ok(out.into_any())
 }
 
 /// A raster of numbers as an array (rows, columns).
@@ -141,4 +178,14 @@ pub(crate) fn features<'py>(
         .import("dapple_textures._types")?
         .getattr("Features")?
         .call1(arrays)?)
+}
+
+/// Parts as a tuple with names: a class of `dapple_textures._types`.
+pub(crate) fn result<'py>(
+    py: Python<'py>,
+    class: &str,
+    parts: impl pyo3::call::PyCallArgs<'py>,
+) -> Result<Bound<'py, PyAny>> {
+    let class = py.import("dapple_textures._types")?.getattr(class)?;
+    Ok(class.call1(parts)?)
 }

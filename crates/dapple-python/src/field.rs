@@ -1,15 +1,15 @@
 //! Fields: values at every position.
 
 use crate::arrays::{self, Positions};
+use crate::color_field;
 use crate::error::{Error, Result};
 use crate::function::{Function, Made, position};
 use crate::generators::Worley;
 use crate::grid::{Grid, GridArguments, pair};
 use crate::threads;
 use dapple::raster::{Field as _, FractalShape, PairOperation, RasterViewMut};
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::PyArrayDyn;
 use pyo3::prelude::*;
-use sha2::{Digest, Sha256};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A function with a value at every position: of the plane, of space, or of space and time.
@@ -113,8 +113,7 @@ impl Field {
     }
 
     fn description(&self) -> Result<String> {
-        serde_json::to_string(&self.made)
-            .map_err(|error| Error::new("description", error.to_string()))
+        self.made.description()
     }
 }
 
@@ -132,7 +131,7 @@ pub(crate) fn _field_from_description(py: Python<'_>, description: &str) -> Resu
     let made = serde_json::from_str(description);
     match made.map_err(|error| Error::new("description", error.to_string()))? {
         Made::Worley(made) => Worley::from_made(py, made),
-        made => Ok(Py::new(py, Field::new(made)?)?.into_any()),
+        made => color_field::object(py, made),
     }
 }
 
@@ -185,31 +184,8 @@ impl Field {
             },
             &self.periods(),
         )?;
-        let n_values = grid.n_values()?;
-        let Some(out) = out else {
-            let values = threads::run(py, || -> Result<Vec<f32>> {
-                let mut values = vec![0.0; n_values];
-                self.fill(&grid, &mut values)?;
-                Ok(values)
-            })??;
-            return arrays::array(py, values, &grid.shape());
-        };
-        let mut memory = out.try_readwrite().map_err(PyErr::from)?;
-        if memory.as_array().shape() != grid.shape() {
-            let message = format!(
-                "`out` has the shape {:?}, but {:?} is needed",
-                memory.as_array().shape(),
-                grid.shape()
-            );
-            return Err(Error::new("shape", message));
-        }
-        let is_ordered = memory.is_c_contiguous();
-        let values = memory.as_slice_mut().ok().filter(|_| is_ordered);
-        let values =
-            values.ok_or_else(|| Error::new("order", "`out` is not in C order without gaps"))?;
-        threads::run(py, || self.fill(&grid, values))??;
-        drop(memory);
-        Ok(out.into_any())
+        grid.n_values()?;
+        arrays::filled(py, &grid.shape(), out, |values| self.fill(&grid, values))
     }
 
     /// The values at positions of the shape (…, ndim), x first: float32 of the shape (…).
@@ -404,11 +380,10 @@ impl Field {
 
     /// The name by which Dask knows what is computed from the field: the same in all processes.
     fn __dask_tokenize__(&self) -> Result<String> {
-        let hash = Sha256::digest(self.description()?);
-        Ok(hash.iter().map(|byte| format!("{byte:02x}")).collect())
+        self.made.token()
     }
 
     fn __repr__(&self) -> Result<String> {
-        Ok(format!("Field({})", self.description()?))
+        Ok(format!("Field({})", self.made.summary()?))
     }
 }

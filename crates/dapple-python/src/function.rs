@@ -4,12 +4,14 @@
 
 use crate::error::{Error, Result};
 use crate::generators::{CellsMade, GradientMade, WaveletMade};
+use crate::pups::{PupsMade, Shared, TextureMade};
 use crate::recipe::NodeMade;
 use dapple::raster::glam::DVec2;
 use dapple::raster::{
     Field, FieldExt, Fractal, FractalShape, PairOperation, RasterError, RasterViewMut, Window,
 };
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use std::sync::Arc;
 
 /// A function of the plane, or of more axes.
@@ -59,6 +61,10 @@ pub(crate) enum Made {
     GradientNoise(GradientMade),
     /// Wavelet noise.
     WaveletNoise(WaveletMade),
+    /// Values of control points.
+    Pups(Shared<PupsMade>),
+    /// A texture of control points, by its name.
+    Texture(Shared<TextureMade>),
     /// A node of a recipe.
     Node(NodeMade),
     /// A plane through a function of more axes.
@@ -119,6 +125,8 @@ impl Made {
             Self::Worley(made) => return made.build(),
             Self::GradientNoise(made) => return made.build(),
             Self::WaveletNoise(made) => return made.build(),
+            Self::Pups(made) => made.get()?.numbers()?,
+            Self::Texture(made) => made.get()?.numbers()?,
             Self::Node(made) => return made.build(),
             Self::Slice { field, rest } => match field.build()? {
                 Function::Space(volume) if volume.period().len() == rest.len() + 2 => {
@@ -167,6 +175,28 @@ impl Made {
             }
         };
         Ok(Function::Plane(field))
+    }
+
+    /// The description as text.
+    pub(crate) fn description(&self) -> Result<String> {
+        serde_json::to_string(self).map_err(|error| Error::new("description", error.to_string()))
+    }
+
+    /// The beginning of the description, for people.
+    pub(crate) fn summary(&self) -> Result<String> {
+        /// The most letters that are of use.
+        const MOST: usize = 500;
+        let description = self.description()?;
+        Ok(match description.char_indices().nth(MOST) {
+            None => description,
+            Some((end, _)) => format!("{}…", &description[..end]),
+        })
+    }
+
+    /// What stands for the description: the same in all processes, and another one for each description.
+    pub(crate) fn token(&self) -> Result<String> {
+        let hash = Sha256::digest(self.description()?);
+        Ok(hash.iter().map(|byte| format!("{byte:02x}")).collect())
     }
 
     /// The function of the plane that this describes.

@@ -6,6 +6,7 @@
 mod arrays;
 mod bands;
 mod blending;
+mod color_field;
 mod data;
 mod error;
 mod field;
@@ -16,6 +17,8 @@ mod images;
 mod maps;
 mod models;
 mod pictures;
+mod points;
+mod pups;
 mod recipe;
 mod seed;
 mod synthesis;
@@ -35,6 +38,8 @@ mod _native {
     #[pymodule_export]
     use crate::blending::{blend, blend_map};
     #[pymodule_export]
+    use crate::color_field::ColorField;
+    #[pymodule_export]
     use crate::error::DappleError;
     #[pymodule_export]
     use crate::field::{_field_from_description, Field, constant};
@@ -49,6 +54,17 @@ mod _native {
     };
     #[pymodule_export]
     use crate::models::{Model, mesh_report, read_model, synthesize_on};
+    #[pymodule_export]
+    use crate::points::{
+        _graph_from_description, Domain, Graph, Points, delaunay, extend_poisson_disk, gabriel,
+        jittered_grid, k_nearest, nested_poisson_disk, poisson_disk, spectrum, white_noise, yao,
+    };
+    #[pymodule_export]
+    use crate::pups::{
+        _partition_from_description, _texture, _texture_defaults, Partition, angle_orientations,
+        biased_labels, grouped_labels, outward_orientations, pups, random_labels,
+        random_orientations, random_values, reference_labels,
+    };
     #[pymodule_export]
     use crate::recipe::{_plan_from_parts, Plan, Recipe, ShardList, map_names, shards};
     #[pymodule_export]

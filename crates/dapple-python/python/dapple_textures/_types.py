@@ -21,6 +21,50 @@ class Features(NamedTuple):
     id: npt.NDArray[np.uint64] | None
 
 
+class EmptyCircle(NamedTuple):
+    """A circle without a point inside of it."""
+
+    #: Its center, (x, y), in the domain.
+    center: tuple[float, float]
+    #: The distance from the center to the nearest points.
+    radius: float
+
+
+class Spectrum(NamedTuple):
+    """The power spectrum of points, by rings of equal frequency, the lowest first; arrays of one length."""
+
+    #: The middle of each ring, in units of sqrt(n / area).
+    frequency: npt.NDArray[np.float64]
+    #: The mean power of the frequencies in the ring: 1 for white noise.
+    power: npt.NDArray[np.float64]
+    #: The variance of the power over what it is without a preferred direction, which is 1.
+    anisotropy: npt.NDArray[np.float64]
+    #: How many frequencies the ring holds.
+    n_frequencies: npt.NDArray[np.uint32]
+
+
+class Axes(NamedTuple):
+    """The neighbors of points in compressed rows: those of point i are `indices[indptr[i]:indptr[i + 1]]`."""
+
+    #: Where the neighbors of each point begin, and at the end where the last ones end.
+    indptr: npt.NDArray[np.int64]
+    #: The neighbors.
+    indices: npt.NDArray[np.int64]
+    #: The ways to them, (m, 2), x first.
+    vectors: npt.NDArray[np.float64]
+
+
+class Weights(NamedTuple):
+    """The weights of control points at positions, in compressed rows."""
+
+    #: Where the weights of each position begin, and at the end where the last ones end.
+    indptr: npt.NDArray[np.int64]
+    #: The control points.
+    indices: npt.NDArray[np.int64]
+    #: Their weights, which sum to 1 at each position.
+    weights: npt.NDArray[np.float32]
+
+
 class MapInfo(NamedTuple):
     """What a map of a material holds."""
 

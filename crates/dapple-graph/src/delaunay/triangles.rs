@@ -1,0 +1,179 @@
+//! The triangles of a Delaunay graph: its faces, walked around from axis to axis.
+//!
+//! Every face but the outer one lies in an empty circle with all its corners on it. Where there are more than three of them,
+//! the face is a polygon, which is cut into a fan.
+
+use super::delaunay;
+use crate::angle::turn;
+use crate::{Axis, Graph, GraphError};
+use dapple_points::{PointIdx, PointSet};
+use glam::DVec2;
+
+/// A triangle of points, or of images of points on a domain that wraps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle {
+    /// The points at its corners, in the turn from x to y.
+    pub corners: [PointIdx; 3],
+    /// From the first corner to those images of the second and the third, in the units of the positions.
+    pub sides: [DVec2; 2],
+}
+
+/// The triangles of the Delaunay triangulation: their circumcircles hold no other point, counting all images.
+///
+/// On a torus there are twice as many as points, and they cover it once. Where more than three points lie on an empty
+/// circle, the triangulation is not unique: the polygon of these points is cut by the diagonals from one of them.
+///
+/// # Errors
+///
+/// Those of [`delaunay`].
+///
+/// # Examples
+///
+/// ```
+/// use dapple_graph::{PointSet, delaunay_triangles, glam::DVec2, points::Domain};
+///
+/// let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+/// let positions = square.map(DVec2::from).to_vec();
+/// let points = PointSet::new(Domain::rectangle(DVec2::ZERO, DVec2::ONE), positions)?;
+/// let corners = delaunay_triangles(&points)?.into_iter().map(|triangle| triangle.corners.map(|point| point.0));
+/// assert_eq!(corners.collect::<Vec<_>>(), [[0, 1, 2], [0, 2, 3]]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn delaunay_triangles(points: &PointSet) -> Result<Vec<Triangle>, GraphError> {
+    let graph = delaunay(points)?;
+    let next = next_around_faces(&graph);
+    let mut is_walked = vec![false; graph.n_axes()];
+    let mut triangles = Vec::with_capacity(2 * graph.n_points());
+    let mut face = Vec::new();
+    for first in (0..graph.n_points() as u32).map(PointIdx) {
+        let start = graph.offsets[first.index()] as usize;
+        for index in start..start + graph.axes(first).len() {
+            face.clear();
+            let mut at = index;
+            while !is_walked[at] {
+                is_walked[at] = true;
+                face.push(graph.axes[at]);
+                at = next[at] as usize;
+            }
+            push_fan(&graph, first, &face, &mut triangles);
+        }
+    }
+    Ok(triangles)
+}
+
+/// For each axis the next one around the face that lies beside it in the turn from x to y.
+fn next_around_faces(graph: &Graph) -> Vec<u32> {
+    let next = |from: PointIdx, axis: &Axis| {
+        let row = graph.axes(axis.to);
+        let is_back = |back: &Axis| back.to == from && back.vector == -axis.vector;
+        // The graph is symmetric, so that there is one.
+        let back = row.iter().position(is_back).unwrap_or(0);
+        graph.offsets[axis.to.index()] + ((back + row.len() - 1) % row.len()) as u32
+    };
+    let points = (0..graph.n_points() as u32).map(PointIdx);
+    let axes = points.flat_map(|from| graph.axes(from).iter().map(move |axis| next(from, axis)));
+    axes.collect()
+}
+
+/// Cuts a face into triangles at its first corner, if it is not the outer one.
+fn push_fan(graph: &Graph, first: PointIdx, face: &[Axis], triangles: &mut Vec<Triangle>) {
+    let [a, b, ..] = face else {
+        return;
+    };
+    // All corners of an inner face turn one way; those of the outer face turn the other way, or not at all.
+    let steps = |axis: &Axis| graph.lattice.steps(axis.vector);
+    if turn(steps(a), steps(b)) <= 0.0 {
+        return;
+    }
+    let mut corner = a;
+    let mut side = a.vector;
+    for axis in &face[1..face.len() - 1] {
+        triangles.push(Triangle {
+            corners: [first, corner.to, axis.to],
+            sides: [side, side + axis.vector],
+        });
+        corner = axis;
+        side += axis.vector;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Triangle, delaunay_triangles};
+    use crate::delaunay;
+    use dapple_points::hash::Seed;
+    use dapple_points::{Domain, PointSet, white_noise};
+    use glam::DVec2;
+    use robust::{Coord, incircle};
+
+    fn domain(wrap: [bool; 2]) -> Domain {
+        let torus = Domain::torus(DVec2::new(-1.0, 2.0), DVec2::new(2.0, 1.0));
+        Domain { wrap, ..torus }
+    }
+
+    fn area(triangle: &Triangle) -> f64 {
+        0.5 * triangle.sides[0].perp_dot(triangle.sides[1])
+    }
+
+    #[test]
+    fn triangles_cover_the_torus_once_and_hold_no_other_point() {
+        for n_points in [1, 2, 3, 10, 400] {
+            let points = white_noise(domain([true; 2]), n_points, Seed(5)).unwrap();
+            let triangles = delaunay_triangles(&points).unwrap();
+            assert_eq!(triangles.len(), 2 * points.len());
+            assert!(triangles.iter().all(|triangle| area(triangle) > 0.0));
+            let covered: f64 = triangles.iter().map(area).sum();
+            // A few hundred roundings.
+            assert!((covered - 2.0).abs() < 1e-12, "{covered}");
+            for triangle in triangles.iter().take(50) {
+                let [a, b, c] = triangle.corners.map(|corner| points.position(corner));
+                let [to_b, to_c] = triangle.sides;
+                let wrapped = points.domain().wrap(a + to_b) - b;
+                // Sites are snapped to 2^-50.
+                let whole = (wrapped / points.domain().size).fract().abs();
+                assert!(whole.min_element() < 1e-12, "{triangle:?}");
+                for &other in points
+                    .positions()
+                    .iter()
+                    .filter(|&&p| ![a, b, c].contains(&p))
+                {
+                    let delta = points.domain().delta(a, other);
+                    let coord = |at: DVec2| Coord { x: at.x, y: at.y };
+                    let inside =
+                        incircle(coord(DVec2::ZERO), coord(to_b), coord(to_c), coord(delta));
+                    assert!(inside < 1e-12, "{triangle:?} holds {other}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn triangles_in_the_plane_and_on_a_cylinder_fulfill_eulers_formula() {
+        for wrap in [[false; 2], [true, false], [false, true]] {
+            let points = white_noise(domain(wrap), 300, Seed(6)).unwrap();
+            let triangles = delaunay_triangles(&points).unwrap();
+            let n_edges = delaunay(&points).unwrap().n_axes() / 2;
+            // A disc has V - E + F = 1, a strip around a cylinder 0.
+            let characteristic = usize::from(wrap == [false; 2]);
+            assert_eq!(
+                points.len() + triangles.len(),
+                n_edges + characteristic,
+                "{wrap:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn squares_are_cut_in_two_and_points_on_a_line_have_no_triangles() {
+        let grid: Vec<DVec2> = (0..12)
+            .map(|i| DVec2::new(f64::from(i % 4), f64::from(i / 4)))
+            .collect();
+        let size = DVec2::new(4.0, 3.0);
+        let torus = PointSet::new(Domain::torus(DVec2::ZERO, size), grid.clone()).unwrap();
+        assert_eq!(delaunay_triangles(&torus).unwrap().len(), 24);
+        let plane = PointSet::new(Domain::rectangle(DVec2::ZERO, size), grid.clone()).unwrap();
+        assert_eq!(delaunay_triangles(&plane).unwrap().len(), 12);
+        let line = PointSet::new(Domain::rectangle(DVec2::ZERO, size), grid[..4].to_vec()).unwrap();
+        assert_eq!(delaunay_triangles(&line).unwrap(), []);
+    }
+}

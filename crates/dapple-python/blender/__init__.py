@@ -1,0 +1,170 @@
+"""The panel "dapple": choose a recipe, a size and a seed, and bake it into a material of the active object."""
+
+from pathlib import Path
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, PointerProperty, StringProperty
+from bpy_extras.io_utils import ImportHelper
+
+# Blender shows what a dynamic list returned, so its words have to stay alive.
+_NAMES: list[tuple[str, str, str]] = []
+
+#: Seconds after the last change until a material is baked again.
+_DELAY = 0.3
+
+
+def _builtin(_self, _context):
+    import dapple_textures as dp
+
+    if not _NAMES:
+        _NAMES.extend((name, name.replace("-", " ").title(), "A built-in recipe") for name in dp.Recipe.builtin_names())
+        _NAMES.append(("FILE", "File …", "A recipe of your own, in TOML or JSON"))
+    return _NAMES
+
+
+def _changed(settings, _context):
+    """Bakes again when nothing was changed for a while, if the material is to follow."""
+    if settings.follow and _material_of(bpy.context) is not None:
+        if bpy.app.timers.is_registered(_follow):
+            bpy.app.timers.unregister(_follow)
+        bpy.app.timers.register(_follow, first_interval=_DELAY)
+
+
+def _follow():
+    bpy.ops.dapple.bake()
+
+
+class DappleSettings(bpy.types.PropertyGroup):
+    """What the panel holds."""
+
+    recipe: EnumProperty(name="Recipe", items=_builtin, update=_changed)
+    path: StringProperty(name="File", subtype="FILE_PATH", update=_changed)
+    size: EnumProperty(
+        name="Size",
+        items=[(str(side), f"{side} × {side}", "Pixels of a tile") for side in (256, 512, 1024, 2048, 4096)],
+        default="1024",
+        update=_changed,
+    )
+    # Blender's numbers have 32 bits, and seeds have 64.
+    seed: StringProperty(name="Seed", description="0 to 2^64 - 1; empty: that of the recipe", update=_changed)
+    scale: FloatProperty(name="Copies", description="Copies of the tile across the UV map", default=1.0, min=0.001, update=_changed)
+    displacement: BoolProperty(name="Displacement", description="Move the surface by the height, too", update=_changed)
+    follow: BoolProperty(name="Follow", description="Bake again at every change", default=True)
+
+
+def _plan(settings):
+    """The plan that the panel asks for."""
+    import dapple_textures as dp
+
+    if settings.recipe != "FILE":
+        recipe, folder = dp.Recipe.builtin(settings.recipe), Path()
+    else:
+        path = Path(bpy.path.abspath(settings.path))
+        text = path.read_text(encoding="utf-8")
+        recipe = dp.Recipe.from_json(text) if path.suffix == ".json" else dp.Recipe.from_toml(text)
+        folder = path.parent
+    if settings.seed.strip():
+        recipe = recipe.with_seed(int(settings.seed))
+    return recipe.plan(images={name: dp.read_image(folder / name) for name in recipe.image_files})
+
+
+def _material_of(context):
+    """The material of the active object, if it was baked here."""
+    thing = context.active_object
+    material = thing and thing.active_material
+    return material if material is not None and "dapple_textures" in material else None
+
+
+class DAPPLE_OT_bake(bpy.types.Operator):
+    """Bake the recipe into a material of the active object"""
+
+    bl_idname = "dapple.bake"
+    bl_label = "Bake material"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        thing = context.active_object
+        return thing is not None and hasattr(thing.data, "materials")
+
+    def execute(self, context):
+        from dapple_textures import blender
+
+        settings = context.scene.dapple
+        before = _material_of(context)
+        try:
+            made = blender.material(
+                _plan(settings),
+                int(settings.size),
+                name=before.name if before is not None else None,
+                displacement=settings.displacement,
+                scale=settings.scale,
+            )
+        except (ValueError, OSError) as error:
+            # The last good material stays.
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        thing = context.active_object
+        if thing.active_material is None:
+            thing.data.materials.append(made)
+        else:
+            thing.active_material = made
+        return {"FINISHED"}
+
+
+class DAPPLE_OT_import(bpy.types.Operator, ImportHelper):
+    """Import a model that `dapple synth` or the Python package made, with all its maps"""
+
+    bl_idname = "dapple.import_model"
+    bl_label = "Import model"
+    filename_ext = ".glb"
+    filter_glob: StringProperty(default="*.glb", options={"HIDDEN"})
+
+    def execute(self, _context):
+        from dapple_textures import blender
+
+        try:
+            things = blender.import_model(self.filepath)
+        except (ValueError, OSError, RuntimeError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"{len(things)} objects")
+        return {"FINISHED"}
+
+
+class DAPPLE_PT_panel(bpy.types.Panel):
+    """The panel in the sidebar of the 3D view."""
+
+    bl_idname = "DAPPLE_PT_panel"
+    bl_label = "dapple"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "dapple"
+
+    def draw(self, context):
+        layout, settings = self.layout, context.scene.dapple
+        layout.use_property_split = True
+        layout.prop(settings, "recipe")
+        if settings.recipe == "FILE":
+            layout.prop(settings, "path")
+        for name in ("size", "seed", "scale", "displacement", "follow"):
+            layout.prop(settings, name)
+        layout.operator(DAPPLE_OT_bake.bl_idname, icon="MATERIAL")
+        layout.operator(DAPPLE_OT_import.bl_idname, icon="IMPORT")
+
+
+_CLASSES = (DappleSettings, DAPPLE_OT_bake, DAPPLE_OT_import, DAPPLE_PT_panel)
+
+
+def register():
+    """Adds the panel."""
+    for kind in _CLASSES:
+        bpy.utils.register_class(kind)
+    bpy.types.Scene.dapple = PointerProperty(type=DappleSettings)
+
+
+def unregister():
+    """Takes the panel away."""
+    del bpy.types.Scene.dapple
+    for kind in reversed(_CLASSES):
+        bpy.utils.unregister_class(kind)

@@ -1,0 +1,681 @@
+"""The textures of Caron and Mould, "Partition of Unity Parametrics for Texture Synthesis" (2013), one function each.
+
+The options and their defaults are those of the textures in recipes; a test compares them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Literal, TypeAlias, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from ._native import ColorField, Domain, Field, _texture
+
+__all__ = [
+    "cells",
+    "cellular_noise",
+    "color_noise",
+    "control_points",
+    "cow",
+    "cow_progression",
+    "giraffe_progression",
+    "iterated_reference",
+    "label_ramp",
+    "noise",
+    "octaves",
+    "reference_texture",
+    "space_giraffe",
+    "turbulence",
+]
+
+#: A number, or a ramp of numbers: {"ramp": {"from": [x, y], "to": [x, y], "start": a, "end": b}}.
+Varying: TypeAlias = float | Mapping[str, object]
+#: A smallest distance, {"distance": …}, {"density": …} or {"count": n}.
+Spacing: TypeAlias = float | Mapping[str, object]
+#: How the weight of a control point falls off.
+Weight: TypeAlias = Literal["cubic", "quintic"] | Mapping[str, object]
+#: Where the weights of control points lean.
+Orientations: TypeAlias = Literal["random"] | Mapping[str, object] | None
+
+
+def _net(axis_scale: float, weight: Weight, orientations: Orientations, strength: float) -> dict[str, object]:
+    """How control points are weighted, as a recipe says it."""
+    return {
+        "axis_scale": axis_scale,
+        "weight": weight,
+        "orientations": "none" if orientations is None else orientations,
+        "strength": strength,
+    }
+
+
+def noise(
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.1,
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """Random values at control points, interpolated: smooth noise from 0 to 1. Caron and Mould, section 3.1.
+
+    Parameters
+    ----------
+    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
+        (-1, -1)).
+    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> noise = dp.noise(dp.Domain(1), spacing=0.1, seed=7)
+    >>> noise.render((64, 64)).shape
+    (64, 64)
+    """
+    options = {
+        "spacing": spacing,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("noise", options, domain, None, seed))
+
+
+def octaves(
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.1,
+    octaves: int = 4,
+    lacunarity: float = 2.0,
+    gain: float = 0.5,
+    source: Literal["separate", "rescaled"] = "separate",
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """The sum of octaves of noise, from 0 to 1 (fractional Brownian motion). Caron and Mould, figure 6.
+
+    Parameters
+    ----------
+    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
+        (-1, -1)).
+    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    octaves : how many octaves there are, 1 to 16.
+    lacunarity : by how much the spacing is divided from octave to octave, above 1 and at most 16; 2, 4, 8 or 16 if
+        octaves are rescaled.
+    gain : the amplitude of an octave as a multiple of the one before, above 0 and at most 1.
+    source : "separate", each octave with points of its own, or "rescaled", one tile at several scales, which takes
+        less memory; the domain then wraps along both axes.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> hills = dp.octaves(dp.Domain(1), spacing=0.2, octaves=3, seed=7)
+    >>> hills.period
+    [1.0, 1.0]
+    """
+    options = {
+        "spacing": spacing,
+        "octaves": octaves,
+        "lacunarity": lacunarity,
+        "gain": gain,
+        "source": source,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("octaves", options, domain, None, seed))
+
+
+def turbulence(
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.1,
+    octaves: int = 4,
+    lacunarity: float = 2.0,
+    gain: float = 0.5,
+    source: Literal["separate", "rescaled"] = "separate",
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """The sum of octaves of folded noise, from 0 to 1 (Perlin's turbulence). Caron and Mould, figure 8.
+
+    Parameters
+    ----------
+    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
+        (-1, -1)).
+    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    octaves : how many octaves there are, 1 to 16.
+    lacunarity : by how much the spacing is divided from octave to octave, above 1 and at most 16; 2, 4, 8 or 16 if
+        octaves are rescaled.
+    gain : the amplitude of an octave as a multiple of the one before, above 0 and at most 1.
+    source : "separate", each octave with points of its own, or "rescaled", one tile at several scales, which takes
+        less memory; the domain then wraps along both axes.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> clouds = dp.turbulence(dp.Domain(1), spacing=0.2, octaves=3, seed=7)
+    """
+    options = {
+        "spacing": spacing,
+        "octaves": octaves,
+        "lacunarity": lacunarity,
+        "gain": gain,
+        "source": source,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("turbulence", options, domain, None, seed))
+
+
+def cells(
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.1,
+    points_per_cell: tuple[int, int] = (1, 1),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = "random",
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """Cells with a random value each, from 0 to below 1: of single control points, or of neighboring ones. Caron and
+    Mould, figure 9.
+
+    Parameters
+    ----------
+    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
+        (-1, -1)).
+    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    points_per_cell : how many control points a cell has, from the least to the most, 1 to 16.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> cobbles = dp.cells(dp.Domain(1), points_per_cell=(3, 4), seed=7)
+    """
+    options = {
+        "spacing": spacing,
+        "points_per_cell": points_per_cell,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("cells", options, domain, None, seed))
+
+
+def cellular_noise(
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.4,
+    layers: int = 4,
+    lacunarity: float = 2.0,
+    gain: float = 0.5,
+    points_per_cell: tuple[int, int] = (1, 1),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = "random",
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """The sum of layers of cells, from 0 to 1. Caron and Mould, figure 10.
+
+    Parameters
+    ----------
+    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
+        (-1, -1)).
+    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    layers : how many layers there are, 1 to 16.
+    lacunarity : by how much the spacing is divided from layer to layer, above 1 and at most 16.
+    gain : the amplitude of a layer as a multiple of the one before, above 0 and at most 1.
+    points_per_cell : how many control points a cell has, from the least to the most, 1 to 16.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> scales = dp.cellular_noise(dp.Domain(1), layers=2, seed=7)
+    """
+    options = {
+        "spacing": spacing,
+        "layers": layers,
+        "lacunarity": lacunarity,
+        "gain": gain,
+        "points_per_cell": points_per_cell,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("cellular_noise", options, domain, None, seed))
+
+
+def color_noise(
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.1,
+    palette: Sequence[Sequence[float]] | npt.NDArray[np.floating] = ((0.75, 0.2, 0.03), (0.9, 0.8, 0.55), (0.05, 0.3, 0.3), (0.01, 0.03, 0.15)),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    seed: int = 0,
+) -> ColorField:
+    """Random colors of a palette, interpolated; beyond the paper.
+
+    Parameters
+    ----------
+    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
+        (-1, -1)).
+    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    palette : linear RGB colors from 0 to 1, each as probable.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> dye = dp.color_noise(dp.Domain(1), seed=7)
+    >>> dye.render((64, 64)).shape
+    (64, 64, 3)
+    """
+    options = {
+        "spacing": spacing,
+        "palette": palette,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("ColorField", _texture("color_noise", options, domain, None, seed))
+
+
+def cow(
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.1,
+    probability: Varying = 0.5,
+    values: tuple[float, float] = (0.0, 1.0),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """The patches of a cow: cells of two values. Caron and Mould, figure 11.
+
+    Parameters
+    ----------
+    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
+        (-1, -1)).
+    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    probability : how probable label 1 is, 0 to 1: a number or a ramp, as in `poisson_disk`.
+    values : the values of the labels 0 and 1.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> coat = dp.cow(dp.Domain(1), probability=0.4, seed=7)
+    >>> sorted(set(coat.render(32).ravel().tolist()))
+    [0.0, 1.0]
+    """
+    options = {
+        "spacing": spacing,
+        "probability": probability,
+        "values": values,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("cow", options, domain, None, seed))
+
+
+def space_giraffe(
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.2,
+    pairs: tuple[int, int] = (10, 20),
+    spots: Literal["separated", "literal"] = "separated",
+    values: tuple[float, float] = (1.0, 0.0),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """The spots of a giraffe on its ground. Caron and Mould, figure 12.
+
+    Parameters
+    ----------
+    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
+        (-1, -1)).
+    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    pairs : how many pairs of points stand around the center of a spot, from the least to the most, 3 to 256.
+    spots : "separated", whole spots that never merge, or "literal", the recipe of the paper, where most are in
+        pieces.
+    values : the values of the ground and of the spots.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> coat = dp.space_giraffe(dp.Domain(1), spacing=0.28, seed=6)
+    """
+    options = {
+        "spacing": spacing,
+        "pairs": pairs,
+        "spots": spots,
+        "values": values,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("space_giraffe", options, domain, None, seed))
+
+
+def cow_progression(
+    domain: Domain | None = None,
+    *,
+    distances: tuple[float, float] = (0.2, 0.025),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """A cow whose patches get smaller to the right. Caron and Mould, figure 15.
+
+    Parameters
+    ----------
+    domain : where control points lie. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
+        along which the texture changes.
+    distances : how far apart points are at the left and at the right, with equal ratios over equal lengths in
+        between.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> coat = dp.cow_progression(dp.Domain(1), distances=(0.2, 0.05))
+    >>> coat.period
+    [None, 1.0]
+    """
+    options = {
+        "distances": distances,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("cow_progression", options, domain, None, seed))
+
+
+def giraffe_progression(
+    domain: Domain | None = None,
+    *,
+    distances: tuple[float, float] = (0.2, 0.025),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """A giraffe whose spots get smaller to the right. Caron and Mould, figure 16.
+
+    Parameters
+    ----------
+    domain : where control points lie. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
+        along which the texture changes.
+    distances : how far apart points are at the left and at the right, with equal ratios over equal lengths in
+        between.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> coat = dp.giraffe_progression(dp.Domain(1), distances=(0.4, 0.2))
+    """
+    options = {
+        "distances": distances,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("giraffe_progression", options, domain, None, seed))
+
+
+def label_ramp(
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.05,
+    probabilities: tuple[float, float] = (0.0, 1.0),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """Black cells (0) on the left that turn white (1) to the right. Caron and Mould, figure 17.
+
+    Parameters
+    ----------
+    domain : where control points lie. By default Domain(2, (-1, -1), wrap=(False, True)); it never wraps along x,
+        along which the texture changes.
+    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    probabilities : how probable white is at the left and at the right, linear in between.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> ramp = dp.label_ramp(dp.Domain(1), seed=7)
+    >>> float(ramp.sample([0.0, 0.5]))
+    0.0
+    """
+    options = {
+        "spacing": spacing,
+        "probabilities": probabilities,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("label_ramp", options, domain, None, seed))
+
+
+def reference_texture(
+    image: npt.ArrayLike,
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.05,
+    values: tuple[float, float] = (0.0, 1.0),
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """Black and white cells after an image: a control point is white with the probability of the pixel under it.
+    Caron and Mould, figure 13.
+
+    Parameters
+    ----------
+    image : a gray image (rows, columns) with values from 0 to 1, which covers the domain.
+    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
+        (-1, -1)).
+    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    values : the values of the black and of the white group.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> halves = dp.reference_texture([[0.0, 1.0]], dp.Domain(1), seed=7)
+    >>> halves.sample([[0.25, 0.5], [0.75, 0.5]]).tolist()
+    [0.0, 1.0]
+    """
+    options = {
+        "spacing": spacing,
+        "values": values,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("reference", options, domain, image, seed))
+
+
+def iterated_reference(
+    image: npt.ArrayLike,
+    domain: Domain | None = None,
+    *,
+    spacing: Spacing = 0.1,
+    iterations: int = 4,
+    points: Literal["fresh", "nested"] = "fresh",
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """The last of several rounds of black and white points, the first after an image: edges like a coast. Caron and
+    Mould, figure 14.
+
+    Parameters
+    ----------
+    image : a gray image (rows, columns) with values from 0 to 1, which covers the domain.
+    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
+        (-1, -1)).
+    spacing : how far apart control points are: the smallest distance, in units of the domain, or {"distance": …},
+        {"density": …} or {"count": n}; a distance or density may be a ramp, as in `poisson_disk`.
+    iterations : how many rounds there are, 1 to 16, each with twice the points of the one before.
+    points : "fresh", each round with points of its own, or "nested", with those of the one before and as many again.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> coast = dp.iterated_reference([[0.0, 1.0]], dp.Domain(1), iterations=2, seed=7)
+    """
+    options = {
+        "spacing": spacing,
+        "iterations": iterations,
+        "points": points,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("iterated_reference", options, domain, image, seed))
+
+
+def control_points(
+    points: Sequence[Mapping[str, object]],
+    domain: Domain | None = None,
+    *,
+    cells: Literal["mixed", "hard"] = "mixed",
+    axis_scale: float = 1.0,
+    weight: Weight = "cubic",
+    orientations: Orientations = None,
+    strength: float = 0.5,
+    seed: int = 0,
+) -> Field:
+    """A texture of control points that are given one by one, as a recipe has them; `pups` takes arrays.
+
+    Parameters
+    ----------
+    points : dictionaries with "x", "y", "value" and, in all or in none, "orientation": [x, y].
+    domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
+        (-1, -1)).
+    cells : "mixed", the weighted mean of the values, or "hard", the value of the strongest point.
+    axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16.
+    weight : how the weight of a control point falls off: "cubic", "quintic" or {"oscillating": {"dips": n, "depth":
+        d}}.
+    orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
+        radians}.
+    strength : how strongly orientations shift weights, from 0 to below 1.
+    seed : int, from 0 to 2**64 - 1.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp
+    >>> dot = dp.control_points([{"x": 0.5, "y": 0.5, "value": 1.0}], dp.Domain(1))
+    >>> float(dot.sample([0.1, 0.2]))
+    1.0
+    """
+    options = {
+        "points": points,
+        "cells": cells,
+        "net": _net(axis_scale, weight, orientations, strength),
+    }
+    return cast("Field", _texture("points", options, domain, None, seed))

@@ -1,0 +1,180 @@
+"""Materials in Blender: the maps of a recipe as a Principled material, and synthesized models with theirs.
+
+It runs in Blender's own Python (4.2 and newer), or with the module `bpy`. Colors are sRGB images, all else is "Non-Color";
+images are packed into the file, so that nothing else has to be sent along. The extension in the folder `blender` of the
+sources puts this behind a panel.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ._native import Plan, Recipe, _plan_from_parts, encode_image
+from ._types import refusal
+
+#: The property of a material that holds what it was baked from.
+_PROPERTY = "dapple_textures"
+
+#: The maps of a material: bits of PNG, what they hold, and Blender's name of their color space.
+_IMAGES: dict[str, tuple[int, str, str]] = {
+    "albedo": (8, "color", "sRGB"),
+    "orm": (8, "data", "Non-Color"),
+    "normal": (16, "normal", "Non-Color"),
+    "height": (16, "gray", "Non-Color"),
+}
+
+#: The group that Blender's glTF exporter looks for: occlusion is in no shader, and never darkens the albedo.
+_GLTF_GROUP = "glTF Material Output"
+
+
+def material(
+    what: Plan | Recipe,
+    size: int | tuple[int, int] = 1024,
+    *,
+    name: str | None = None,
+    displacement: bool = False,
+    scale: float = 1.0,
+) -> Any:
+    """A material whose maps are baked from a recipe: albedo, roughness, metallic, occlusion, normals.
+
+    Where a material of this name is, it is baked again, and all objects that have it show the new maps.
+
+    Parameters
+    ----------
+    what : a recipe, or a plan with its images and its time.
+    size : pixels of the tile, (rows, columns) or one number.
+    name : the name of the material; that of the recipe by default.
+    displacement : moves the surface by the height, too (Cycles with adaptive subdivision, or EEVEE). The tile is taken to be
+        as wide as the recipe's extent, in Blender's units.
+    scale : copies of the tile across the UV map.
+    """
+    import bpy
+
+    plan = _opengl(what.plan() if isinstance(what, Recipe) else what)
+    name = name or plan.recipe.name or "dapple"
+    maps = ["albedo", "orm", "normal", *(["height"] if displacement else [])]
+    baked = plan.bake(size, maps)
+    images = {kind: _image(bpy, f"{name}_{kind}", values, *_IMAGES[kind]) for kind, values in baked.items()}
+    made = bpy.data.materials.get(name) or bpy.data.materials.new(name)
+    relief = float(plan.recipe.to_dict()["material"].get("relief", 0.1))
+    _shader(bpy, made, images, relief, scale)
+    made[_PROPERTY] = json.dumps(
+        {"recipe": plan.recipe.to_dict(), "size": size, "time": plan.time, "hash": plan.hash}
+    )
+    return made
+
+
+def baked_from(made: Any) -> Recipe | None:
+    """The recipe that a material was baked from; None of other materials."""
+    text = made.get(_PROPERTY)
+    return None if text is None else Recipe(json.loads(text)["recipe"])
+
+
+def import_model(model: Any) -> list[Any]:
+    """The objects of a model: one of `synthesize_on`, with its texture and normals, or the path of a GLB file."""
+    import bpy
+
+    before = set(bpy.data.objects)
+    if isinstance(model, (str, os.PathLike)):
+        bpy.ops.import_scene.gltf(filepath=os.fspath(model))
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "model.glb"
+            model.export(path)
+            bpy.ops.import_scene.gltf(filepath=str(path))
+            # The file will be gone.
+            for image in bpy.data.images:
+                if image.filepath and Path(bpy.path.abspath(image.filepath)).parent == Path(folder):
+                    image.pack()
+    return [thing for thing in bpy.data.objects if thing not in before]
+
+
+def _opengl(plan: Plan) -> Plan:
+    """The plan with normals whose green points up, as Blender has them."""
+    _, (recipe, images, time) = plan.__reduce__()
+    data = json.loads(recipe)
+    data["material"]["normal_y"] = "opengl"
+    return _plan_from_parts(json.dumps(data), images, time)
+
+
+def _image(bpy: Any, name: str, values: Any, depth: int, content: str, space: str) -> Any:
+    """An image of Blender's, packed as PNG; the one of this name with new pixels where there is one."""
+    data = encode_image(values, "png", content=content, depth=depth)
+    image = bpy.data.images.get(name)
+    if image is None:
+        image = bpy.data.images.new(name, values.shape[1], values.shape[0], is_data=space != "sRGB")
+    # Pixels that are made in Blender are lost when the file is saved; a packed file is not.
+    image.pack(data=data, data_len=len(data))
+    image.filepath_raw = f"//{name}.png"
+    image.source = "FILE"
+    image.colorspace_settings.name = space
+    image.alpha_mode = "NONE"
+    image.reload()
+    if tuple(image.size) != (values.shape[1], values.shape[0]):
+        raise refusal("blender", f"Blender read {name} with {tuple(image.size)} pixels")
+    return image
+
+
+def _shader(bpy: Any, made: Any, images: dict[str, Any], relief: float, scale: float) -> None:
+    """The nodes of a material, all of them anew."""
+    made.use_nodes = True
+    tree = made.node_tree
+    tree.nodes.clear()
+    place: dict[str, Sequence[float]] = {
+        "ShaderNodeOutputMaterial": (400, 0),
+        "ShaderNodeBsdfPrincipled": (100, 0),
+    }
+
+    def node(kind: str, x: float, y: float) -> Any:
+        added = tree.nodes.new(kind)
+        added.location = place.get(kind, (x, y))
+        return added
+
+    def texture(kind: str, y: float) -> Any:
+        added = node("ShaderNodeTexImage", -600, y)
+        added.image = images[kind]
+        added.label = kind
+        tree.links.new(mapping.outputs["Vector"], added.inputs["Vector"])
+        return added
+
+    output = node("ShaderNodeOutputMaterial", 0, 0)
+    shader = node("ShaderNodeBsdfPrincipled", 0, 0)
+    link = tree.links.new
+    link(shader.outputs["BSDF"], output.inputs["Surface"])
+    coordinates = node("ShaderNodeTexCoord", -1000, 0)
+    mapping = node("ShaderNodeMapping", -800, 0)
+    mapping.inputs["Scale"].default_value = (scale, scale, scale)
+    link(coordinates.outputs["UV"], mapping.inputs["Vector"])
+    link(texture("albedo", 300).outputs["Color"], shader.inputs["Base Color"])
+    parts = node("ShaderNodeSeparateColor", -300, 0)
+    link(texture("orm", 0).outputs["Color"], parts.inputs["Color"])
+    link(parts.outputs["Green"], shader.inputs["Roughness"])
+    link(parts.outputs["Blue"], shader.inputs["Metallic"])
+    occlusion = node("ShaderNodeGroup", 100, 200)
+    occlusion.node_tree = _gltf_group(bpy)
+    link(parts.outputs["Red"], occlusion.inputs["Occlusion"])
+    bump = node("ShaderNodeNormalMap", -300, -300)
+    link(texture("normal", -300).outputs["Color"], bump.inputs["Color"])
+    link(bump.outputs["Normal"], shader.inputs["Normal"])
+    if "height" in images:
+        moved = node("ShaderNodeDisplacement", 100, -300)
+        moved.inputs["Midlevel"].default_value = 0.5
+        moved.inputs["Scale"].default_value = relief
+        link(texture("height", -600).outputs["Color"], moved.inputs["Height"])
+        link(moved.outputs["Displacement"], output.inputs["Displacement"])
+        made.displacement_method = "BOTH"
+
+
+def _gltf_group(bpy: Any) -> Any:
+    """The group whose input the glTF exporter takes for occlusion."""
+    group = bpy.data.node_groups.get(_GLTF_GROUP)
+    if group is None:
+        group = bpy.data.node_groups.new(_GLTF_GROUP, "ShaderNodeTree")
+        group.interface.new_socket("Occlusion", in_out="INPUT", socket_type="NodeSocketFloat")
+        group.nodes.new("NodeGroupInput")
+    return group

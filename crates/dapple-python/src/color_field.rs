@@ -1,0 +1,149 @@
+//! Fields with several numbers at each position, such as colors.
+
+use crate::arrays::{self, Positions};
+use crate::error::Result;
+use crate::field::Field;
+use crate::function::{Made, position};
+use crate::grid::{Grid, GridArguments};
+use crate::pups::{Values, Vectors};
+use crate::threads;
+use dapple::raster::parallel;
+use numpy::PyArrayDyn;
+use pyo3::prelude::*;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Arc;
+
+/// A function of the plane with several numbers at every position, such as a color (linear RGB).
+///
+/// Color fields are made by `pups` with values of the shape (n, channels), and by `color_noise`. A color field is its
+/// description: it can be pickled, compared and used as a key.
+#[pyclass(frozen, module = "dapple_textures")]
+pub(crate) struct ColorField {
+    made: Made,
+    vectors: Arc<dyn Vectors>,
+}
+
+/// The positions that a thread takes at a time.
+const CHUNK: usize = 1024;
+
+/// The field that a description gives: a `ColorField` where it has channels, and else a `Field`.
+pub(crate) fn object(py: Python<'_>, made: Made) -> Result<Py<PyAny>> {
+    let vectors = threads::run(py, || made.vectors())??;
+    Ok(match vectors {
+        Some(vectors) => Py::new(py, ColorField { made, vectors })?.into_any(),
+        None => Py::new(py, threads::run(py, || Field::new(made))??)?.into_any(),
+    })
+}
+
+#[pymethods]
+impl ColorField {
+    /// The number of axes: 2.
+    #[getter]
+    fn ndim(&self) -> usize {
+        2
+    }
+
+    /// How many numbers there are at each position.
+    #[getter]
+    fn channels(&self) -> usize {
+        self.vectors.n_channels()
+    }
+
+    /// The distances after which the field repeats, x first: None where it does not.
+    #[getter]
+    fn period(&self) -> Vec<Option<f64>> {
+        self.vectors.period().to_vec()
+    }
+
+    /// The values at the pixels of an array: float32 of the shape (rows, columns, channels).
+    ///
+    /// The parameters are those of `Field.render`.
+    #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        size: &Bound<'py, PyAny>,
+        extent: Option<&Bound<'py, PyAny>>,
+        origin: Option<&Bound<'py, PyAny>>,
+        window: Option<&Bound<'py, PyAny>>,
+        out: Option<Bound<'py, PyArrayDyn<f32>>>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let arguments = GridArguments {
+            size,
+            extent,
+            origin,
+            window,
+        };
+        let grid = Grid::new(&arguments, &self.vectors.period())?;
+        grid.n_values()?;
+        let shape = [&grid.shape()[..], &[self.vectors.n_channels()]].concat();
+        let window = grid.plane();
+        arrays::filled(py, &shape, out, |values| {
+            Ok(self.vectors.render(&window, values)?)
+        })
+    }
+
+    /// The values at positions of the shape (…, 2), x first: float32 of the shape (…, channels).
+    fn sample<'py>(
+        &self,
+        py: Python<'py>,
+        positions: &Bound<'py, PyAny>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let positions = Positions::read(positions, 2)?;
+        let n_channels = self.vectors.n_channels();
+        let shape = [&positions.shape[..], &[n_channels]].concat();
+        arrays::filled(py, &shape, None, |values| {
+            parallel::for_each_chunk(values, CHUNK * n_channels, |chunk, values| {
+                let places = positions.numbers[chunk * CHUNK * 2..].chunks_exact(2);
+                for (vector, place) in values.chunks_exact_mut(n_channels).zip(places) {
+                    self.vectors.sample(position(place), vector);
+                }
+            });
+            Ok(())
+        })
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other
+            .cast::<Self>()
+            .is_ok_and(|other| other.get().made == self.made)
+    }
+
+    fn __hash__(&self) -> Result<u64> {
+        let mut hasher = DefaultHasher::new();
+        self.made.description()?.hash(&mut hasher);
+        Ok(hasher.finish())
+    }
+
+    fn __reduce__(&self, py: Python<'_>) -> Result<(Py<PyAny>, (String,))> {
+        let make = py
+            .import("dapple_textures._native")?
+            .getattr("_field_from_description")?;
+        Ok((make.unbind(), (self.made.description()?,)))
+    }
+
+    /// The name by which Dask knows what is computed from the field: the same in all processes.
+    fn __dask_tokenize__(&self) -> Result<String> {
+        self.made.token()
+    }
+
+    fn __repr__(&self) -> Result<String> {
+        Ok(format!("ColorField({})", self.made.summary()?))
+    }
+}
+
+impl Made {
+    /// The function of several numbers that this describes, or none where it has one number.
+    fn vectors(&self) -> Result<Option<Arc<dyn Vectors>>> {
+        let values = match self {
+            Self::Pups(made) => made.get()?,
+            Self::Texture(made) => made.get()?,
+            _ => return Ok(None),
+        };
+        Ok(match values {
+            Values::Vectors(vectors) => Some(vectors),
+            Values::Numbers(_) => None,
+        })
+    }
+}

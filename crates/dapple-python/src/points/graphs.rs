@@ -1,0 +1,321 @@
+//! Graphs of points: which are neighbors.
+
+use super::{Domain, Points, set};
+use crate::arrays;
+use crate::error::{Error, Result};
+use crate::threads;
+use dapple::graph::{Axis, Direction, GraphError};
+use dapple::points::{PointIdx, PointSet};
+use dapple::raster::glam::DVec2;
+use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// How a graph was made of points.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum GraphMade {
+    /// Neighbors in Delaunay's triangulation.
+    Delaunay,
+    /// Pairs of points whose circle is empty.
+    Gabriel,
+    /// The nearest points in cones.
+    Yao { cones: u32, direction: Direction },
+    /// The nearest points.
+    KNearest { k: u32, direction: Direction },
+}
+
+impl GraphMade {
+    /// The graph of points.
+    pub(crate) fn build(
+        self,
+        points: &PointSet,
+    ) -> core::result::Result<dapple::graph::Graph, GraphError> {
+        match self {
+            Self::Delaunay => dapple::graph::delaunay(points),
+            Self::Gabriel => dapple::graph::gabriel(points),
+            Self::Yao { cones, direction } => dapple::graph::yao(points, cones, direction),
+            Self::KNearest { k, direction } => dapple::graph::k_nearest(points, k, direction),
+        }
+    }
+}
+
+/// Which points are neighbors, and the ways from each to the others.
+///
+/// Graphs are made by `delaunay`, `gabriel`, `yao` and `k_nearest`. Where axes wrap, edges lead around, a point may be its
+/// own neighbor, and two points may be neighbors several times, by different ways.
+#[pyclass(frozen, module = "dapple_textures")]
+pub(crate) struct Graph {
+    points: Arc<PointSet>,
+    made: GraphMade,
+    graph: Arc<dapple::graph::Graph>,
+}
+
+impl Graph {
+    fn new(py: Python<'_>, points: Arc<PointSet>, made: GraphMade) -> Result<Self> {
+        let graph = threads::run(py, || made.build(&points))??;
+        Ok(Self {
+            points,
+            made,
+            graph: Arc::new(graph),
+        })
+    }
+
+    /// The points that are connected.
+    pub(crate) fn set(&self) -> &Arc<PointSet> {
+        &self.points
+    }
+
+    /// How it was made of its points.
+    pub(crate) fn made(&self) -> GraphMade {
+        self.made
+    }
+
+    /// The graph.
+    pub(crate) fn graph(&self) -> &dapple::graph::Graph {
+        &self.graph
+    }
+
+    /// Each edge once: from which point, and its axis there. Those of a graph that is not symmetric have one end only.
+    fn each_edge(&self) -> impl Iterator<Item = (u32, &Axis)> {
+        let one_way = !self.graph.is_symmetric();
+        let from = (0..self.graph.n_points() as u32).map(PointIdx);
+        let axes = from.flat_map(|from| self.graph.axes(from).iter().map(move |axis| (from, axis)));
+        axes.filter(move |(from, Axis { to, vector })| {
+            let is_upper = vector.y > 0.0 || (vector.y == 0.0 && vector.x > 0.0);
+            one_way || from < to || (from == to && is_upper)
+        })
+        .map(|(from, axis)| (from.0, axis))
+    }
+
+    /// The triangles, for graphs that have them.
+    fn each_triangle(&self, py: Python<'_>) -> Result<Vec<dapple::graph::Triangle>> {
+        if self.made != GraphMade::Delaunay {
+            return Err(Error::new(
+                "kind",
+                "only the graph of `delaunay` has triangles",
+            ));
+        }
+        Ok(threads::run(py, || {
+            dapple::graph::delaunay_triangles(&self.points)
+        })??)
+    }
+}
+
+/// Indices of points as NumPy and SciPy take them, in rows of N.
+fn indices<const N: usize>(
+    py: Python<'_>,
+    rows: impl Iterator<Item = [u32; N]>,
+) -> Result<Bound<'_, PyAny>> {
+    let rows: Vec<[i64; N]> = rows.map(|row| row.map(i64::from)).collect();
+    let shape = [rows.len(), N];
+    arrays::array(py, rows.into_flattened(), &shape)
+}
+
+#[pymethods]
+impl Graph {
+    /// The points.
+    #[getter]
+    fn points(&self) -> Points {
+        Points::shared_with(&self.points)
+    }
+
+    /// Whether every edge leads both ways.
+    #[getter]
+    fn is_symmetric(&self) -> bool {
+        self.graph.is_symmetric()
+    }
+
+    /// Each edge once, as pairs of points: int64 of the shape (m, 2). In a symmetric graph the smaller index is first;
+    /// else an edge leads from the first to the second.
+    fn edges<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        indices(py, self.each_edge().map(|(from, axis)| [from, axis.to.0]))
+    }
+
+    /// The way of each edge, from its first point to its second, around axes that wrap: float64 of the shape (m, 2).
+    fn vectors<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        let vectors: Vec<DVec2> = self.each_edge().map(|(_, axis)| axis.vector).collect();
+        set::positions(py, &vectors)
+    }
+
+    /// The neighbors of all points in compressed rows: those of point i are `indices[indptr[i]:indptr[i + 1]]`, by the
+    /// angle of the ways to them, `vectors`.
+    ///
+    /// `scipy.sparse.csr_array((lengths, indices, indptr))` is the matrix of a graph on a domain without wrapping; with it
+    /// pairs may come more than once.
+    fn axes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        let offsets: Vec<i64> = self.graph.offsets().iter().map(|&at| at.into()).collect();
+        let axes = self.graph.all_axes();
+        let to: Vec<i64> = axes.iter().map(|axis| axis.to.0.into()).collect();
+        let vectors: Vec<DVec2> = axes.iter().map(|axis| axis.vector).collect();
+        let (n_offsets, n_axes) = (offsets.len(), to.len());
+        let parts = (
+            arrays::array(py, offsets, &[n_offsets])?,
+            arrays::array(py, to, &[n_axes])?,
+            set::positions(py, &vectors)?,
+        );
+        arrays::result(py, "Axes", parts)
+    }
+
+    /// The triangles of Delaunay's triangulation, as points: int64 of the shape (t, 3), in the turn from x to y.
+    ///
+    /// Where more than three points lie on an empty circle, one of several triangulations is taken.
+    fn triangles<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        let triangles = self.each_triangle(py)?;
+        indices(
+            py,
+            triangles
+                .iter()
+                .map(|triangle| triangle.corners.map(|corner| corner.0)),
+        )
+    }
+
+    /// Where the corners of the triangles lie: float64 of the shape (t, 3, 2). Where axes wrap, the second and the third
+    /// corner may lie outside of the domain, so that a triangle is in one piece.
+    fn corners<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        let triangles = self.each_triangle(py)?;
+        let corners = triangles.iter().flat_map(|triangle| {
+            let first = self.points.position(triangle.corners[0]);
+            [first, first + triangle.sides[0], first + triangle.sides[1]]
+        });
+        let numbers: Vec<[f64; 2]> = corners.map(|corner| corner.to_array()).collect();
+        arrays::array(py, numbers.into_flattened(), &[triangles.len(), 3, 2])
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Self>().is_ok_and(|other| {
+            let other = other.get();
+            other.points == self.points && other.made == self.made
+        })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> Result<(Bound<'py, PyAny>, (Points, String))> {
+        let make = py
+            .import("dapple_textures._native")?
+            .getattr("_graph_from_description")?;
+        let made = serde_json::to_string(&self.made)
+            .map_err(|error| Error::new("description", error.to_string()))?;
+        Ok((make, (self.points(), made)))
+    }
+
+    fn __repr__(&self) -> String {
+        let n_edges = self.each_edge().count();
+        format!(
+            "<graph of {} points and {n_edges} edges>",
+            self.points.len()
+        )
+    }
+}
+
+/// The graph of points that is described.
+#[pyfunction]
+pub(crate) fn _graph_from_description(
+    py: Python<'_>,
+    points: &Bound<'_, PyAny>,
+    description: &str,
+) -> Result<Graph> {
+    let made = serde_json::from_str(description);
+    let made = made.map_err(|error| Error::new("description", error.to_string()))?;
+    Graph::new(py, Points::read(points, None)?, made)
+}
+
+/// The direction of edges, from a flag.
+fn direction(symmetric: bool) -> Direction {
+    if symmetric {
+        Direction::Symmetric
+    } else {
+        Direction::Directed
+    }
+}
+
+/// Delaunay's graph: two points are neighbors if a circle through both has no other point on it or in it ("Sur la sphère
+/// vide", 1934).
+///
+/// `points` are `Points`, or an array (n, 2) in `domain`; by default the domain of an array is the rectangle around it, and
+/// nothing wraps. All decisions are exact; copies of points across axes that wrap count.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> graph = dp.delaunay([[0, 0], [1, 0], [0, 1], [2, 2]])
+/// >>> graph.edges().tolist()
+/// [[0, 1], [0, 2], [1, 3], [1, 2], [2, 3]]
+/// >>> graph.triangles().tolist()
+/// [[0, 1, 2], [1, 3, 2]]
+#[pyfunction]
+#[pyo3(signature = (points, *, domain = None))]
+pub(crate) fn delaunay(
+    py: Python<'_>,
+    points: &Bound<'_, PyAny>,
+    domain: Option<&Domain>,
+) -> Result<Graph> {
+    Graph::new(py, Points::read(points, domain)?, GraphMade::Delaunay)
+}
+
+/// Gabriel's graph: two points are neighbors if the circle over the way between them has no other point on it or in it
+/// ("A New Statistical Approach to Geographic Variation Analysis", 1969).
+///
+/// `points` and `domain` are those of `delaunay`.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.gabriel([[0, 0], [1, 0], [0.5, 0.25]]).edges().tolist()
+/// [[0, 2], [1, 2]]
+#[pyfunction]
+#[pyo3(signature = (points, *, domain = None))]
+pub(crate) fn gabriel(
+    py: Python<'_>,
+    points: &Bound<'_, PyAny>,
+    domain: Option<&Domain>,
+) -> Result<Graph> {
+    Graph::new(py, Points::read(points, domain)?, GraphMade::Gabriel)
+}
+
+/// Yao's graph: each point leads to the nearest one in each of some equal cones, the first of which begins at the x axis
+/// ("On Constructing Minimum Spanning Trees", 1982).
+///
+/// `points` and `domain` are those of `delaunay`. `cones` is from 1 to 32; with `symmetric`, points also lead back to those
+/// that lead to them.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.yao([[0.5, 0.5]], domain=dp.Domain(1), cones=4).axes().vectors.tolist()
+/// [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]
+#[pyfunction]
+#[pyo3(signature = (points, *, cones = 6, symmetric = false, domain = None))]
+pub(crate) fn yao(
+    py: Python<'_>,
+    points: &Bound<'_, PyAny>,
+    cones: u32,
+    symmetric: bool,
+    domain: Option<&Domain>,
+) -> Result<Graph> {
+    let direction = direction(symmetric);
+    let made = GraphMade::Yao { cones, direction };
+    Graph::new(py, Points::read(points, domain)?, made)
+}
+
+/// The graph in which each point leads to the `k` nearest ones, 1 to 4096.
+///
+/// `points` and `domain` are those of `delaunay`; with `symmetric`, points also lead back to those that lead to them.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.k_nearest([[0, 0], [1, 0], [3, 0]], 1).edges().tolist()
+/// [[0, 1], [1, 0], [2, 1]]
+#[pyfunction]
+#[pyo3(signature = (points, k, *, symmetric = false, domain = None))]
+pub(crate) fn k_nearest(
+    py: Python<'_>,
+    points: &Bound<'_, PyAny>,
+    k: u32,
+    symmetric: bool,
+    domain: Option<&Domain>,
+) -> Result<Graph> {
+    let direction = direction(symmetric);
+    let made = GraphMade::KNearest { k, direction };
+    Graph::new(py, Points::read(points, domain)?, made)
+}

@@ -1,0 +1,226 @@
+//! Placing points.
+
+use super::{Domain, Points, varying};
+use crate::data;
+use crate::error::{Error, Result};
+use crate::seed::SeedArgument;
+use crate::threads;
+use dapple::hash::Seed;
+use dapple::points::{PointSet, PointsError, RSA_DENSITY, VariablePoissonOptions};
+use dapple::raster::Varying;
+use pyo3::prelude::*;
+
+/// How far apart points are to be.
+enum Wanted {
+    /// At least this far, in units of the domain.
+    Distance(Varying),
+    /// About so many, as dense everywhere.
+    Count(u32),
+    /// About so many, after a density that is given up to a factor.
+    CountAfter(Varying, u32),
+}
+
+impl Wanted {
+    /// The points.
+    fn place(
+        self,
+        domain: dapple::points::Domain,
+        options: &VariablePoissonOptions,
+        seed: Seed,
+    ) -> core::result::Result<PointSet, PointsError> {
+        let distance = match self {
+            Self::Distance(Varying::Constant(distance)) => {
+                return dapple::points::poisson_disk(domain, distance, seed);
+            }
+            Self::Count(count) => return dapple::points::poisson_disk_about(domain, count, seed),
+            Self::Distance(distance) => distance,
+            Self::CountAfter(density, count) => {
+                let places = places(&domain, count);
+                dapple::points::gentle_radius_for_count(domain, &density, count.into(), places)?
+            }
+        };
+        dapple::points::variable_poisson_disk(domain, &distance, options, seed)
+    }
+}
+
+/// Columns and rows at which a density is read: about two along the mean distance of points, and 64 to 4096.
+fn places(domain: &dapple::points::Domain, count: u32) -> [u32; 2] {
+    let distance = (RSA_DENSITY * domain.area() / f64::from(count.max(1))).sqrt();
+    let along = |side: f64| (2.0 * side / distance).clamp(64.0, 4096.0) as u32;
+    [along(domain.size.x), along(domain.size.y)]
+}
+
+/// Random points that keep their distance, with room for no further one ("blue noise"); maximal Poisson-disk sets, after
+/// Cook, "Stochastic Sampling in Computer Graphics" (1986).
+///
+/// Give `distance`, `density`, `count`, or `count` and `density`. What varies is a number, {"ramp": {"from": [x, y], "to":
+/// [x, y], "start": a, "end": b}}, {"geometric_ramp": …} with equal ratios over equal lengths, an array (rows, columns) that
+/// covers the domain, or a `Field`.
+///
+/// Parameters
+/// ----------
+/// domain : where the points lie; their distances are taken around axes that wrap.
+/// distance : the smallest distance of two points, above 0. Where it varies, it must not change by as much as itself over
+///     its own length; what does is refused as "too_steep".
+/// density : points per area: a distance of sqrt(0.697 / density). With `count` it is given up to a factor, may be 0, and
+///     may change as abruptly as a photograph: around what is dense points thin out slowly.
+/// count : about how many points there are.
+/// rule : which distance two points of different ones keep: "average", "larger" or "smaller".
+/// seed : int, from 0 to 2**64 - 1.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> torus = dp.Domain(1)
+/// >>> points = dp.poisson_disk(torus, distance=0.05, seed=3)
+/// >>> points.array.shape[1], points.minimum_distance() >= 0.05
+/// (2, True)
+/// >>> hills = dp.gradient_noise(seed=1, period=4).frequency(4) + 1.0
+/// >>> flock = dp.poisson_disk(torus, density=hills, count=500, seed=3)
+#[pyfunction]
+#[pyo3(signature = (domain, *, distance = None, density = None, count = None, rule = "average", seed = SeedArgument::default()),
+    text_signature = "(domain, *, distance=None, density=None, count=None, rule='average', seed=0)")]
+#[expect(clippy::too_many_arguments, reason = "they are keywords")]
+pub(crate) fn poisson_disk(
+    py: Python<'_>,
+    domain: &Domain,
+    distance: Option<&Bound<'_, PyAny>>,
+    density: Option<&Bound<'_, PyAny>>,
+    count: Option<u32>,
+    rule: &str,
+    seed: SeedArgument,
+) -> Result<Points> {
+    let domain = domain.0;
+    let options = VariablePoissonOptions {
+        rule: data::named("rule", rule)?,
+        ..VariablePoissonOptions::default()
+    };
+    let read = |what, data: Option<&Bound<'_, PyAny>>| {
+        data.map(|data| varying(what, data, &domain)).transpose()
+    };
+    let wanted = match (
+        read("distance", distance)?,
+        read("density", density)?,
+        count,
+    ) {
+        (Some(distance), None, None) => Wanted::Distance(distance),
+        (None, Some(density), None) => {
+            Wanted::Distance(dapple::points::radius_from_density(&density))
+        }
+        (None, None, Some(count)) => Wanted::Count(count),
+        (None, Some(density), Some(count)) => Wanted::CountAfter(density, count),
+        _ => {
+            let message = "give `distance`, `density`, `count`, or `density` and `count`";
+            return Err(Error::new("conflict", message));
+        }
+    };
+    let set = threads::run(py, || wanted.place(domain, &options, seed.0))??;
+    Ok(Points::new(set))
+}
+
+/// A maximal Poisson-disk set that begins with given points, which are at least `distance` apart.
+///
+/// `points` are `Points`, or an array (n, 2) in `domain`; by default the domain of an array is the rectangle around it.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> given = dp.Points([[0.5, 0.5]], dp.Domain(1))
+/// >>> dp.extend_poisson_disk(given, 0.1)[0]
+/// array([0.5, 0.5])
+#[pyfunction]
+#[pyo3(signature = (points, distance, *, domain = None, seed = SeedArgument::default()),
+    text_signature = "(points, distance, *, domain=None, seed=0)")]
+pub(crate) fn extend_poisson_disk(
+    py: Python<'_>,
+    points: &Bound<'_, PyAny>,
+    distance: f64,
+    domain: Option<&Domain>,
+    seed: SeedArgument,
+) -> Result<Points> {
+    let given = Points::read(points, domain)?;
+    let set = threads::run(py, || {
+        dapple::points::extend_poisson_disk(&given, distance, seed.0)
+    })??;
+    Ok(Points::new(set))
+}
+
+/// Maximal Poisson-disk sets for distances that do not grow, coarsest first; each begins with the points of the one before.
+///
+/// For twice the points, divide the distance by the square root of two.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> coarse, fine = dp.nested_poisson_disk(dp.Domain(1), [0.2, 0.1])
+/// >>> bool((fine[:len(coarse)] == coarse).all())
+/// True
+#[pyfunction]
+#[pyo3(signature = (domain, distances, *, seed = SeedArgument::default()),
+    text_signature = "(domain, distances, *, seed=0)")]
+pub(crate) fn nested_poisson_disk(
+    py: Python<'_>,
+    domain: &Domain,
+    distances: Vec<f64>,
+    seed: SeedArgument,
+) -> Result<Vec<Points>> {
+    let nested = threads::run(py, || {
+        dapple::points::nested_poisson_disk(domain.0, &distances, seed.0)
+    })??;
+    let levels = (0..nested.lengths().len()).filter_map(|level| nested.level(level));
+    Ok(levels.map(Points::new).collect())
+}
+
+/// One point in each cell of a grid, row by row.
+///
+/// Parameters
+/// ----------
+/// domain : where the points lie.
+/// cells : columns and rows, (x, y), or a number for both.
+/// jitter : from 0, where a point is at the center of its cell, to 1, where it is anywhere in it.
+/// seed : int, from 0 to 2**64 - 1.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.jittered_grid(dp.Domain(1), (2, 1), jitter=0).array
+/// array([[0.25, 0.5 ],
+///        [0.75, 0.5 ]])
+#[pyfunction]
+#[pyo3(signature = (domain, cells, *, jitter = 1.0, seed = SeedArgument::default()),
+    text_signature = "(domain, cells, *, jitter=1.0, seed=0)")]
+pub(crate) fn jittered_grid(
+    py: Python<'_>,
+    domain: &Domain,
+    cells: &Bound<'_, PyAny>,
+    jitter: f64,
+    seed: SeedArgument,
+) -> Result<Points> {
+    let cells = match cells.extract::<u32>() {
+        Ok(cells) => [cells; 2],
+        Err(_) => cells.extract()?,
+    };
+    let set = threads::run(py, || {
+        dapple::points::jittered_grid(domain.0, cells, jitter, seed.0)
+    })??;
+    Ok(Points::new(set))
+}
+
+/// Independent random points, as dense everywhere: those of a smaller count are the first of a larger one.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> len(dp.white_noise(dp.Domain((2, 1)), 100, seed=7))
+/// 100
+#[pyfunction]
+#[pyo3(signature = (domain, count, *, seed = SeedArgument::default()), text_signature = "(domain, count, *, seed=0)")]
+pub(crate) fn white_noise(
+    py: Python<'_>,
+    domain: &Domain,
+    count: u32,
+    seed: SeedArgument,
+) -> Result<Points> {
+    let set = threads::run(py, || dapple::points::white_noise(domain.0, count, seed.0))??;
+    Ok(Points::new(set))
+}

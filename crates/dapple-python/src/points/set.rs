@@ -1,0 +1,277 @@
+//! Sets of points, and what is measured on them.
+
+use super::Domain;
+use crate::arrays::{self, Positions};
+use crate::error::{Error, Result};
+use crate::threads;
+use dapple::points::PointSet;
+use dapple::raster::glam::DVec2;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyList};
+use std::sync::Arc;
+
+/// Points in a domain, in an order that stays: an array of the shape (n, 2) that knows after which distances it repeats.
+///
+/// NumPy takes it for its array, as in `np.asarray(points)` or `scipy.spatial.KDTree(points)`; `np.array(points)` is a copy
+/// that can be written.
+///
+/// Parameters
+/// ----------
+/// array : positions of the shape (n, 2), x first. Along axes that wrap they are brought into the domain.
+/// domain : where they lie; by default the smallest rectangle around them, which does not wrap.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> points = dp.Points([[0.25, 1.5], [0.5, 0.5]], dp.Domain(1))
+/// >>> points.array
+/// array([[0.25, 0.5 ],
+///        [0.5 , 0.5 ]])
+#[pyclass(frozen, module = "dapple_textures")]
+pub(crate) struct Points {
+    set: Arc<PointSet>,
+    array: PyOnceLock<Py<PyAny>>,
+}
+
+/// The largest coordinate at which a rectangle around points still has its corners in range.
+const FARTHEST: f64 = 1e299;
+
+impl Points {
+    pub(crate) fn new(set: PointSet) -> Self {
+        Self {
+            set: Arc::new(set),
+            array: PyOnceLock::new(),
+        }
+    }
+
+    /// The set that others hold too.
+    pub(crate) fn shared_with(set: &Arc<PointSet>) -> Self {
+        Self {
+            set: Arc::clone(set),
+            array: PyOnceLock::new(),
+        }
+    }
+
+    /// The set.
+    pub(crate) fn set(&self) -> Arc<PointSet> {
+        Arc::clone(&self.set)
+    }
+
+    /// Points from Python: a set, or an array with the domain that is given, or without one.
+    pub(crate) fn read(
+        points: &Bound<'_, PyAny>,
+        domain: Option<&Domain>,
+    ) -> Result<Arc<PointSet>> {
+        if let Ok(points) = points.cast::<Self>() {
+            let set = points.get().set();
+            if domain.is_some_and(|domain| domain.0 != *set.domain()) {
+                let message =
+                    "the points have a domain of their own, which is not the one that is given";
+                return Err(Error::new("different_domains", message));
+            }
+            return Ok(set);
+        }
+        let positions = Positions::read(points, 2)?;
+        if positions.shape.len() != 1 {
+            let message = format!(
+                "points have the shape (n, 2), but this array has {} axes",
+                positions.shape.len() + 1
+            );
+            return Err(Error::new("shape", message));
+        }
+        let numbers = positions.numbers.chunks_exact(2);
+        let positions: Vec<DVec2> = numbers.map(DVec2::from_slice).collect();
+        let domain = domain.map_or_else(|| rectangle_around(&positions), |domain| domain.0);
+        Ok(Arc::new(PointSet::new(domain, positions)?))
+    }
+
+    /// The positions as an array that cannot be written, made once.
+    fn shared<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        let array = self.array.get_or_try_init(py, || -> Result<Py<PyAny>> {
+            let array = positions(py, self.set.positions())?;
+            let flags = PyDict::new(py);
+            flags.set_item("write", false)?;
+            array.call_method("setflags", (), Some(&flags))?;
+            Ok(array.unbind())
+        })?;
+        Ok(array.bind(py).clone())
+    }
+}
+
+/// Positions as an array of the shape (n, 2).
+pub(crate) fn positions<'py>(py: Python<'py>, positions: &[DVec2]) -> Result<Bound<'py, PyAny>> {
+    let numbers: Vec<[f64; 2]> = positions.iter().map(DVec2::to_array).collect();
+    arrays::array(py, numbers.into_flattened(), &[positions.len(), 2])
+}
+
+/// The smallest rectangle around positions, whose sides are at least a little longer than nothing.
+fn rectangle_around(positions: &[DVec2]) -> dapple::points::Domain {
+    // What is not finite is refused with its point when the set is made.
+    let held = || {
+        positions
+            .iter()
+            .map(|at| at.clamp(DVec2::splat(-FARTHEST), DVec2::splat(FARTHEST)))
+    };
+    let low = held().reduce(DVec2::min).unwrap_or(DVec2::ZERO);
+    let high = held().reduce(DVec2::max).unwrap_or(DVec2::ONE);
+    let largest = (high - low).max_element();
+    let least = if largest > 0.0 { largest * 1e-6 } else { 1.0 };
+    let size = (high - low).max(DVec2::splat(least));
+    // Far from the origin, rounding may leave the last point outside.
+    let rounding = low.abs().max(high.abs()) * (2.0 * f64::EPSILON);
+    let size = DVec2::select((low + size).cmplt(high), size + rounding, size);
+    dapple::points::Domain::rectangle(low, size)
+}
+
+#[pymethods]
+impl Points {
+    #[new]
+    #[pyo3(signature = (array, domain = None))]
+    fn from_array(array: &Bound<'_, PyAny>, domain: Option<&Domain>) -> Result<Self> {
+        Ok(Self {
+            set: Self::read(array, domain)?,
+            array: PyOnceLock::new(),
+        })
+    }
+
+    /// The positions, float64 of the shape (n, 2), x first. They cannot be written.
+    #[getter]
+    fn array<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        self.shared(py)
+    }
+
+    /// Where the points lie, and along which axes that wraps.
+    #[getter]
+    fn domain(&self) -> Domain {
+        Domain(*self.set.domain())
+    }
+
+    /// The smallest distance of two points, around axes that wrap where that is shorter; None of fewer than two points.
+    fn minimum_distance(&self, py: Python<'_>) -> Result<Option<f64>> {
+        threads::run(py, || self.set.minimum_distance())
+    }
+
+    /// The largest circle without a point in it whose center lies in the domain, or None without points.
+    fn largest_empty_circle<'py>(&self, py: Python<'py>) -> Result<Option<Bound<'py, PyAny>>> {
+        let circle = threads::run(py, || self.set.largest_empty_circle())?;
+        let circle = circle.map(|circle| {
+            let center = <(f64, f64)>::from(circle.center);
+            arrays::result(py, "EmptyCircle", (center, circle.radius))
+        });
+        circle.transpose()
+    }
+
+    /// How many other points a point has within a distance, on average.
+    fn mean_neighbor_count(&self, py: Python<'_>, distance: f64) -> Result<f64> {
+        threads::run(py, || self.set.mean_neighbor_count(distance))
+    }
+
+    /// The number of points per square of side `distance`: 0.697 for random points that keep this distance until no more
+    /// fit, at most 1.155.
+    fn normalized_density(&self, distance: f64) -> f64 {
+        self.set.normalized_density(distance)
+    }
+
+    /// The positions, in another type if that is asked for; NumPy calls it.
+    #[pyo3(signature = (dtype = None, copy = None))]
+    fn __array__<'py>(
+        &self,
+        py: Python<'py>,
+        dtype: Option<&Bound<'py, PyAny>>,
+        copy: Option<bool>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let array = self.shared(py)?;
+        let dtype = dtype.map_or_else(|| array.getattr("dtype"), |dtype| Ok(dtype.clone()))?;
+        let options = PyDict::new(py);
+        options.set_item("copy", copy.unwrap_or(false))?;
+        Ok(array.call_method("astype", (dtype,), Some(&options))?)
+    }
+
+    fn __len__(&self) -> usize {
+        self.set.len()
+    }
+
+    fn __getitem__<'py>(
+        &self,
+        py: Python<'py>,
+        index: &Bound<'py, PyAny>,
+    ) -> Result<Bound<'py, PyAny>> {
+        Ok(self.shared(py)?.get_item(index)?)
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        Ok(self.shared(py)?.try_iter()?.into_any())
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other
+            .cast::<Self>()
+            .is_ok_and(|other| other.get().set == self.set)
+    }
+
+    fn __getnewargs__<'py>(&self, py: Python<'py>) -> Result<(Bound<'py, PyAny>, Domain)> {
+        Ok((self.shared(py)?, self.domain()))
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<{} points in {}>",
+            self.set.len(),
+            self.domain().__repr__()
+        )
+    }
+}
+
+/// The power spectrum of points, averaged over rings of equal frequency, and over several sets of one domain.
+///
+/// Frequencies are in units of sqrt(n / area): 1 is about one over the distance of neighbors. White noise has a power of 1
+/// everywhere; of points that keep their distance little is left at low frequencies ("blue noise"). Lagae and Dutré, "A
+/// Comparison of Methods for Generating Poisson Disk Distributions" (2008).
+///
+/// Parameters
+/// ----------
+/// points : Points, or a list of them with the same domain, which must wrap along both axes.
+/// highest_frequency : how far the spectrum reaches, above 0.
+/// ring_width : the width of a ring, above 0.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> found = dp.spectrum(dp.poisson_disk(dp.Domain(1), distance=0.04, seed=3))
+/// >>> bool(found.power[found.frequency < 0.5].mean() < 0.1)
+/// True
+#[pyfunction]
+#[pyo3(signature = (points, *, highest_frequency = 2.0, ring_width = 0.05))]
+pub(crate) fn spectrum<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    highest_frequency: f64,
+    ring_width: f64,
+) -> Result<Bound<'py, PyAny>> {
+    let sets: Vec<Bound<'_, PyAny>> = match points.cast::<PyList>() {
+        Ok(sets) if sets.iter().all(|set| set.is_instance_of::<Points>()) => sets.iter().collect(),
+        _ => vec![points.clone()],
+    };
+    let sets = sets
+        .iter()
+        .map(|set| Ok((*Points::read(set, None)?).clone()));
+    let sets: Vec<PointSet> = sets.collect::<Result<_>>()?;
+    let options = dapple::points::SpectrumOptions {
+        highest_frequency,
+        ring_width,
+    };
+    let rings = threads::run(py, || dapple::points::spectrum(&sets, &options))??.rings;
+    let column = |number: &dyn Fn(&dapple::points::SpectrumRing) -> f64| {
+        let numbers: Vec<f64> = rings.iter().map(number).collect();
+        arrays::array(py, numbers, &[rings.len()])
+    };
+    let counts: Vec<u32> = rings.iter().map(|ring| ring.n_frequencies).collect();
+    let arrays = (
+        column(&|ring| ring.frequency)?,
+        column(&|ring| ring.power)?,
+        column(&|ring| ring.anisotropy)?,
+        arrays::array(py, counts, &[rings.len()])?,
+    );
+    arrays::result(py, "Spectrum", arrays)
+}

@@ -1,0 +1,223 @@
+//! What control points are given: values, labels and orientations.
+
+use crate::arrays;
+use crate::error::Result;
+use crate::points::{Domain, Graph, Points, varying};
+use crate::seed::SeedArgument;
+use crate::threads;
+use dapple::pups::ReferenceImage;
+use dapple::raster::glam::{DVec2, DVec3};
+use pyo3::prelude::*;
+
+/// Labels as indices of NumPy arrays.
+fn labels<'py>(py: Python<'py>, labels: &[u32]) -> Result<Bound<'py, PyAny>> {
+    let labels: Vec<i64> = labels.iter().copied().map(i64::from).collect();
+    let shape = [labels.len()];
+    arrays::array(py, labels, &shape)
+}
+
+/// Vectors as an array of the shape (n, 3).
+fn vectors<'py>(py: Python<'py>, vectors: Vec<DVec3>) -> Result<Bound<'py, PyAny>> {
+    let shape = [vectors.len(), 3];
+    let numbers: Vec<[f64; 3]> = vectors
+        .into_iter()
+        .map(|vector| vector.to_array())
+        .collect();
+    arrays::array(py, numbers.into_flattened(), &shape)
+}
+
+/// Independent random values from 0 to below 1, float32 of the shape (count,): those of the textures here.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.random_values(3, seed=7).shape
+/// (3,)
+#[pyfunction]
+#[pyo3(signature = (count, *, seed = SeedArgument::default()), text_signature = "(count, *, seed=0)")]
+pub(crate) fn random_values(
+    py: Python<'_>,
+    count: usize,
+    seed: SeedArgument,
+) -> Result<Bound<'_, PyAny>> {
+    check_count(count)?;
+    arrays::array(py, dapple::pups::random_values(count, seed.0), &[count])
+}
+
+/// Independent random labels from 0 to below `n_labels`, each as probable, int64 of the shape (count,).
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> int(dp.random_labels(100, 4, seed=7).max())
+/// 3
+#[pyfunction]
+#[pyo3(signature = (count, n_labels, *, seed = SeedArgument::default()), text_signature = "(count, n_labels, *, seed=0)")]
+pub(crate) fn random_labels(
+    py: Python<'_>,
+    count: usize,
+    n_labels: u32,
+    seed: SeedArgument,
+) -> Result<Bound<'_, PyAny>> {
+    check_count(count)?;
+    labels(py, &dapple::pups::random_labels(count, n_labels, seed.0)?)
+}
+
+/// Refuses more points than a set has.
+fn check_count(count: usize) -> Result<()> {
+    if count <= 1 << 31 {
+        return Ok(());
+    }
+    let message = format!("the count is {count}, but it must be at most 2^31");
+    Err(crate::error::Error::new("too_many", message))
+}
+
+/// Random labels 0 and 1, int64 of the shape (n,): 1 with a probability that may depend on the position.
+///
+/// `probability` is a number from 0 to 1, a ramp, an array over the domain, or a `Field`, as in `poisson_disk`.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> points = dp.white_noise(dp.Domain(1), 1000)
+/// >>> ramp = {"ramp": {"from": [0, 0], "to": [1, 0], "start": 0, "end": 1}}
+/// >>> white = dp.biased_labels(points, ramp, seed=2)
+/// >>> bool(white[points[:, 0] > 0.5].mean() > 0.7)
+/// True
+#[pyfunction]
+#[pyo3(signature = (points, probability, *, domain = None, seed = SeedArgument::default()),
+    text_signature = "(points, probability, *, domain=None, seed=0)")]
+pub(crate) fn biased_labels<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    probability: &Bound<'py, PyAny>,
+    domain: Option<&Domain>,
+    seed: SeedArgument,
+) -> Result<Bound<'py, PyAny>> {
+    let points = Points::read(points, domain)?;
+    let probability = varying("probability", probability, points.domain())?;
+    let found = threads::run(py, || {
+        dapple::pups::biased_labels(&points, &probability, seed.0)
+    })??;
+    labels(py, &found)
+}
+
+/// Labels of groups of points that a graph connects, int64 of the shape (n,), from 0 without gaps.
+///
+/// A group has from `sizes[0]` to `sizes[1]` points, 1 to 16, or fewer where it cannot be otherwise.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> graph = dp.delaunay(dp.poisson_disk(dp.Domain(1), distance=0.1))
+/// >>> labels = dp.grouped_labels(graph, (3, 4), seed=2)
+#[pyfunction]
+#[pyo3(signature = (graph, sizes = [3, 4], *, seed = SeedArgument::default()), text_signature = "(graph, sizes=(3, 4), *, seed=0)")]
+pub(crate) fn grouped_labels<'py>(
+    py: Python<'py>,
+    graph: &Graph,
+    sizes: [u32; 2],
+    seed: SeedArgument,
+) -> Result<Bound<'py, PyAny>> {
+    let found = threads::run(py, || {
+        dapple::pups::grouped_labels(graph.graph(), sizes, seed.0)
+    })??;
+    labels(py, &found)
+}
+
+/// Random labels 0 and 1 after a gray image, int64 of the shape (n,): 1 with the probability of the pixel under the point.
+///
+/// `image` has the shape (rows, columns) and values from 0 to 1; it covers the domain of the points.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> points = dp.white_noise(dp.Domain(1), 100)
+/// >>> labels = dp.reference_labels(points, [[0.0, 1.0]])
+/// >>> bool((labels == (points[:, 0] >= 0.5)).all())
+/// True
+#[pyfunction]
+#[pyo3(signature = (points, image, *, domain = None, seed = SeedArgument::default()),
+    text_signature = "(points, image, *, domain=None, seed=0)")]
+pub(crate) fn reference_labels<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    image: &Bound<'py, PyAny>,
+    domain: Option<&Domain>,
+    seed: SeedArgument,
+) -> Result<Bound<'py, PyAny>> {
+    let points = Points::read(points, domain)?;
+    let image = ReferenceImage::new(arrays::raster("image", image)?)?;
+    let found = threads::run(py, || {
+        dapple::pups::reference_labels(&points, &image, seed.0)
+    })?;
+    labels(py, &found)
+}
+
+/// Independent random unit vectors, uniform on the sphere: float64 of the shape (count, 3).
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.random_orientations(5, seed=7).shape
+/// (5, 3)
+#[pyfunction]
+#[pyo3(signature = (count, *, seed = SeedArgument::default()), text_signature = "(count, *, seed=0)")]
+pub(crate) fn random_orientations(
+    py: Python<'_>,
+    count: usize,
+    seed: SeedArgument,
+) -> Result<Bound<'_, PyAny>> {
+    check_count(count)?;
+    vectors(py, dapple::pups::random_orientations(count, seed.0))
+}
+
+/// Unit vectors in the plane that point away from a center (x, y), by the shortest way around axes that wrap: float64 of
+/// the shape (n, 3).
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.outward_orientations([[1, 0], [0, 2]], (0, 0))
+/// array([[1., 0., 0.],
+///        [0., 1., 0.]])
+#[pyfunction]
+#[pyo3(signature = (points, center, *, domain = None))]
+pub(crate) fn outward_orientations<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    center: (f64, f64),
+    domain: Option<&Domain>,
+) -> Result<Bound<'py, PyAny>> {
+    let points = Points::read(points, domain)?;
+    vectors(
+        py,
+        dapple::pups::outward_orientations(&points, DVec2::from(center))?,
+    )
+}
+
+/// Unit vectors in the plane at an angle in radians, from x towards y: float64 of the shape (n, 3).
+///
+/// `angle` is a number, a ramp, an array over the domain, or a `Field`, as in `poisson_disk`.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp
+/// >>> dp.angle_orientations([[1, 0], [0, 2]], 0.0)
+/// array([[1., 0., 0.],
+///        [1., 0., 0.]])
+#[pyfunction]
+#[pyo3(signature = (points, angle, *, domain = None))]
+pub(crate) fn angle_orientations<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    angle: &Bound<'py, PyAny>,
+    domain: Option<&Domain>,
+) -> Result<Bound<'py, PyAny>> {
+    let points = Points::read(points, domain)?;
+    let angle = varying("angle", angle, points.domain())?;
+    vectors(
+        py,
+        threads::run(py, || dapple::pups::angle_orientations(&points, &angle))??,
+    )
+}

@@ -1,0 +1,383 @@
+//! Control points with weights that sum to 1 at every position, and what they make of values.
+
+use super::shared::{Build, Shared};
+use super::vectors::Values;
+use crate::arrays::{self, Positions};
+use crate::color_field;
+use crate::data;
+use crate::error::{Error, Result};
+use crate::function::{Made, position};
+use crate::grid::{Grid, GridArguments};
+use crate::points::{Domain, Graph, GraphMade, Points};
+use crate::seed::SeedArgument;
+use crate::threads;
+use dapple::points::{PointIdx, PointSet};
+use dapple::pups::{Orientation, Orientations, Pups, PupsOptions};
+use dapple::raster::RasterViewMut;
+use dapple::raster::glam::{DVec2, DVec3};
+use dapple::raster::parallel;
+use numpy::{AllowTypeChange, PyArrayLikeDyn};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+use serde::{Deserialize, Serialize};
+
+/// How a net of control points was made.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct NetMade {
+    domain: dapple::points::Domain,
+    points: Vec<DVec2>,
+    graph: GraphMade,
+    options: PupsOptions,
+}
+
+impl Build for NetMade {
+    type Built = Pups;
+
+    fn build(&self) -> Result<Pups> {
+        let points = PointSet::new(self.domain, self.points.clone())?;
+        let options = self.options.clone();
+        Ok(match self.graph {
+            GraphMade::Delaunay => Pups::delaunay_with(&points, options)?,
+            graph => Pups::new(&points, &graph.build(&points)?, options)?,
+        })
+    }
+}
+
+/// How values of control points were made a field.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PupsMade {
+    net: Shared<NetMade>,
+    values: Vec<f32>,
+    /// How many values there are in a row, where they have rows.
+    channels: Option<usize>,
+    labels: Option<Vec<u32>>,
+}
+
+impl Build for PupsMade {
+    type Built = Values;
+
+    fn build(&self) -> Result<Values> {
+        Values::new(
+            self.net.get()?,
+            &self.values,
+            self.channels,
+            self.labels.as_deref(),
+        )
+    }
+}
+
+/// Control points, and weights for them that sum to 1 at every position: Caron and Mould, "Partition of Unity Parametrics
+/// for Texture Synthesis" (2013).
+///
+/// The weight of a point falls off along its axes, which are its edges in a graph, and is 0 beyond its neighbors. With
+/// values at the points, the weighted mean is a smooth field; with labels, the point with the largest weight gives cells.
+///
+/// Parameters
+/// ----------
+/// points : Points, or an array (n, 2) in `domain`.
+/// domain : where an array of points lies, and along which axes that wraps; by default the rectangle around it, which does
+///     not.
+/// graph : a graph of the points; Delaunay's by default.
+/// axis_scale : the length of axes as a multiple of their edges, above 0.5 and at most 16. Up to 1 the field has, at a
+///     control point, its value; above it is smoother.
+/// weight : how the weight falls off: "cubic", "quintic", or {"oscillating": {"dips": 3, "depth": 0.5}} with 1 to 16 dips
+///     and a depth of 0 to 0.99.
+/// orientations : where the weight of each point leans: None, "random" (drawn from `seed`), an array (n, 2) or (n, 3) of
+///     vectors, {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle": radians}.
+/// strength : how strongly orientations shift weights, from 0 to below 1.
+/// seed : int, from 0 to 2**64 - 1.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp, numpy as np
+/// >>> points = dp.poisson_disk(dp.Domain(1), distance=0.1, seed=3)
+/// >>> partition = dp.Partition(points)
+/// >>> round(float(partition.weights([0.3, 0.4]).weights.sum()), 6)
+/// 1.0
+/// >>> land = partition.field(np.random.default_rng(1).random(len(points)))
+#[pyclass(frozen, module = "dapple_textures")]
+pub(crate) struct Partition {
+    net: Shared<NetMade>,
+    pups: Pups,
+}
+
+/// How control points are connected and weighted, as it is said.
+struct NetArguments<'a, 'py> {
+    points: &'a Bound<'py, PyAny>,
+    domain: Option<&'a Domain>,
+    graph: Option<&'a Graph>,
+    axis_scale: f64,
+    weight: Option<&'a Bound<'py, PyAny>>,
+    orientations: Option<&'a Bound<'py, PyAny>>,
+    strength: f64,
+    seed: SeedArgument,
+}
+
+impl NetArguments<'_, '_> {
+    fn partition(&self, py: Python<'_>) -> Result<Partition> {
+        let points = Points::read(self.points, self.domain)?;
+        if self.graph.is_some_and(|graph| **graph.set() != *points) {
+            let message = "the graph is of other points than those that are given";
+            return Err(Error::new("different_points", message));
+        }
+        let orientation = self.vectors(&points)?.map(|vectors| Orientation {
+            strength: self.strength,
+            vectors,
+        });
+        let net = Shared::new(NetMade {
+            domain: *points.domain(),
+            points: points.positions().to_vec(),
+            graph: self.graph.map_or(GraphMade::Delaunay, Graph::made),
+            options: PupsOptions {
+                axis_scale: self.axis_scale,
+                weight: data::options_or("weight", self.weight, Default::default())?,
+                orientation,
+            },
+        });
+        let pups = threads::run(py, || net.get())??;
+        Ok(Partition { net, pups })
+    }
+
+    /// The vectors of the orientations.
+    fn vectors(&self, points: &PointSet) -> Result<Option<Vec<DVec3>>> {
+        let Some(orientations) = self.orientations else {
+            return Ok(None);
+        };
+        if orientations.is_instance_of::<PyString>() || orientations.is_instance_of::<PyDict>() {
+            let orientations: Orientations = data::options("orientations", orientations)?;
+            let seed = self.seed.0.child("orientation", 0);
+            return Ok(orientations.vectors(points, seed)?);
+        }
+        let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> = orientations.extract()?;
+        let array = array.as_array();
+        let axes = match *array.shape() {
+            [_, axes @ (2 | 3)] => axes,
+            _ => {
+                let message = format!(
+                    "the orientations have the shape {:?}, but they must be rows of 2 or 3 numbers",
+                    array.shape()
+                );
+                return Err(Error::new("shape", message));
+            }
+        };
+        let numbers: Vec<f64> = array.iter().copied().collect();
+        let vector = |row: &[f64]| DVec3::new(row[0], row[1], row.get(2).copied().unwrap_or(0.0));
+        Ok(Some(numbers.chunks_exact(axes).map(vector).collect()))
+    }
+}
+
+/// Values and how many there are in a row.
+fn read_values(values: &Bound<'_, PyAny>) -> Result<(Vec<f32>, Option<usize>)> {
+    let array: PyArrayLikeDyn<'_, f32, AllowTypeChange> = values.extract()?;
+    let array = array.as_array();
+    let channels = match *array.shape() {
+        [_] => None,
+        [_, channels] => Some(channels),
+        _ => {
+            let message = format!(
+                "the values have the shape {:?}, but (n,) or (n, channels) is needed",
+                array.shape()
+            );
+            return Err(Error::new("shape", message));
+        }
+    };
+    Ok((array.iter().copied().collect(), channels))
+}
+
+#[pymethods]
+impl Partition {
+    #[new]
+    #[pyo3(signature = (points, *, domain = None, graph = None, axis_scale = 1.0, weight = None, orientations = None, strength = 0.5, seed = SeedArgument::default()),
+        text_signature = "(points, *, domain=None, graph=None, axis_scale=1.0, weight='cubic', orientations=None, strength=0.5, seed=0)")]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
+    fn new(
+        py: Python<'_>,
+        points: &Bound<'_, PyAny>,
+        domain: Option<&Domain>,
+        graph: Option<&Graph>,
+        axis_scale: f64,
+        weight: Option<&Bound<'_, PyAny>>,
+        orientations: Option<&Bound<'_, PyAny>>,
+        strength: f64,
+        seed: SeedArgument,
+    ) -> Result<Self> {
+        let arguments = NetArguments {
+            points,
+            domain,
+            graph,
+            axis_scale,
+            weight,
+            orientations,
+            strength,
+            seed,
+        };
+        arguments.partition(py)
+    }
+
+    /// The field of the control points' values: a `Field` for values of the shape (n,), a `ColorField` for (n, channels)
+    /// with 1 to 8 channels.
+    ///
+    /// With `labels`, a whole number for each point, `values` are those of the labels, and every position has the value of
+    /// the label of its strongest point: cells with sharp borders. `labels=range(n)` makes each point a cell.
+    #[pyo3(signature = (values, *, labels = None))]
+    fn field(
+        &self,
+        py: Python<'_>,
+        values: &Bound<'_, PyAny>,
+        labels: Option<Vec<u32>>,
+    ) -> Result<Py<PyAny>> {
+        let (values, channels) = read_values(values)?;
+        let made = PupsMade {
+            net: self.net.clone(),
+            values,
+            channels,
+            labels,
+        };
+        color_field::object(py, Made::Pups(Shared::new(made)))
+    }
+
+    /// The points with a weight at positions of the shape (…, 2), and their weights, which sum to 1: those of position i
+    /// are `indices[indptr[i]:indptr[i + 1]]` and `weights[…]`, as in `scipy.sparse.csr_array`.
+    ///
+    /// A point may come more than once where its copies across axes that wrap have weights.
+    fn weights<'py>(
+        &self,
+        py: Python<'py>,
+        positions: &Bound<'py, PyAny>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let positions = Positions::read(positions, 2)?.numbers;
+        let rows = threads::run(py, || {
+            parallel::map_at_least(256, positions.len() / 2, |index| {
+                self.pups
+                    .weights(position(&positions[2 * index..2 * index + 2]))
+            })
+        })?;
+        let mut offsets = vec![0_i64];
+        let mut end = 0;
+        offsets.extend(rows.iter().map(|row| {
+            end += row.len() as i64;
+            end
+        }));
+        let all = || rows.iter().flatten();
+        let points: Vec<i64> = all().map(|(point, _)| point.0.into()).collect();
+        let weights: Vec<f32> = all().map(|&(_, weight)| weight).collect();
+        let (n_offsets, n_weights) = (offsets.len(), weights.len());
+        let parts = (
+            arrays::array(py, offsets, &[n_offsets])?,
+            arrays::array(py, points, &[n_weights])?,
+            arrays::array(py, weights, &[n_weights])?,
+        );
+        arrays::result(py, "Weights", parts)
+    }
+
+    /// The point with the largest weight at the pixels of an array (rows, columns), uint32: `labels[…]` of it are the
+    /// labels of the pixels.
+    ///
+    /// The parameters are those of `Field.render`.
+    #[pyo3(signature = (size, *, extent = None, origin = None, window = None))]
+    fn strongest<'py>(
+        &self,
+        py: Python<'py>,
+        size: &Bound<'py, PyAny>,
+        extent: Option<&Bound<'py, PyAny>>,
+        origin: Option<&Bound<'py, PyAny>>,
+        window: Option<&Bound<'py, PyAny>>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let arguments = GridArguments {
+            size,
+            extent,
+            origin,
+            window,
+        };
+        let grid = Grid::new(&arguments, &self.pups.domain().period())?;
+        let (n_values, window) = (grid.n_values()?, grid.plane());
+        let points = threads::run(py, || -> Result<Vec<PointIdx>> {
+            let mut points = vec![PointIdx(0); n_values];
+            let view = RasterViewMut::new(&mut points, window.size[0] as usize, window.size)?;
+            self.pups.render_strongest(&window, view)?;
+            Ok(points)
+        })??;
+        let points: Vec<u32> = points.into_iter().map(|point| point.0).collect();
+        arrays::array(py, points, &grid.shape())
+    }
+
+    fn __len__(&self) -> usize {
+        self.pups.n_points()
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other
+            .cast::<Self>()
+            .is_ok_and(|other| other.get().net == self.net)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> Result<(Bound<'py, PyAny>, (String,))> {
+        let make = py
+            .import("dapple_textures._native")?
+            .getattr("_partition_from_description")?;
+        let description = serde_json::to_string(&self.net);
+        let description =
+            description.map_err(|error| Error::new("description", error.to_string()))?;
+        Ok((make, (description,)))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<partition of {} points>", self.pups.n_points())
+    }
+}
+
+/// The partition that is described.
+#[pyfunction]
+pub(crate) fn _partition_from_description(py: Python<'_>, description: &str) -> Result<Partition> {
+    let net: core::result::Result<Shared<NetMade>, _> = serde_json::from_str(description);
+    let net = net.map_err(|error| Error::new("description", error.to_string()))?;
+    let pups = threads::run(py, || net.get())??;
+    Ok(Partition { net, pups })
+}
+
+/// The field of values at control points: smooth, exact at the points, and repeating where their domain wraps; Caron and
+/// Mould, "Partition of Unity Parametrics for Texture Synthesis" (2013).
+///
+/// It is `Partition(points, …).field(values, labels=labels)`; the parameters are those.
+///
+/// Examples
+/// --------
+/// >>> import dapple_textures as dp, numpy as np
+/// >>> points = dp.poisson_disk(dp.Domain(1), distance=0.1, seed=3)
+/// >>> land = dp.pups(points, np.random.default_rng(1).random(len(points)))
+/// >>> land.render((64, 64)).shape, land.period
+/// ((64, 64), [1.0, 1.0])
+/// >>> palette = np.array([[0.8, 0.2, 0.1], [0.1, 0.3, 0.6]])
+/// >>> labels = dp.random_labels(len(points), 2, seed=5)
+/// >>> dp.pups(points, palette[labels]).render(64).shape
+/// (64, 64, 3)
+/// >>> cells = dp.pups(points, palette, labels=labels)
+#[pyfunction]
+#[pyo3(signature = (points, values, *, labels = None, domain = None, graph = None, axis_scale = 1.0, weight = None, orientations = None, strength = 0.5, seed = SeedArgument::default()),
+    text_signature = "(points, values, *, labels=None, domain=None, graph=None, axis_scale=1.0, weight='cubic', orientations=None, strength=0.5, seed=0)")]
+#[expect(clippy::too_many_arguments, reason = "they are keywords")]
+pub(crate) fn pups(
+    py: Python<'_>,
+    points: &Bound<'_, PyAny>,
+    values: &Bound<'_, PyAny>,
+    labels: Option<Vec<u32>>,
+    domain: Option<&Domain>,
+    graph: Option<&Graph>,
+    axis_scale: f64,
+    weight: Option<&Bound<'_, PyAny>>,
+    orientations: Option<&Bound<'_, PyAny>>,
+    strength: f64,
+    seed: SeedArgument,
+) -> Result<Py<PyAny>> {
+    let arguments = NetArguments {
+        points,
+        domain,
+        graph,
+        axis_scale,
+        weight,
+        orientations,
+        strength,
+        seed,
+    };
+    arguments.partition(py)?.field(py, values, labels)
+}

@@ -1,0 +1,69 @@
+//! Descriptions that share what is made from them.
+
+use crate::error::Result;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::sync::{Arc, OnceLock};
+
+/// A description of something that takes time to make.
+pub(crate) trait Build {
+    /// What is made, cheap to clone.
+    type Built: Clone;
+
+    /// Makes it.
+    fn build(&self) -> Result<Self::Built>;
+}
+
+/// A description and what is made from it, once, for all clones. As data and in comparisons it is the description.
+pub(crate) struct Shared<T: Build>(Arc<(T, OnceLock<T::Built>)>);
+
+impl<T: Build> Shared<T> {
+    /// A description from which nothing is made yet.
+    pub(crate) fn new(made: T) -> Self {
+        Self(Arc::new((made, OnceLock::new())))
+    }
+
+    /// The description.
+    pub(crate) fn made(&self) -> &T {
+        &self.0.0
+    }
+
+    /// What the description gives.
+    pub(crate) fn get(&self) -> Result<T::Built> {
+        let (made, built) = &*self.0;
+        if let Some(built) = built.get() {
+            return Ok(built.clone());
+        }
+        let new = made.build()?;
+        Ok(built.get_or_init(|| new).clone())
+    }
+}
+
+impl<T: Build> Clone for Shared<T> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
+impl<T: Build + PartialEq> PartialEq for Shared<T> {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0) || self.made() == other.made()
+    }
+}
+
+impl<T: Build + core::fmt::Debug> core::fmt::Debug for Shared<T> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        self.made().fmt(f)
+    }
+}
+
+impl<T: Build + Serialize> Serialize for Shared<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> core::result::Result<S::Ok, S::Error> {
+        self.made().serialize(serializer)
+    }
+}
+
+impl<'de, T: Build + Deserialize<'de>> Deserialize<'de> for Shared<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> core::result::Result<Self, D::Error> {
+        T::deserialize(deserializer).map(Self::new)
+    }
+}

@@ -1,0 +1,188 @@
+//! The textures of the paper, by their names and options as data.
+
+use super::shared::{Build, Shared};
+use super::vectors::Values;
+use crate::arrays;
+use crate::color_field;
+use crate::data;
+use crate::error::{Error, Result};
+use crate::function::Made;
+use crate::points::Domain;
+use crate::seed::SeedArgument;
+use dapple::hash::Seed;
+use dapple::pups::{PupsField, PupsRecipe, ReferenceImage};
+use dapple::raster::Raster;
+use pyo3::prelude::*;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+/// How a texture of the paper was made.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct TextureMade {
+    kind: String,
+    /// All options, but for the domain where there is another one.
+    options: Value,
+    domain: Option<dapple::points::Domain>,
+    image: Option<Image>,
+    seed: Seed,
+}
+
+/// A gray image.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Image {
+    size: [u32; 2],
+    values: Vec<f32>,
+}
+
+impl Build for TextureMade {
+    type Built = Values;
+
+    fn build(&self) -> Result<Values> {
+        Ok(match (kind(&self.kind)?.build)(self)? {
+            PupsField::Numbers(field) => Values::Numbers(field),
+            PupsField::Colors(texture) => Values::Vectors(Arc::new(*texture)),
+        })
+    }
+}
+
+/// A kind of textures.
+struct Kind {
+    name: &'static str,
+    about: &'static str,
+    follows_image: bool,
+    /// The options with all their defaults.
+    complete: fn(Value) -> Result<Value>,
+    build: fn(&TextureMade) -> Result<PupsField>,
+}
+
+/// The options of a kind of textures.
+trait Texture {
+    const FOLLOWS_IMAGE: bool;
+    type Options: DeserializeOwned + Serialize;
+
+    fn build(options: Self::Options, made: &TextureMade) -> Result<PupsField>;
+}
+
+/// A kind of textures that follow an image.
+struct Referenced<T>(PhantomData<T>);
+
+impl<T: PupsRecipe + DeserializeOwned + Serialize> Texture for T {
+    const FOLLOWS_IMAGE: bool = false;
+    type Options = T;
+
+    fn build(options: T, made: &TextureMade) -> Result<PupsField> {
+        Ok(placed(options, made.domain).build(&(), made.seed)?)
+    }
+}
+
+impl<T: PupsRecipe<ReferenceImage> + DeserializeOwned + Serialize> Texture for Referenced<T> {
+    const FOLLOWS_IMAGE: bool = true;
+    type Options = T;
+
+    fn build(options: T, made: &TextureMade) -> Result<PupsField> {
+        let Some(image) = &made.image else {
+            return Err(Error::new("image", "an image is needed"));
+        };
+        let image = ReferenceImage::new(Raster::from_vec(image.size, image.values.clone())?)?;
+        Ok(placed(options, made.domain).build(&image, made.seed)?)
+    }
+}
+
+/// The options with a domain, which wraps along no axis along which the texture changes.
+fn placed<T: PupsRecipe<I>, I>(mut options: T, domain: Option<dapple::points::Domain>) -> T {
+    if let Some(domain) = domain {
+        let usual = T::default().domain_mut().wrap;
+        *options.domain_mut() = dapple::points::Domain {
+            wrap: [0, 1].map(|axis| domain.wrap[axis] && usual[axis]),
+            ..domain
+        };
+    }
+    options
+}
+
+/// The row of a kind in the table.
+const fn row<T: Texture>(name: &'static str, about: &'static str) -> Kind {
+    Kind {
+        name,
+        about,
+        follows_image: T::FOLLOWS_IMAGE,
+        complete: |options| {
+            let options: T::Options = data::read("options", options)?;
+            serde_json::to_value(options).map_err(|error| Error::new("options", error.to_string()))
+        },
+        build: |made| T::build(data::read(&made.kind, made.options.clone())?, made),
+    }
+}
+
+macro_rules! kinds {
+    ($(#[doc = $about:literal] $name:literal $variant:ident($options:ty),)*) => {
+        /// All kinds of textures.
+        const KINDS: &[Kind] = &[$(row::<$options>($name, $about)),*];
+    };
+}
+
+dapple::pups::recipes!(kinds);
+
+/// The kind of a name.
+fn kind(name: &str) -> Result<&'static Kind> {
+    let found = KINDS.iter().find(|kind| kind.name == name);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
+        let message = format!(
+            "the texture is `{name}`, but it must be one of {}",
+            names.join(", ")
+        );
+        Error::new("name", message)
+    })
+}
+
+/// The texture of a kind with these options.
+#[pyfunction]
+pub(crate) fn _texture(
+    py: Python<'_>,
+    name: &str,
+    options: &Bound<'_, PyAny>,
+    domain: Option<&Domain>,
+    image: Option<&Bound<'_, PyAny>>,
+    seed: SeedArgument,
+) -> Result<Py<PyAny>> {
+    let image = image.map(|image| -> Result<Image> {
+        let raster = arrays::raster("image", image)?;
+        Ok(Image {
+            size: raster.size(),
+            values: raster.into_pixels(),
+        })
+    });
+    let made = TextureMade {
+        kind: name.to_owned(),
+        options: (kind(name)?.complete)(data::value(options)?)?,
+        domain: domain.map(|domain| domain.0),
+        image: image.transpose()?,
+        seed: seed.0,
+    };
+    color_field::object(py, Made::Texture(Shared::new(made)))
+}
+
+/// All kinds of textures as JSON: for each what it is, whether it follows an image, and its options with their defaults.
+#[pyfunction]
+pub(crate) fn _texture_defaults() -> Result<String> {
+    let described = KINDS.iter().map(|kind| {
+        // Points that are given one by one have no default.
+        let given = if kind.name == "points" {
+            "{\"points\": []}"
+        } else {
+            "{}"
+        };
+        let given = serde_json::from_str(given).unwrap_or_default();
+        let described = Value::Object(Map::from_iter([
+            ("about".to_owned(), kind.about.trim().into()),
+            ("follows_image".to_owned(), kind.follows_image.into()),
+            ("options".to_owned(), (kind.complete)(given)?),
+        ]));
+        Ok((kind.name.to_owned(), described))
+    });
+    Ok(Value::Object(described.collect::<Result<_>>()?).to_string())
+}

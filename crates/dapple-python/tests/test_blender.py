@@ -1,0 +1,193 @@
+"""Materials in the real Blender (the module `bpy`)."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import dapple_textures as dp
+
+bpy = pytest.importorskip("bpy", reason="Blender's module bpy is not installed")
+
+from dapple_textures import blender  # noqa: E402
+
+
+@pytest.fixture(autouse=True)
+def empty():
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
+def pixels(image):
+    """The pixels of an image, row 0 on top."""
+    values = np.empty(image.size[0] * image.size[1] * 4, np.float32)
+    image.pixels.foreach_get(values)
+    return values.reshape(image.size[1], image.size[0], 4)[::-1]
+
+
+def node_of(material, socket, node="ShaderNodeBsdfPrincipled"):
+    shader = next(found for found in material.node_tree.nodes if found.bl_idname == node)
+    return shader.inputs[socket].links[0].from_node
+
+
+def test_images_have_their_pixels_and_color_spaces_after_saving(tmp_path):
+    plan = dp.Recipe.builtin("rock").plan()
+    blender.material(plan, (96, 128), name="Rock", displacement=True)
+    path = str(tmp_path / "rock.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    maps = plan.bake((96, 128), ["albedo", "orm", "normal", "height"])
+    for name, content, depth, space in [
+        ("albedo", "color", 8, "sRGB"),
+        ("orm", "data", 8, "Non-Color"),
+        ("normal", "normal", 16, "Non-Color"),
+        ("height", "gray", 16, "Non-Color"),
+    ]:
+        image = bpy.data.images[f"Rock_{name}"]
+        assert image.packed_file is not None and tuple(image.size) == (128, 96)
+        assert image.colorspace_settings.name == space
+        assert image.is_float == (depth == 16)
+        file = dp.encode_image(maps[name], content=content, depth=depth)
+        wanted = dp.decode_image(file, content="gray" if content == "gray" else "data")
+        wanted = np.broadcast_to(wanted.reshape(96, 128, -1), (96, 128, 3))
+        # A code of the file is one of Blender's.
+        codes = 2**depth - 1
+        assert np.array_equal(np.rint(pixels(image)[..., :3] * codes), np.rint(wanted * codes)), name
+
+
+def test_the_shader_is_what_gltf_and_blender_expect(tmp_path):
+    made = blender.material(dp.Recipe.builtin("rock"), 32, displacement=True)
+    assert node_of(made, "Base Color").image.name == "rock_albedo"
+    separate = node_of(made, "Roughness")
+    assert separate == node_of(made, "Metallic") and separate.bl_idname == "ShaderNodeSeparateColor"
+    assert node_of(made, "Normal").inputs["Color"].links[0].from_node.image.name == "rock_normal"
+    assert node_of(made, "Displacement", "ShaderNodeOutputMaterial").inputs["Scale"].default_value > 0
+    bpy.ops.mesh.primitive_plane_add()
+    bpy.context.object.data.materials.append(made)
+    bpy.ops.export_scene.gltf(filepath=str(tmp_path / "plane.glb"))
+    data = (tmp_path / "plane.glb").read_bytes()
+    length = int.from_bytes(data[12:16], "little")
+    material = json.loads(data[20 : 20 + length])["materials"][0]
+    assert {"normalTexture", "occlusionTexture", "pbrMetallicRoughness"} <= set(material)
+    assert {"baseColorTexture", "metallicRoughnessTexture"} <= set(material["pbrMetallicRoughness"])
+
+
+def test_a_material_is_baked_again_in_its_place():
+    recipe = dp.Recipe.builtin("rock")
+    first = blender.material(recipe, 32)
+    before = pixels(bpy.data.images["rock_albedo"]).copy()
+    again = blender.material(recipe.with_seed(99), 48)
+    assert again is first or again.name == first.name
+    assert len(bpy.data.materials) == 1 and len(bpy.data.images) == 3
+    after = pixels(bpy.data.images["rock_albedo"])
+    assert after.shape == (48, 48, 4) and not np.array_equal(after[:32, :32], before)
+    assert blender.baked_from(again) == dp.Recipe({**recipe.to_dict(), "seed": 99, "material": {**recipe.to_dict()["material"], "normal_y": "opengl"}})
+    assert blender.baked_from(bpy.data.materials.new("other")) is None
+
+
+def lit(made, angle=0.9):
+    """A plane with the material, seen from above, lit from the top of the picture."""
+    bpy.ops.mesh.primitive_plane_add(size=2)
+    bpy.context.object.data.materials.append(made)
+    bpy.ops.object.light_add(type="SUN", rotation=(-angle, 0, 0))
+    bpy.context.object.data.energy = 2
+    bpy.ops.object.camera_add(location=(0, 0, 4))
+    camera = bpy.context.object
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 2
+    scene = bpy.context.scene
+    scene.camera = camera
+    scene.render.engine, scene.cycles.samples = "CYCLES", 16
+    scene.render.resolution_x = scene.render.resolution_y = 96
+    scene.view_settings.view_transform = "Standard"
+    return scene
+
+
+def test_a_dome_that_is_lit_from_above_is_bright_above(tmp_path):
+    data = {
+        "dapple": 1,
+        "nodes": {"far": {"distance": {"center": [0.5, 0.5]}}, "dome": {"levels": {"input": "far", "from": [0.5, 0.0]}}},
+        "material": {"height": "dome", "relief": 0.3, "albedo": "#bcbcbc", "normal_y": "directx"},
+    }
+    scene = lit(blender.material(dp.Recipe(data), 128, name="Dome"))
+    scene.render.filepath = str(tmp_path / "dome.png")
+    bpy.ops.render.render(write_still=True)
+    picture = dp.read_image(tmp_path / "dome.png")[..., 0]
+    upper, lower, corner = picture[20:40, 38:58].mean(), picture[56:76, 38:58].mean(), picture[2:8, 2:8].mean()
+    # DirectX's normals, which the recipe asks for, would turn this around.
+    assert upper > 1.1 * corner and corner > 1.1 * lower, (upper, corner, lower)
+
+
+def test_a_synthesized_model_arrives_with_its_texture(tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    rng = np.random.default_rng(1)
+    exemplar = np.repeat(np.repeat(rng.random((6, 6, 3)), 4, 0), 4, 1).astype(np.float32)
+    model = dp.synthesize_on(trimesh.creation.torus(1.0, 0.4), exemplar, texels=512, sites=400, seed=1)
+    model.export(tmp_path / "torus.glb")
+    for source in (model, str(tmp_path / "torus.glb")):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        things = [thing for thing in blender.import_model(source) if thing.type == "MESH"]
+        assert len(things) == 1
+        mesh = things[0].data
+        assert len(mesh.polygons) == len(model.faces) and len(mesh.uv_layers) == 1
+        image = node_of(mesh.materials[0], "Base Color").image
+        assert image.packed_file is not None and image.colorspace_settings.name == "sRGB"
+
+
+@pytest.fixture
+def panel():
+    """The extension, registered as Blender does it."""
+    import importlib.util
+    from pathlib import Path
+
+    source = Path(__file__).parents[1] / "blender/__init__.py"
+    spec = importlib.util.spec_from_file_location("dapple_textures_panel", source)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    module.register()
+    yield module
+    module.unregister()
+
+
+def test_the_panel_bakes_and_follows(panel, tmp_path):
+    bpy.ops.mesh.primitive_plane_add()
+    settings = bpy.context.scene.dapple
+    settings.recipe, settings.size, settings.seed = "marble", "256", str(2**64 - 1)
+    assert bpy.ops.dapple.bake() == {"FINISHED"}
+    made = bpy.context.object.active_material
+    assert blender.baked_from(made).seed == 2**64 - 1
+    assert tuple(bpy.data.images["marble_albedo"].size) == (256, 256)
+    before = pixels(bpy.data.images["marble_albedo"]).copy()
+    settings.seed = "1"
+    assert bpy.app.timers.is_registered(panel._follow)
+    panel._follow()
+    assert not np.array_equal(pixels(bpy.data.images["marble_albedo"]), before)
+    assert len(bpy.data.materials) == 1
+    (tmp_path / "mine.toml").write_text('dapple = 1\n[nodes.a.image]\nfile = "a.png"\n[material]\nalbedo = "a"\n')
+    dp.write_image(tmp_path / "a.png", np.full((8, 8, 3), 0.25, np.float32))
+    settings.recipe, settings.path, settings.seed = "FILE", str(tmp_path / "mine.toml"), ""
+    assert bpy.ops.dapple.bake() == {"FINISHED"}
+    assert blender.baked_from(bpy.context.object.active_material).image_files == ["a.png"]
+    # What is refused leaves the last good material.
+    settings.seed = "many"
+    with pytest.raises(RuntimeError, match="many"):
+        bpy.ops.dapple.bake()
+    assert blender.baked_from(bpy.context.object.active_material).image_files == ["a.png"]
+
+
+def test_the_extension_holds_its_wheels(tmp_path):
+    import runpy
+    import tomllib
+    import zipfile
+    from pathlib import Path
+
+    build = runpy.run_path(str(Path(__file__).parents[1] / "blender/build.py"))["build"]
+    wheel = tmp_path / "dapple_textures-0.1.0-cp311-abi3-manylinux_2_17_x86_64.whl"
+    wheel.write_bytes(b"a wheel")
+    build([wheel], tmp_path / "panel.zip")
+    with zipfile.ZipFile(tmp_path / "panel.zip") as extension:
+        manifest = tomllib.loads(extension.read("blender_manifest.toml").decode())
+        assert manifest["wheels"] == [f"./wheels/{wheel.name}"] and manifest["platforms"] == ["linux-x64"]
+        assert extension.read(f"wheels/{wheel.name}") == b"a wheel"
+    with pytest.raises(SystemExit, match="no wheel"):
+        build([], tmp_path / "none.zip")
