@@ -2,7 +2,8 @@
 
 The blocks of ```python of a page run in order, in one namespace and in a folder of their own, and so do comments that begin with
 `python`, which readers do not see, and blocks of shell that are marked `.run`. The pictures and models of the page are the files
-that its code has written; `<!-- output -->` becomes what the block before it has printed.
+that its code has written; `<!-- output -->` becomes what the block before it has printed, and `<!-- output as markdown -->`
+likewise.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from typing import Any
 OPTIONAL = {"torch"}
 
 _BLOCK = re.compile(r"^(?:```(?P<kind>python|\{\.sh \.run\})|<!-- python) *\n(?P<code>.*?)^(?:```|-->) *$", re.M | re.S)
-_OUTPUT = re.compile(r"^<!-- output -->$", re.M)
+_OUTPUT = re.compile(r"^<!-- output(?P<markdown> as markdown)? -->$", re.M)
 _FILE = re.compile(r"\]\((?P<name>[\w.-]+\.(?:png|gif|glb|webp))\)|(?:src|href)=\"(?P<other>[\w.-]+\.(?:png|gif|glb|webp))\"")
 
 
@@ -52,6 +53,8 @@ def run(page: Path, folder: Path) -> Run:
     text = page.read_text(encoding="utf-8")
     here = os.getcwd()
     os.chdir(folder)
+    # Pages may use the modules beside this file.
+    sys.path.insert(0, str(Path(__file__).parent))
     try:
         for block in _BLOCK.finditer(text):
             try:
@@ -62,6 +65,7 @@ def run(page: Path, folder: Path) -> Run:
                 result.missing = error.name
                 break
     finally:
+        sys.path.pop(0)
         os.chdir(here)
         del sys.modules[module.__name__]
     return result
@@ -98,7 +102,10 @@ def with_output(text: str, printed: list[str]) -> str:
 
     def output(match: re.Match[str]) -> str:
         before = sum(block.end() < match.start() for block in blocks)
-        return f"```{{.text .output}}\n{printed[before - 1].rstrip()}\n```" if before <= len(printed) else ""
+        if before > len(printed):
+            return ""
+        lines = printed[before - 1].rstrip()
+        return lines if match["markdown"] else f"```{{.text .output}}\n{lines}\n```"
 
     return _OUTPUT.sub(output, text)
 
