@@ -25,7 +25,7 @@ OPTIONAL = {"torch"}
 
 _BLOCK = re.compile(r"^(?:```(?P<kind>python|\{\.sh \.run\})|<!-- python) *\n(?P<code>.*?)^(?:```|-->) *$", re.M | re.S)
 _OUTPUT = re.compile(r"^<!-- output(?P<markdown> as markdown)? -->$", re.M)
-_FILE = re.compile(r"\]\((?P<name>[\w.-]+\.(?:png|gif|glb|webp))\)|(?:src|href)=\"(?P<other>[\w.-]+\.(?:png|gif|glb|webp))\"")
+_FILE = re.compile(r"\]\(([\w.-]+\.(?:png|gif|glb|webp))\)")
 
 
 @dataclass
@@ -42,7 +42,7 @@ class Run:
 
 def files_of(text: str) -> set[str]:
     """The files that a page shows."""
-    return {match["name"] or match["other"] for match in _FILE.finditer(text)}
+    return set(_FILE.findall(text))
 
 
 def run(page: Path, folder: Path) -> Run:
@@ -137,7 +137,8 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
     if result is None:
         return markdown
     for name in files_of(markdown):
-        markdown = re.sub(rf'(?<=[("]){re.escape(name)}(?=[)"])', f"{Path(page.file.src_uri).stem}-{name}", markdown)
+        shown = rf"(?<=\]\(){re.escape(name)}(?=\))"
+        markdown = re.sub(shown, f"{Path(page.file.src_uri).stem}-{name}", markdown)
     return with_output(markdown, result.printed)
 
 

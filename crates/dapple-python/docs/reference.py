@@ -13,6 +13,7 @@ GROUPS = {
     "Fields": ["worley", "Worley", "gradient_noise", "wavelet_noise", "constant", "Field", "ColorField", "Features"],
     "Points and graphs": ["Domain", "Points", "poisson_disk", "extend_poisson_disk", "nested_poisson_disk", "jittered_grid", "white_noise", "spectrum", "Spectrum", "EmptyCircle", "delaunay", "gabriel", "yao", "k_nearest", "Graph", "Axes"],
     "Partitions of unity": ["pups", "Partition", "Weights"],
+    "Textures of control points": [],
     "Materials": ["Recipe", "Plan", "MapInfo", "map_names", "shards", "ShardList"],
     "Pictures": ["read_image", "write_image", "decode_image", "encode_image", "ramp", "palettes", "linear_from_srgb", "srgb_from_linear", "normal_map", "ambient_occlusion", "curvature"],
     "Tiles": ["make_tile", "seam_report", "SeamReport", "repeat", "disturb", "lay_tiles", "match_borders", "CornerTiles", "blend", "blend_map", "rank_equalize"],
@@ -27,8 +28,10 @@ def markdown() -> str:
     named = {name for names in GROUPS.values() for name in names}
     rest = [name for name in dp.__all__ if name not in named and not name.startswith("_")]
     textures = [name for name in rest if inspect.isfunction(getattr(dp, name))]
-    groups = {**GROUPS, "Partitions of unity": GROUPS["Partitions of unity"] + [name for name in rest if name not in textures]}
-    groups["Textures of control points"] = textures
+    groups = GROUPS | {
+        "Partitions of unity": GROUPS["Partitions of unity"] + [name for name in rest if name not in textures],
+        "Textures of control points": textures,
+    }
     parts = []
     for group, names in groups.items():
         parts += [f"## {group}", *(entry(name, getattr(dp, name)) for name in names if hasattr(dp, name))]
@@ -71,7 +74,8 @@ def _member(name: str, what: Any) -> str:
 def signature(name: str, what: Any) -> str:
     """A block with the call, over several lines where it is long."""
     call = _parameters(what)
-    if not call:
+    # What cannot be called has no parameters for Python.
+    if not call or (inspect.isclass(what) and call == "()"):
         return ""
     if len(name + call) > 88:
         call = "(\n    " + ",\n    ".join(_split(call[1:-1])) + ",\n)"
