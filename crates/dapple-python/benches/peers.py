@@ -36,7 +36,6 @@ class Entry:
     """A call of a package that draws a picture of so many pixels."""
 
     package: str
-    name: str
     call: Callable[[], Any]
     pixels: int
 
@@ -54,7 +53,7 @@ def main() -> None:
         times = measure(entries, rounds)
         cells = [shown(times.get(package)) for package in packages]
         peer = times.get("pyfastnoiselite")
-        ratio = f"{peer / times['dapple-textures']:.0f} ×" if peer else ""
+        ratio = f"{shown(peer / times['dapple-textures'], 1)} ×" if peer else ""
         print(f"| {kind} |", " | ".join(cells), f"| {ratio} |", flush=True)
     versions = [f"{package} {version(package)}" for package in packages]
     print(f"\n{', '.join(versions)}; NumPy {np.__version__}, Python {sys.version.split()[0]}.")
@@ -64,22 +63,26 @@ def kinds() -> dict[str, list[Entry]]:
     """The entries of each row of the table."""
     cells = {"scatter": {"jittered": {"jitter": 1}}}
     return {
-        "cells, F1": [ours(dp.worley(**cells)), fast("cells, F1", "Cellular", "Distance")],
+        "cells, F1": [ours(dp.worley(**cells)), fast("Cellular", "Distance")],
         "cells, F2 − F1": [
             ours(dp.worley(**cells, value="f2_minus_f1")),
-            fast("cells, F2 − F1", "Cellular", "Distance2Sub"),
+            fast("Cellular", "Distance2Sub"),
         ],
-        "gradient noise": [ours(dp.gradient_noise()), fast("Perlin", "Perlin"), *grids(1), loops(1)],
+        "cells, F2 − F1, at scattered positions": [
+            ours(dp.worley(**cells, value="f2_minus_f1"), scattered=True),
+            fast("Cellular", "Distance2Sub", scattered=True),
+        ],
+        "gradient noise": [ours(dp.gradient_noise()), fast("Perlin"), *grids(1), loops(1)],
         "gradient noise, 6 octaves": [
             ours(dp.gradient_noise(octaves=6)),
-            fast("Perlin", "Perlin", octaves=6),
+            fast("Perlin", octaves=6),
             *grids(6),
             loops(6),
         ],
-        "gradient noise in 3-D": [ours(dp.gradient_noise(dims=3).slice(0.4)), fast("Perlin", "Perlin", axes=3)],
+        "gradient noise in 3-D": [ours(dp.gradient_noise(dims=3).slice(0.4)), fast("Perlin", axes=3)],
         "an aside: partition of unity; simplex": [
             ours(partition()),
-            fast("OpenSimplex2", "OpenSimplex2"),
+            fast("OpenSimplex2"),
             *simplex(),
         ],
     }
@@ -91,15 +94,23 @@ def partition() -> dp.Field:
     return dp.noise(dp.Domain(side), spacing=1.0)
 
 
-def ours(field: dp.Field) -> Entry:
+def positions() -> np.ndarray[Any, np.dtype[np.float64]]:
+    """As many positions as a picture has pixels, in no order."""
+    return np.random.default_rng(1).uniform(0, SIDE / CELL, (SIDE * SIDE, 2))
+
+
+def ours(field: dp.Field, scattered: bool = False) -> Entry:
     size = (SIDE, SIDE)
-    return Entry("dapple-textures", "", lambda: field.render(size, extent=SIDE / CELL), SIDE * SIDE)
+    if scattered:
+        places = positions()
+        return Entry("dapple-textures", lambda: field.sample(places), SIDE * SIDE)
+    return Entry("dapple-textures", lambda: field.render(size, extent=SIDE / CELL), SIDE * SIDE)
 
 
-def fast(name: str, noise: str, value: str | None = None, octaves: int = 1, axes: int = 2) -> Entry:
+def fast(noise: str, value: str | None = None, octaves: int = 1, axes: int = 2, scattered: bool = False) -> Entry:
     """pyfastnoiselite, all positions in one call."""
     if not installed("pyfastnoiselite"):
-        return Entry("pyfastnoiselite", name, lambda: None, 1)
+        return Entry("pyfastnoiselite", lambda: None, 1)
     module = importlib.import_module("pyfastnoiselite.pyfastnoiselite")
     noises = module.FastNoiseLite(seed=7)
     noises.frequency = 1.0
@@ -112,7 +123,9 @@ def fast(name: str, noise: str, value: str | None = None, octaves: int = 1, axes
         noises.fractal_octaves = octaves
     y, x = (np.mgrid[:SIDE, :SIDE].astype(np.float32) + 0.5) / CELL
     places = np.stack([x.ravel(), y.ravel(), np.full(SIDE * SIDE, 0.4, np.float32)][:axes])
-    return Entry("pyfastnoiselite", name, lambda: noises.gen_from_coords(places), SIDE * SIDE)
+    if scattered:
+        places = np.ascontiguousarray(positions().T, np.float32)
+    return Entry("pyfastnoiselite", lambda: noises.gen_from_coords(places), SIDE * SIDE)
 
 
 def grids(octaves: int) -> list[Entry]:
@@ -121,16 +134,16 @@ def grids(octaves: int) -> list[Entry]:
         return []
     noises = importlib.import_module("vnoise").Noise(7)
     axis = (np.arange(SIDE) + 0.5) / CELL
-    return [Entry("vnoise", "", lambda: noises.noise2(axis, axis, octaves=octaves), SIDE * SIDE)]
+    return [Entry("vnoise", lambda: noises.noise2(axis, axis, octaves=octaves), SIDE * SIDE)]
 
 
 def loops(octaves: int) -> Entry:
     """noise, pixel by pixel."""
     if not installed("noise"):
-        return Entry("noise", "", lambda: None, 1)
+        return Entry("noise", lambda: None, 1)
     pnoise2 = importlib.import_module("noise").pnoise2
     axis = ((np.arange(SMALL) + 0.5) / CELL).tolist()
-    return Entry("noise", "", lambda: [[pnoise2(x, y, octaves) for x in axis] for y in axis], SMALL * SMALL)
+    return Entry("noise", lambda: [[pnoise2(x, y, octaves) for x in axis] for y in axis], SMALL * SMALL)
 
 
 def simplex() -> list[Entry]:
@@ -139,7 +152,7 @@ def simplex() -> list[Entry]:
         return []
     noises = importlib.import_module("opensimplex").OpenSimplex(7)
     axis = (np.arange(SMALL) + 0.5) / CELL
-    return [Entry("opensimplex", "", lambda: noises.noise2array(axis, axis), SMALL * SMALL)]
+    return [Entry("opensimplex", lambda: noises.noise2array(axis, axis), SMALL * SMALL)]
 
 
 def measure(entries: list[Entry], rounds: int) -> dict[str, float]:
@@ -155,10 +168,10 @@ def measure(entries: list[Entry], rounds: int) -> dict[str, float]:
     return {package: statistics.median(rounds) for package, rounds in times.items()}
 
 
-def shown(nanoseconds: float | None) -> str:
-    if nanoseconds is None:
+def shown(number: float | None, digits: int = 2) -> str:
+    if number is None:
         return "–"
-    return f"{nanoseconds:.2f}" if nanoseconds < 10 else f"{nanoseconds:,.0f}"
+    return f"{number:.{digits}f}" if number < 10 else f"{number:,.0f}"
 
 
 def installed(package: str) -> bool:
