@@ -133,7 +133,8 @@ class Job:
     def openjd(self, *, parts: int | None = None, python: str = "python") -> dict[str, Any]:
         """An Open Job Description template (2023-09) whose tasks bake the shards: for OpenJD farms such as Deadline Cloud.
 
-        `parts` is the number of tasks, by default one for each shard, and at most 1024.
+        `parts` is the number of tasks, by default one for each shard, and at most 1024. The place of the store is written as
+        it is from any folder.
         """
         parts = min(len(self), 1024) if parts is None else parts
         if not 1 <= parts <= len(self):
@@ -142,7 +143,7 @@ class Job:
             "specificationVersion": "jobtemplate-2023-09",
             "name": "dapple-textures",
             "parameterDefinitions": [
-                {"name": "Store", "type": "STRING", "default": str(self.store)},
+                {"name": "Store", "type": "STRING", "default": _place_of(self.store)},
                 {"name": "Python", "type": "STRING", "default": python},
             ],
             "steps": [
@@ -272,6 +273,12 @@ def create(
         )
     group.attrs[_ATTRIBUTE] = data
     return Job(store)
+
+
+def _place_of(store: Any) -> str:
+    """The address of a store that holds in any folder."""
+    text = str(store)
+    return text if "://" in text else str(Path(text).absolute())
 
 
 def _axes(count: int, source: object) -> tuple[str, ...]:

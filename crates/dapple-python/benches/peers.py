@@ -1,0 +1,186 @@
+"""Noise of dapple-textures beside that of other packages, in one run: a table in Markdown, which docs/peers.md holds.
+
+    python benches/peers.py
+
+All work on one thread, and their rounds alternate. The figure is the median of the CPU time of a round, so that other programs on
+the machine disturb little. What takes arrays gets arrays that were made before; what does not is called in a loop, on fewer
+pixels. A package that is not installed is left out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import importlib.metadata
+import importlib.util
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import dapple_textures as dp
+
+SIDE = 1024
+#: Pixels of a cell, along an axis.
+CELL = 64
+#: The side of the picture where a package goes from pixel to pixel in Python.
+SMALL = 64
+
+
+@dataclass
+class Entry:
+    """A call of a package that draws a picture of so many pixels."""
+
+    package: str
+    call: Callable[[], Any]
+    pixels: int
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rounds", type=int, default=15)
+    rounds = parser.parse_args().rounds
+    dp.set_threads(1)
+    packages = ["dapple-textures", *filter(installed, ["pyfastnoiselite", "vnoise", "noise", "opensimplex"])]
+    print("| one thread, 1024², 64 pixels per cell, ns/pixel |", " | ".join(packages), "| beside pyfastnoiselite |")
+    print("|---|" + "---:|" * (len(packages) + 1))
+    for kind, entries in kinds().items():
+        entries = [entry for entry in entries if entry.package in packages]
+        times = measure(entries, rounds)
+        cells = [shown(times.get(package)) for package in packages]
+        peer = times.get("pyfastnoiselite")
+        ratio = f"{shown(peer / times['dapple-textures'], 1)} ×" if peer else ""
+        print(f"| {kind} |", " | ".join(cells), f"| {ratio} |", flush=True)
+    versions = [f"{package} {version(package)}" for package in packages]
+    print(f"\n{', '.join(versions)}; NumPy {np.__version__}, Python {sys.version.split()[0]}.")
+
+
+def kinds() -> dict[str, list[Entry]]:
+    """The entries of each row of the table."""
+    cells = {"scatter": {"jittered": {"jitter": 1}}}
+    return {
+        "cells, F1": [ours(dp.worley(**cells)), fast("Cellular", "Distance")],
+        "cells, F2 − F1": [
+            ours(dp.worley(**cells, value="f2_minus_f1")),
+            fast("Cellular", "Distance2Sub"),
+        ],
+        "cells, F2 − F1, at scattered positions": [
+            ours(dp.worley(**cells, value="f2_minus_f1"), scattered=True),
+            fast("Cellular", "Distance2Sub", scattered=True),
+        ],
+        "gradient noise": [ours(dp.gradient_noise()), fast("Perlin"), *grids(1), loops(1)],
+        "gradient noise, 6 octaves": [
+            ours(dp.gradient_noise(octaves=6)),
+            fast("Perlin", octaves=6),
+            *grids(6),
+            loops(6),
+        ],
+        "gradient noise in 3-D": [ours(dp.gradient_noise(dims=3).slice(0.4)), fast("Perlin", axes=3)],
+        "an aside: partition of unity; simplex": [
+            ours(partition()),
+            fast("OpenSimplex2"),
+            *simplex(),
+        ],
+    }
+
+
+def partition() -> dp.Field:
+    """Values at points that are a cell apart, as the peers' are."""
+    side = SIDE / CELL
+    return dp.noise(dp.Domain(side), spacing=1.0)
+
+
+def positions() -> np.ndarray[Any, np.dtype[np.float64]]:
+    """As many positions as a picture has pixels, in no order."""
+    return np.random.default_rng(1).uniform(0, SIDE / CELL, (SIDE * SIDE, 2))
+
+
+def ours(field: dp.Field, scattered: bool = False) -> Entry:
+    size = (SIDE, SIDE)
+    if scattered:
+        places = positions()
+        return Entry("dapple-textures", lambda: field.sample(places), SIDE * SIDE)
+    return Entry("dapple-textures", lambda: field.render(size, extent=SIDE / CELL), SIDE * SIDE)
+
+
+def fast(noise: str, value: str | None = None, octaves: int = 1, axes: int = 2, scattered: bool = False) -> Entry:
+    """pyfastnoiselite, all positions in one call."""
+    if not installed("pyfastnoiselite"):
+        return Entry("pyfastnoiselite", lambda: None, 1)
+    module = importlib.import_module("pyfastnoiselite.pyfastnoiselite")
+    noises = module.FastNoiseLite(seed=7)
+    noises.frequency = 1.0
+    noises.noise_type = getattr(module.NoiseType, f"NoiseType_{noise}")
+    if value:
+        noises.cellular_return_type = getattr(module.CellularReturnType, f"CellularReturnType_{value}")
+        noises.cellular_distance_function = module.CellularDistanceFunction.CellularDistanceFunction_Euclidean
+    if octaves > 1:
+        noises.fractal_type = module.FractalType.FractalType_FBm
+        noises.fractal_octaves = octaves
+    y, x = (np.mgrid[:SIDE, :SIDE].astype(np.float32) + 0.5) / CELL
+    places = np.stack([x.ravel(), y.ravel(), np.full(SIDE * SIDE, 0.4, np.float32)][:axes])
+    if scattered:
+        places = np.ascontiguousarray(positions().T, np.float32)
+    return Entry("pyfastnoiselite", lambda: noises.gen_from_coords(places), SIDE * SIDE)
+
+
+def grids(octaves: int) -> list[Entry]:
+    """vnoise, a grid in one call."""
+    if not installed("vnoise"):
+        return []
+    noises = importlib.import_module("vnoise").Noise(7)
+    axis = (np.arange(SIDE) + 0.5) / CELL
+    return [Entry("vnoise", lambda: noises.noise2(axis, axis, octaves=octaves), SIDE * SIDE)]
+
+
+def loops(octaves: int) -> Entry:
+    """noise, pixel by pixel."""
+    if not installed("noise"):
+        return Entry("noise", lambda: None, 1)
+    pnoise2 = importlib.import_module("noise").pnoise2
+    axis = ((np.arange(SMALL) + 0.5) / CELL).tolist()
+    return Entry("noise", lambda: [[pnoise2(x, y, octaves) for x in axis] for y in axis], SMALL * SMALL)
+
+
+def simplex() -> list[Entry]:
+    """opensimplex, a grid in one call."""
+    if not installed("opensimplex"):
+        return []
+    noises = importlib.import_module("opensimplex").OpenSimplex(7)
+    axis = (np.arange(SMALL) + 0.5) / CELL
+    return [Entry("opensimplex", lambda: noises.noise2array(axis, axis), SMALL * SMALL)]
+
+
+def measure(entries: list[Entry], rounds: int) -> dict[str, float]:
+    """Nanoseconds of CPU time for each pixel, by package."""
+    times: dict[str, list[float]] = {entry.package: [] for entry in entries}
+    for entry in entries:
+        entry.call()
+    for _ in range(rounds):
+        for entry in entries:
+            before = time.process_time_ns()
+            entry.call()
+            times[entry.package].append((time.process_time_ns() - before) / entry.pixels)
+    return {package: statistics.median(rounds) for package, rounds in times.items()}
+
+
+def shown(number: float | None, digits: int = 2) -> str:
+    if number is None:
+        return "–"
+    return f"{number:.{digits}f}" if number < 10 else f"{number:,.0f}"
+
+
+def installed(package: str) -> bool:
+    return importlib.util.find_spec(package) is not None
+
+
+def version(package: str) -> str:
+    return dp.__version__ if package == "dapple-textures" else importlib.metadata.version(package)
+
+
+if __name__ == "__main__":
+    main()

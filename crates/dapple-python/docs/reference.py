@@ -1,0 +1,139 @@
+"""Markdown of the docstrings of the package, for the page of its API."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from typing import Any
+
+import dapple_textures as dp
+
+#: Where to look first; what is in no group comes last.
+GROUPS = {
+    "Fields": ["worley", "Worley", "gradient_noise", "wavelet_noise", "constant", "Field", "ColorField", "Features"],
+    "Points and graphs": ["Domain", "Points", "poisson_disk", "extend_poisson_disk", "nested_poisson_disk", "jittered_grid", "white_noise", "spectrum", "Spectrum", "EmptyCircle", "delaunay", "gabriel", "yao", "k_nearest", "Graph", "Axes"],
+    "Partitions of unity": ["pups", "Partition", "Weights"],
+    "Textures of control points": [],
+    "Materials": ["Recipe", "Plan", "MapInfo", "map_names", "shards", "ShardList"],
+    "Pictures": ["read_image", "write_image", "decode_image", "encode_image", "ramp", "palettes", "linear_from_srgb", "srgb_from_linear", "normal_map", "ambient_occlusion", "curvature"],
+    "Tiles": ["make_tile", "seam_report", "SeamReport", "repeat", "disturb", "lay_tiles", "match_borders", "CornerTiles", "blend", "blend_map", "rank_equalize"],
+    "Bands of frequencies": ["wavelet_tile", "wavelet_analyze", "wavelet_synthesize", "wavelet_halve", "wavelet_double", "Bands"],
+    "Synthesis and meshes": ["synthesize", "synthesize_on", "Model", "read_model", "MeshFile", "mesh_report"],
+    "Threads and errors": ["threads", "set_threads", "DappleError"],
+}
+
+
+def markdown() -> str:
+    """All groups, and then the modules for what is larger than a machine."""
+    named = {name for names in GROUPS.values() for name in names}
+    rest = [name for name in dp.__all__ if name not in named and not name.startswith("_")]
+    textures = [name for name in rest if inspect.isfunction(getattr(dp, name))]
+    groups = GROUPS | {
+        "Partitions of unity": GROUPS["Partitions of unity"] + [name for name in rest if name not in textures],
+        "Textures of control points": textures,
+    }
+    parts = []
+    for group, names in groups.items():
+        parts += [f"## {group}", *(entry(name, getattr(dp, name)) for name in names if hasattr(dp, name))]
+    for module in ("dask", "jobs"):
+        parts += _module(module)
+    return "\n\n".join(parts)
+
+
+def _module(name: str) -> list[str]:
+    try:
+        module = __import__(f"dapple_textures.{name}", fromlist=["*"])
+    except ModuleNotFoundError:
+        return []
+    parts = [f"## dapple_textures.{name}", text(module.__doc__ or "")]
+    for key, value in vars(module).items():
+        if getattr(value, "__module__", None) == module.__name__ and not key.startswith("_") and value.__doc__:
+            parts.append(entry(key, value))
+    return parts
+
+
+def entry(name: str, what: Any, level: int = 3) -> str:
+    """What an object is, with its signature and, of classes, its members."""
+    parts = [f"{'#' * level} `{name}`", signature(name, what), text(inspect.getdoc(what) or "")]
+    if inspect.isclass(what) and not issubclass(what, Exception):
+        members = [(key, value) for key, value in vars(what).items() if not key.startswith("_")]
+        if hasattr(what, "_fields"):
+            members = []
+            parts.append("\n".join(f"- `{key}`" for key in what._fields))
+        parts += [_member(key, value) for key, value in members if getattr(value, "__doc__", None)]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _member(name: str, what: Any) -> str:
+    what = getattr(what, "__func__", what)
+    call = _parameters(what)
+    body = text(inspect.getdoc(what) or "").replace("\n", "\n    ")
+    return f"`.{name}{call}`\n:   {body}"
+
+
+def signature(name: str, what: Any) -> str:
+    """A block with the call, over several lines where it is long."""
+    call = _parameters(what)
+    # What cannot be called has no parameters for Python.
+    if not call or (inspect.isclass(what) and call == "()"):
+        return ""
+    if len(name + call) > 88:
+        call = "(\n    " + ",\n    ".join(_split(call[1:-1])) + ",\n)"
+    return f"```python\n{name}{call}\n```"
+
+
+def _parameters(what: Any) -> str:
+    if inspect.isclass(what) and (hasattr(what, "_fields") or issubclass(what, Exception)):
+        return ""
+    try:
+        found = inspect.signature(what)
+    except (TypeError, ValueError):
+        return ""
+    parameters = [
+        parameter.replace(annotation=parameter.empty) for parameter in found.parameters.values() if parameter.name != "self"
+    ]
+    parameters = [
+        parameter.replace(kind=parameter.POSITIONAL_OR_KEYWORD) if parameter.kind == parameter.POSITIONAL_ONLY else parameter
+        for parameter in parameters
+    ]
+    return str(inspect.Signature(parameters))
+
+
+def _split(parameters: str) -> list[str]:
+    """Parameters at the commas that are in no brackets."""
+    parts, depth, start = [], 0, 0
+    for place, letter in enumerate(parameters):
+        depth += (letter in "([{") - (letter in ")]}")
+        if letter == "," and depth == 0:
+            parts.append(parameters[start:place].strip())
+            start = place + 1
+    return [*parts, parameters[start:].strip()]
+
+
+def text(docstring: str) -> str:
+    """Markdown of a docstring in NumPy's form."""
+    docstring = docstring.replace("``", "`")
+    parts = re.split(r"^(Parameters|Returns|Raises|Examples)\n-+\n", docstring, flags=re.M)
+    found = [_indented_code(parts[0].strip())]
+    for title, body in zip(parts[1::2], parts[2::2]):
+        if title == "Examples":
+            found.append(f"```pycon\n{body.strip()}\n```")
+        elif title == "Parameters":
+            found.append(_definitions(body.strip("\n")))
+        else:
+            found.append(f"**{title}** {body.strip()}")
+    return "\n\n".join(found)
+
+
+def _definitions(body: str) -> str:
+    entries = re.split(r"^(?=\S)", body, flags=re.M)
+    found = []
+    for name, _, what in (entry.partition(" : ") for entry in entries if entry.strip()):
+        lines = what.rstrip().split("\n")
+        rest = "\n".join(line if line.startswith("    ") or not line else "    " + line for line in lines[1:])
+        found.append(f"`{name.strip()}`\n:   {lines[0]}\n{rest}".rstrip())
+    return "\n\n".join(found)
+
+
+def _indented_code(body: str) -> str:
+    return re.sub(r"((?:^    \S.*\n?)+)", lambda code: "```sh\n" + inspect.cleandoc(code[0]) + "\n```\n", body, flags=re.M)
