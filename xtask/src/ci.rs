@@ -2,6 +2,7 @@
 
 mod exchange;
 mod fuzz;
+mod python;
 
 use crate::tidy;
 use crate::tidy::workspace::{Member, Workspace};
@@ -27,13 +28,15 @@ pub(crate) enum Step {
     Package,
     /// Materials for other programs, given to those that are there.
     Exchange,
+    /// The Python package, where Python is.
+    Python,
     /// Each fuzz target for some seconds, where nightly Rust and cargo-fuzz are.
     Fuzz,
 }
 
 impl Step {
     /// The steps, in the order in which CI runs them.
-    pub(crate) const ALL: [Self; 9] = [
+    pub(crate) const ALL: [Self; 10] = [
         Self::Test,
         Self::Fmt,
         Self::Clippy,
@@ -42,6 +45,7 @@ impl Step {
         Self::Features,
         Self::Package,
         Self::Exchange,
+        Self::Python,
         Self::Fuzz,
     ];
 
@@ -56,6 +60,7 @@ impl Step {
             Self::Features => "features",
             Self::Package => "package",
             Self::Exchange => "exchange",
+            Self::Python => "python",
             Self::Fuzz => "fuzz",
         }
     }
@@ -90,6 +95,7 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
         Step::Features => return features(shell),
         Step::Package => return package(shell),
         Step::Exchange => return exchange::exchange(shell),
+        Step::Python => return python::python(shell),
         Step::Fuzz => return fuzz::fuzz(shell),
     };
     Ok(command.run()?)

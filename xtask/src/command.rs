@@ -24,7 +24,8 @@ Usage: cargo xtask <command>
       --check             fail when a row misses its bar
   golden [--bless]      compare the golden images of tests/golden/, or rewrite them
   tidy                  check the house rules: layers, lints, headers, lengths, figures.lock
-  ci [step...]          what CI runs, or some of its steps: test fmt clippy doc tidy features fuzz";
+  ci [step...]          what CI runs, or some of its steps: test fmt clippy doc tidy
+                      features package exchange python fuzz";
 
 /// What is to be done.
 #[derive(Debug, PartialEq)]

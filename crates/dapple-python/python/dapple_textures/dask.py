@@ -110,7 +110,7 @@ def _run(client: Client, job: jobs.Job, missing: list[int]) -> Iterator[int]:
     threads = sum(client.nthreads().values())
     running = as_completed()
     attempts: dict[int, int] = {}
-    indices: dict[str, int] = {}
+    indices: dict[Any, int] = {}
 
     def submit(index: int) -> None:
         attempts[index] = attempts.get(index, -1) + 1
