@@ -53,12 +53,13 @@ impl Domain {
     /// # Errors
     ///
     /// [`PointsErrorKind::Domain`] if the origin is not between -1e300 and 1e300, or a side is not above zero and at
-    /// most 1e300.
+    /// most 1e300, or so short beside the origin that rounding puts both of its ends at one place.
     pub fn checked(self) -> Result<Self, PointsError> {
         // A part that is not a number is in no range.
         let valid = (0..2).all(|axis| {
             let (origin, size) = (self.origin[axis], self.size[axis]);
-            origin.abs() <= FARTHEST && size > 0.0 && size <= FARTHEST
+            let is_in_range = origin.abs() <= FARTHEST && size > 0.0 && size <= FARTHEST;
+            is_in_range && origin + size > origin
         });
         if valid {
             Ok(self)
@@ -204,6 +205,12 @@ mod tests {
                 .checked()
                 .is_err(),
             "a far origin was accepted"
+        );
+        assert!(
+            Domain::torus(DVec2::splat(1e17), DVec2::ONE)
+                .checked()
+                .is_err(),
+            "a side that rounding takes away was accepted"
         );
     }
 }

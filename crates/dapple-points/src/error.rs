@@ -8,13 +8,14 @@ dapple_raster::error! {
     PointsError,
     /// The limit that was broken.
     PointsErrorKind {
-        /// The origin of the domain is beyond 1e300, or a side is not above zero and at most 1e300.
+        /// The origin of the domain is beyond 1e300, or a side is not above zero and at most 1e300, or lost in rounding
+        /// beside the origin.
         Domain {
             /// The domain.
             domain: Domain,
         } =>
             "the domain from {} has size {}, but both sides must be above 0 and at most 1e300, and the origin between -1e300 \
-             and 1e300", domain.origin, domain.size;
+             and 1e300, and near enough that adding a side moves it", domain.origin, domain.size;
         /// A position is not finite, or lies outside of the domain along an axis that does not wrap.
         Outside {
             /// Which point it is.

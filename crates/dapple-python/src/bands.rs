@@ -217,7 +217,7 @@ pub(crate) fn wavelet_synthesize<'py>(
 /// ((64, 128), True)
 #[pyfunction]
 #[pyo3(signature = (size, weights = vec![1.0], *, seed = SeedArgument::default()),
-    text_signature = "(size, weights=(1.0,), *, seed=0)")]
+    text_signature = "(size, weights=[1.0], *, seed=0)")]
 pub(crate) fn wavelet_tile<'py>(
     py: Python<'py>,
     size: &Bound<'py, PyAny>,

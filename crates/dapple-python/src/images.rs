@@ -296,7 +296,7 @@ fn encoded(
     let kind = Kind::new("image", content.transpose()?, pixels.n_channels)?;
     let encoding = encoding(format, kind, depth)?;
     let (size, values) = (pixels.size, pixels.values());
-    Ok(threads::run(py, || encode(kind, size, &values, encoding))??)
+    threads::run(py, || encode(kind, size, &values, encoding))?
 }
 
 /// How a format writes its numbers.
@@ -392,7 +392,11 @@ const BAND: usize = 256;
 /// Makes `bytes` the content of the file at `path`, which is new or the old one until all of it is written.
 ///
 /// A file that is there keeps its permissions, and one that a link leads to, the link.
-pub(crate) fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the encodings that no writer of the library has for paths end here"
+)]
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let folder = path.parent().unwrap_or(Path::new(""));
     // Made here, so that its permissions are those of any new file.

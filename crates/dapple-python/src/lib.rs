@@ -15,6 +15,7 @@ mod generators;
 mod grid;
 mod images;
 mod maps;
+mod meshes;
 mod models;
 mod pictures;
 mod points;
@@ -53,7 +54,9 @@ mod _native {
         srgb_from_linear,
     };
     #[pymodule_export]
-    use crate::models::{Model, mesh_report, read_model, synthesize_on};
+    use crate::meshes::{mesh_report, read_model};
+    #[pymodule_export]
+    use crate::models::{Model, synthesize_on};
     #[pymodule_export]
     use crate::points::{
         _graph_from_description, Domain, Graph, Points, delaunay, extend_poisson_disk, gabriel,

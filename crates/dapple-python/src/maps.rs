@@ -17,6 +17,7 @@ use numpy::{Element, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
+use rayon::prelude::*;
 use serde_json::Value;
 
 /// What lies past the edges: a name for both axes, or one for each, x first.
@@ -114,8 +115,8 @@ pub(crate) fn normal_map<'py>(
 /// >>> import numpy as np, dapple_textures as dp
 /// >>> groove = np.abs(np.linspace(-0.5, 0.5, 64))[None].repeat(64, 0)
 /// >>> seen = dp.ambient_occlusion(groove, radius=0.5)
-/// >>> bool(seen[32, 32] < 0.6 < seen[32, 60])
-/// True
+/// >>> bool(seen[32, 32] < 0.7), bool(seen[32, 60] > 0.9)
+/// (True, True)
 #[pyfunction]
 #[pyo3(signature = (height, *, relief = 1.0, extent = None, wrap = None, radius = 0.0625, fade = 0.5),
     text_signature = "(height, *, relief=1.0, extent=None, wrap=\"repeat\", radius=0.0625, fade=0.5)")]
@@ -297,7 +298,7 @@ pub(crate) fn palettes(py: Python<'_>) -> Result<Bound<'_, PyDict>> {
 /// Examples
 /// --------
 /// >>> import dapple_textures as dp
-/// >>> dp.srgb_from_linear([0.0, 0.2140411, 1.0])
+/// >>> dp.srgb_from_linear([0.0, 0.2159, 1.0])
 /// array([  0, 128, 255], dtype=uint8)
 #[pyfunction]
 #[pyo3(signature = (linear, *, depth = 8))]
@@ -341,12 +342,15 @@ pub(crate) fn linear_from_srgb<'py>(
 }
 
 /// An array of what each element of another becomes.
-fn codes<'py, T: Element + Copy + Sync, U: Element>(
+fn codes<'py, T: Element + Copy + Sync, U: Element + Send>(
     py: Python<'py>,
     array: &numpy::PyReadonlyArrayDyn<'py, T>,
     code: fn(T) -> U,
 ) -> Result<Bound<'py, PyAny>> {
     let view = array.as_array();
-    let made: Vec<U> = py.detach(|| view.iter().map(|&value| code(value)).collect());
+    let made: Vec<U> = threads::run(py, || match view.to_slice() {
+        Some(values) => values.par_iter().map(|&value| code(value)).collect(),
+        None => view.iter().map(|&value| code(value)).collect(),
+    })?;
     arrays::array(py, made, array.shape())
 }

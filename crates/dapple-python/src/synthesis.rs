@@ -96,8 +96,8 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
 /// Examples
 /// --------
 /// >>> import numpy as np, dapple_textures as dp
-/// >>> checker = np.kron([[0, 1], [1, 0]], np.ones((4, 4)))
-/// >>> texture, sources = dp.synthesize(checker, (24, 20), edges="wrap", sources=True)
+/// >>> checker = np.kron([[0, 1], [1, 0]], np.ones((8, 8)))
+/// >>> texture, sources = dp.synthesize(checker, (24, 20), edges="wrap", levels=2, sources=True)
 /// >>> bool((texture == checker[sources[..., 1], sources[..., 0]]).all())
 /// True
 #[pyfunction]
@@ -105,7 +105,6 @@ pub(crate) fn exemplar(maps: &[Map], edges: &str) -> Result<Exemplar> {
     evenness = None, paper = false, sources = false, progress = None),
     text_signature = "(exemplar, size, *, seed=0, wrap=False, edges=\"cut\", levels=3, coherence=None, evenness=None, \
     paper=False, sources=False, progress=None)")]
-#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
 pub(crate) fn synthesize<'py>(
     py: Python<'py>,
     exemplar: &Bound<'py, PyAny>,

@@ -199,7 +199,7 @@ fn report<'py>(py: Python<'py>, reports: &[SeamReports], kind: Kind) -> Result<B
     for (at, map) in reports.iter().enumerate() {
         let name = match kind.content {
             Content::Data => at.to_string(),
-            Content::Color if at == 1 => "a".to_owned(),
+            Content::Color if at == 1 => "alpha".to_owned(),
             _ => String::new(),
         };
         texts.push(match name.is_empty() {

@@ -60,6 +60,10 @@ fn part(steps: Progress) -> f64 {
 }
 
 /// Waits until the work is done, or an exception is raised.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the clock says when to look for signals, and no value depends on it"
+)]
 fn listen(parts: &Receiver<f64>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
     let mut looked = Instant::now();
     let mut part = None;

@@ -29,10 +29,19 @@ def test_domains_are_values() -> None:
         domain.size = (1, 1)  # type: ignore[misc]
 
 
-@pytest.mark.parametrize("size", [0, -1, (1, np.nan), (1, 2, 3), np.inf])
+@pytest.mark.parametrize("size", [0, -1, 1e301, (1, np.nan), (1, 2, 3), np.inf])
 def test_domains_without_area_are_refused(size: object) -> None:
     with pytest.raises(dp.DappleError):
         dp.Domain(size)
+
+
+def test_thin_and_far_domains_hold_points_or_are_refused() -> None:
+    for width in [1e-9, 1e-12, 1e-100]:
+        strip = dp.Domain((width, 2), wrap=False)
+        assert dp.poisson_disk(strip, distance=0.3, seed=1).minimum_distance() >= 0.3
+    with pytest.raises(dp.DappleError) as error:
+        dp.Domain(1, origin=1e17)
+    assert error.value.kind == "domain"
 
 
 def test_points_are_the_bits_of_the_library() -> None:

@@ -163,6 +163,17 @@ def test_fields_are_their_descriptions(points: dp.Points, values: np.ndarray) ->
     assert made[0] != made[1] and dp.pups(points, values[:, 1]) != dp.pups(points, values[:, 0])
 
 
+@pytest.mark.parametrize("channels", [1, 3])
+def test_colors_are_baked_in_chunks(points: dp.Points, channels: int) -> None:
+    pytest.importorskip("dask.array")
+    from dapple_textures.dask import bake
+
+    color = dp.pups(points, np.random.default_rng(5).random((len(points), channels)))
+    lazy = bake(color, (40, 80), chunks=16)
+    whole = color.render((40, 80))
+    assert np.array_equal(lazy.compute(scheduler="threads"), whole if channels > 1 else whole[..., 0])
+
+
 def test_composing_does_not_make_the_net_again() -> None:
     import time
 

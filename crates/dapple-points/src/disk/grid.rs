@@ -29,6 +29,10 @@ pub(crate) const STEP: f32 = 1.0 / LATTICE as f32;
 /// An offset that is far from every place: what an empty cell holds. Its square is still finite.
 pub(crate) const FAR: f32 = 1e9;
 
+/// The least width and height of a cell over the reach with which what is [`FAR`] away is still out of reach. In a domain
+/// that is thinner, cells are taken for this wide, which adds less than 1e-16 to a squared distance of 1.
+const THINNEST: f32 = 2.0 / FAR;
+
 /// By how much the reach of a point is larger than the radius, relatively. Rounding to `f32` may shorten a distance by
 /// 6 · 2^-24 / 2 = 1.8e-7, and taking a given point to the lattice by 2^-23 = 1.2e-7.
 const SLACK: f64 = 4e-7;
@@ -67,7 +71,7 @@ impl Grid {
         let cell = domain.size / DVec2::new(f64::from(cells[0]), f64::from(cells[1]));
         let largest = domain.origin.abs().max(domain.end().abs()).max_element();
         let reach = radius * (1.0 + SLACK) + 8.0 * f64::EPSILON * largest;
-        let scale = [(cell.x / reach) as f32, (cell.y / reach) as f32];
+        let scale = [cell.x, cell.y].map(|side| ((side / reach) as f32).max(THINNEST));
         Ok(Self {
             domain,
             cells,

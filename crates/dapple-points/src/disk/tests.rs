@@ -347,6 +347,24 @@ fn bad_radii_are_refused() {
 }
 
 #[test]
+fn strips_of_any_width_hold_a_maximal_set() {
+    for width in [1e-3, 1e-9, 1e-10, 1e-12, 1e-100] {
+        for size in [DVec2::new(width, 20.0), DVec2::new(20.0, width)] {
+            for seed in 0..5 {
+                let strip = Domain::rectangle(DVec2::ZERO, size);
+                let set = poisson_disk(strip, 0.3, Seed(seed)).unwrap();
+                let distance = set.minimum_distance().unwrap();
+                let circle = set.largest_empty_circle().unwrap();
+                assert!(
+                    distance >= 0.3 && circle.radius <= 0.3 * (1.0 + 2e-6),
+                    "{size}: {distance}, {circle:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn value_stability_poisson_disk() {
     let set = poisson_disk(Domain::paper_torus(), 0.1, Seed(7)).unwrap();
     let bits = set.positions().iter().fold(0_u64, |sum, position| {

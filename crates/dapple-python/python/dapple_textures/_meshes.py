@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -39,26 +39,28 @@ def to_trimesh(model: Model) -> Any:
 
     from . import _native
 
-    def image(name: str, content: str) -> Any:
+    def image(name: str, content: Literal["color", "normal", "data"]) -> Any:
         pixels = maps[name]
         if content == "color" and pixels.ndim == 2:
             # Numbers are shown as they are.
             pixels, content = np.stack([pixels] * 3, 2), "data"
         return Image.open(io.BytesIO(_native.encode_image(pixels, "png", content=content, depth=8)))
 
+    # trimesh has no types.
+    visual: Any = trimesh.visual
     maps = model.maps
     textures = {"baseColorTexture": image(next(iter(maps)), "color")}
     if "normal" in maps:
         textures["normalTexture"] = image("normal", "normal")
     if "orm" in maps:
         textures["metallicRoughnessTexture"] = textures["occlusionTexture"] = image("orm", "data")
-    material = trimesh.visual.material.PBRMaterial(**textures, doubleSided=model.double_sided)
+    material = visual.material.PBRMaterial(**textures, doubleSided=model.double_sided)
     corners = model.faces.reshape(-1)
     uv = model.uv.reshape(-1, 2) * [1, -1] + [0, 1]
     return trimesh.Trimesh(
         vertices=model.vertices[corners],
         faces=np.arange(len(corners)).reshape(-1, 3),
         vertex_normals=model.normals.reshape(-1, 3),
-        visual=trimesh.visual.TextureVisuals(uv=uv, material=material),
+        visual=visual.TextureVisuals(uv=uv, material=material),
         process=False,
     )

@@ -13,7 +13,15 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from ._native import DappleError, Field, Plan, Recipe, _field_from_description, _plan_from_parts
+from ._native import (
+    ColorField,
+    DappleError,
+    Field,
+    Plan,
+    Recipe,
+    _field_from_description,
+    _plan_from_parts,
+)
 from ._types import refusal
 
 Image = npt.NDArray[np.float32]
@@ -94,7 +102,7 @@ class RecipeSource:
 
 @dataclass(frozen=True)
 class FieldSource:
-    """A field over a rectangle or a box."""
+    """A field, of numbers or of colors, over a rectangle or a box."""
 
     description: str
     extent: tuple[float, ...]
@@ -105,13 +113,17 @@ class FieldSource:
     def channels(self, plane: str) -> int:
         if plane != "value":
             raise _unknown("plane of a field", plane, self.planes)
-        return 1
+        field = _field(self.description)
+        return field.channels if isinstance(field, ColorField) else 1
 
     def render(
         self, shape: tuple[int, ...], planes: Sequence[str], window: tuple[slice, ...]
     ) -> dict[str, Image]:
         field = _field(self.description)
         values = field.render(shape, extent=self.extent, origin=self.origin, window=window)
+        if values.shape[len(shape) :] == (1,):
+            # As a map of one channel has it.
+            values = values[..., 0]
         return {plane: values for plane in planes}
 
     def to_data(self) -> dict[str, Any]:
@@ -119,7 +131,7 @@ class FieldSource:
 
 
 def source(
-    what: Recipe | Plan | Field,
+    what: Recipe | Plan | Field | ColorField,
     *,
     extent: float | Sequence[float] | None = None,
     origin: float | Sequence[float] = 0.0,
@@ -135,7 +147,7 @@ def source(
         if extent is not None:
             raise refusal("conflict", "a recipe has an extent of its own: leave `extent` out")
         return RecipeSource.of(what)
-    if not isinstance(what, Field):
+    if not isinstance(what, Field | ColorField):
         raise TypeError(f"a Recipe, a Plan or a Field is needed, not {type(what).__name__}")
     if extent is None:
         extent = [period or 1.0 for period in what.period]
@@ -185,7 +197,7 @@ def _plan(source: RecipeSource, time: float) -> Plan:
 
 
 @lru_cache(maxsize=_READY)
-def _field(description: str) -> Field:
+def _field(description: str) -> Field | ColorField:
     field = _field_from_description(description)
-    assert isinstance(field, Field)
+    assert isinstance(field, Field | ColorField)
     return field

@@ -10,10 +10,10 @@ from typing import Any
 import dask.array as da
 import numpy as np
 from dask import delayed
-from distributed import Client, KilledWorker, Worker, WorkerPlugin, as_completed, get_client
+from distributed import Client, KilledWorker, as_completed, get_client
 
-from . import _sources, jobs
-from ._native import Field, Plan, Recipe, set_threads
+from . import _sources, _workers, jobs
+from ._native import ColorField, Field, Plan, Recipe
 from ._types import refusal
 
 #: Shards that are in the hands of the scheduler for each thread of the workers: enough that none waits, and few enough
@@ -25,7 +25,7 @@ _ATTEMPTS = 10
 
 
 def bake(
-    what: Recipe | Plan | Field,
+    what: Recipe | Plan | Field | ColorField,
     shape: int | Sequence[int],
     plane: str | None = None,
     *,
@@ -52,7 +52,7 @@ def bake(
     last = (channels,) if channels > 1 else ()
     sides = da.core.normalize_chunks((*chunk, *last), shape=(*shape, *last), dtype=np.float32)
     return da.map_blocks(
-        _block,
+        _workers.block,
         # One object for all chunks, so that it is sent to a worker once.
         delayed(source, name=f"dapple-source-{_sources.digest(source.to_data())}", pure=True),
         shape=shape,
@@ -62,14 +62,6 @@ def bake(
         meta=np.empty((0,) * len(sides), np.float32),
         name=f"dapple-{_sources.digest([source.to_data(), plane, shape, sides])}",
     )
-
-
-def _block(
-    source: _sources.Source, *, shape: tuple[int, ...], plane: str, block_info: dict[Any, Any]
-) -> _sources.Image:
-    location = block_info[None]["array-location"]
-    window = tuple(slice(first, end) for first, end in location[: len(shape)])
-    return source.render(shape, [plane], window)[plane]
 
 
 @dataclass(frozen=True)
@@ -85,7 +77,7 @@ class Report:
 
 
 def bake_to_zarr(
-    what: Recipe | Plan | Field,
+    what: Recipe | Plan | Field | ColorField,
     shape: int | Sequence[int],
     planes: str | Sequence[str],
     store: Any,
@@ -107,7 +99,7 @@ def bake_to_zarr(
     missing = job.missing()
     if not resume and len(missing) < len(job):
         raise refusal("store", f"{store} holds shards of this job already", "pass `resume=True`")
-    client.register_plugin(OneThreadEach(), name="dapple-threads")
+    client.register_plugin(_workers.OneThreadEach(), name="dapple-threads")
     restarted = sum(_run(client, job, missing))
     return Report(job, len(missing), restarted)
 
@@ -121,7 +113,7 @@ def _run(client: Client, job: jobs.Job, missing: list[int]) -> Iterator[int]:
 
     def submit(index: int) -> None:
         attempts[index] = attempts.get(index, -1) + 1
-        future = client.submit(_bake_shard, job.store, job.hash, index, pure=False)
+        future = client.submit(_workers.bake_shard, job.store, job.hash, index, pure=False)
         future.dapple_index = index
         running.add(future)
 
@@ -139,27 +131,3 @@ def _run(client: Client, job: jobs.Job, missing: list[int]) -> Iterator[int]:
         yield attempts.pop(index)
         for index in islice(waiting, 1):
             submit(index)
-
-
-#: The jobs that a worker has opened.
-_OPEN: dict[str, jobs.Job] = {}
-
-
-def _bake_shard(store: Any, digest: str, index: int) -> jobs.Record:
-    """Bakes a shard in a worker."""
-    job = _OPEN.get(digest)
-    if job is None:
-        job = jobs.Job(store)
-        if job.hash != digest:
-            raise refusal("store", f"{store} holds another job than the scheduler was given")
-        _OPEN.clear()
-        _OPEN[digest] = job
-    return job.bake(index)
-
-
-class OneThreadEach(WorkerPlugin):
-    """Gives each task of a worker one thread, so that tasks and threads together are as many as the worker has."""
-
-    def setup(self, worker: Worker) -> None:
-        """Sets the threads of the package to those of the worker."""
-        set_threads(worker.state.nthreads)

@@ -28,7 +28,7 @@ from zarr.core.sync import sync
 from zarr.storage import StorePath
 
 from . import _sources
-from ._native import Field, Plan, Recipe, __version__
+from ._native import ColorField, Field, Plan, Recipe, __version__
 from ._types import refusal
 
 #: The attribute of the store that holds the job.
@@ -63,6 +63,7 @@ class Job:
             raise refusal("version", message, "use one version on all machines")
         self._data: dict[str, Any] = data
         self._group = group
+        self._arrays: dict[str, zarr.Array[Any]] = {}
         self.source = _sources.from_data(data["source"])
         #: The planes that are made.
         self.planes: tuple[str, ...] = tuple(data["planes"])
@@ -90,10 +91,12 @@ class Job:
 
     def array(self, plane: str) -> zarr.Array[Any]:
         """A plane as a Zarr array; what is not baked yet is NaN."""
-        array = self._group[plane]
-        assert isinstance(array, zarr.Array)
-        # A metallic of 0 everywhere is written, too: what is not there is not baked.
-        return array.with_config({"write_empty_chunks": True})
+        if plane not in self._arrays:
+            array = self._group[plane]
+            assert isinstance(array, zarr.Array)
+            # A metallic of 0 everywhere is written, too: what is not there is not baked.
+            self._arrays[plane] = array.with_config({"write_empty_chunks": True})
+        return self._arrays[plane]
 
     def missing(self) -> list[int]:
         """The shards of which a plane is not there yet, in their order."""
@@ -204,7 +207,7 @@ class Job:
 
 
 def create(
-    what: Recipe | Plan | Field,
+    what: Recipe | Plan | Field | ColorField,
     shape: int | Sequence[int],
     planes: str | Sequence[str],
     store: Any,

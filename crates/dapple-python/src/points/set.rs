@@ -118,9 +118,10 @@ fn rectangle_around(positions: &[DVec2]) -> dapple::points::Domain {
     let largest = (high - low).max_element();
     let least = if largest > 0.0 { largest * 1e-6 } else { 1.0 };
     let size = (high - low).max(DVec2::splat(least));
-    // Far from the origin, rounding may leave the last point outside.
+    // Far from the origin, rounding may take the size away, or leave the last point outside.
     let rounding = low.abs().max(high.abs()) * (2.0 * f64::EPSILON);
-    let size = DVec2::select((low + size).cmplt(high), size + rounding, size);
+    let is_lost = (low + size).cmplt(high) | (low + size).cmple(low);
+    let size = DVec2::select(is_lost, size + rounding, size);
     dapple::points::Domain::rectangle(low, size)
 }
 

@@ -1,0 +1,47 @@
+"""What runs in the workers of a Dask cluster. It does not need `dask.array`, which takes half of a worker's memory."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from distributed import Worker, WorkerPlugin
+
+from ._native import set_threads
+from ._types import refusal
+
+if TYPE_CHECKING:
+    from . import _sources, jobs
+
+#: The job that a worker has opened, by its hash.
+_OPEN: dict[str, jobs.Job] = {}
+
+
+def block(
+    source: _sources.Source, *, shape: tuple[int, ...], plane: str, block_info: dict[Any, Any]
+) -> _sources.Image:
+    """A chunk of a lazy array."""
+    location = block_info[None]["array-location"]
+    window = tuple(slice(first, end) for first, end in location[: len(shape)])
+    return source.render(shape, [plane], window)[plane]
+
+
+def bake_shard(store: Any, digest: str, index: int) -> jobs.Record:
+    """Bakes a shard of the job with this hash."""
+    from .jobs import Job
+
+    job = _OPEN.get(digest)
+    if job is None:
+        job = Job(store)
+        if job.hash != digest:
+            raise refusal("store", f"{store} holds another job than the scheduler was given")
+        _OPEN.clear()
+        _OPEN[digest] = job
+    return job.bake(index)
+
+
+class OneThreadEach(WorkerPlugin):
+    """Gives each task of a worker one thread, so that tasks and threads together are as many as the worker has."""
+
+    def setup(self, worker: Worker) -> None:
+        """Sets the threads of the package to those of the worker."""
+        set_threads(worker.state.nthreads)

@@ -1,0 +1,171 @@
+"""Image files: what is written comes back, atomically, as the command writes it."""
+
+import os
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import dapple_textures as dp
+
+RNG = np.random.default_rng(5)
+GRAY = RNG.random((13, 21), np.float32)
+COLOR = RNG.random((13, 21, 3), np.float32)
+ALPHA = RNG.random((13, 21, 4), np.float32)
+NORMAL = dp.normal_map(GRAY, relief=0.02)
+COMMAND = os.environ.get("DAPPLE") or shutil.which("dapple")
+
+#: The array, what it holds, the ending, the depth, and how far it may come back from where it was.
+FILES = [
+    (GRAY, "gray", "png", 16, 1 / 65535),
+    (GRAY, "gray", "png", 8, 1 / 255),
+    (COLOR, "color", "png", 16, 2e-5),
+    (COLOR, "color", "png", 8, 5e-3),
+    (ALPHA, "color", "png", 16, 2e-5),
+    (NORMAL, "normal", "png", 16, 1e-4),
+    (COLOR, "data", "png", 16, 1 / 65535),
+    (ALPHA, "data", "png", 8, 1 / 255),
+    (100 * GRAY - 50, "gray", "exr", None, 0),
+    (100 * COLOR, "color", "exr", None, 0),
+    (ALPHA, "color", "exr", None, 1e-6),
+    (NORMAL, "normal", "exr", None, 1e-4),
+    (-COLOR, "data", "exr", None, 0),
+    (-ALPHA, "data", "exr", None, 0),
+]
+
+
+@pytest.mark.parametrize(("array", "content", "ending", "depth", "error"), FILES)
+def test_arrays_come_back_from_files(tmp_path, array, content, ending, depth, error):
+    path = tmp_path / f"a.{ending.upper()}"
+    dp.write_image(path, array, content=content, depth=depth)
+    back = dp.read_image(path, content=content)
+    assert back.shape == array.shape and back.dtype == np.float32
+    np.testing.assert_allclose(back, array, atol=error, rtol=0)
+    assert os.listdir(tmp_path) == [path.name]
+    data = path.read_bytes()
+    assert data == dp.encode_image(array, ending, content=content, depth=depth)
+    np.testing.assert_array_equal(dp.decode_image(data, content=content), back)
+    # In other orders and types the same bytes.
+    turned = np.asfortranarray(array.astype(np.float64))
+    turned.flags.writeable = False
+    assert dp.encode_image(turned, ending, content=content, depth=depth) == data
+
+
+def test_codes_are_those_that_pillow_reads():
+    png = Image.open(__import__("io").BytesIO(dp.encode_image(COLOR)))
+    np.testing.assert_array_equal(np.asarray(png), dp.srgb_from_linear(COLOR))
+    png = Image.open(__import__("io").BytesIO(dp.encode_image(GRAY)))
+    np.testing.assert_array_equal(np.asarray(png), np.round(GRAY.astype(float) * 65535))
+
+
+def test_numpy_arrays_and_raw_heights(tmp_path):
+    for array in (GRAY, COLOR, ALPHA, NORMAL):
+        dp.write_image(tmp_path / "a.npy", array, content="normal" if array is NORMAL else None)
+        np.testing.assert_array_equal(np.load(tmp_path / "a.npy"), array)
+    dp.write_image(tmp_path / "a.r16", GRAY)
+    raw = np.fromfile(tmp_path / "a.r16", "<u2").reshape(GRAY.shape)
+    np.testing.assert_array_equal(raw, np.round(GRAY.astype(float) * 65535))
+
+
+def test_alpha_goes_where_it_is_asked_to():
+    data = dp.encode_image(ALPHA, depth=16)
+    stored = dp.decode_image(data)
+    np.testing.assert_array_equal(dp.decode_image(data, alpha="drop"), stored[..., :3])
+    over = dp.decode_image(data, alpha="over:#ffffff")
+    alpha = stored[..., 3:]
+    np.testing.assert_allclose(over, stored[..., :3] * alpha + (1 - alpha), atol=1e-6)
+    opaque = dp.encode_image(COLOR)
+    assert dp.decode_image(opaque).shape == COLOR.shape
+    assert (dp.decode_image(opaque, alpha="keep")[..., 3] == 1).all()
+    assert dp.decode_image(dp.encode_image(GRAY), alpha="keep").shape == (*GRAY.shape, 4)
+    assert dp.decode_image(dp.encode_image(GRAY), content="color").shape == (*GRAY.shape, 3)
+
+
+def test_photographs_are_read_and_gray_with_alpha(tmp_path):
+    smooth = np.linspace(0, 255, 32).astype(np.uint8)[None, :, None].repeat(16, 0).repeat(3, 2)
+    Image.fromarray(smooth).save(tmp_path / "a.jpg", quality=98)
+    np.testing.assert_allclose(dp.read_image(tmp_path / "a.jpg"), dp.linear_from_srgb(smooth), atol=0.03)
+    Image.fromarray(smooth[..., :2], "LA").save(tmp_path / "la.png")
+    np.testing.assert_allclose(dp.read_image(tmp_path / "la.png", content="data"), smooth[..., :2] / 255, atol=1e-6)
+    assert dp.read_image(tmp_path / "la.png").shape == (16, 32, 4)
+
+
+@pytest.mark.skipif(COMMAND is None, reason="the command dapple is not on PATH")
+@pytest.mark.parametrize(("array", "content", "ending", "depth", "error"), FILES)
+def test_bytes_are_those_of_the_command(tmp_path, array, content, ending, depth, error):
+    """Two copies are joined by the command; it reads what we write, and we write what it reads."""
+    if content == "data" or error > 1e-3:
+        pytest.skip("the command does not copy such files as they are")
+    source, copy = tmp_path / f"in.{ending}", tmp_path / f"out.{ending}"
+    dp.write_image(source, array, content=content, depth=depth)
+    image = ["--normal", str(source)] if content == "normal" else [str(source)]
+    depth = [] if depth is None else ["--format", f"png{depth}"]
+    # A tile of an image along no seam that is cut: its mirror image, whose first half is the image.
+    subprocess.run([COMMAND, "tile", *image, "--method", "mirror", "-o", str(copy), *depth, "-q"], check=True)
+    ours = dp.read_image(source, content=content)
+    if content == "normal":
+        ours = dp.make_tile({"normal": ours}, method="mirror")["normal"]
+    else:
+        ours = dp.make_tile(ours, method="mirror")
+    bits = int(depth[1][3:]) if depth else None
+    assert copy.read_bytes() == dp.encode_image(ours, ending, content=content, depth=bits)
+
+
+def test_files_are_replaced_as_a_whole(tmp_path):
+    path, link = tmp_path / "a.png", tmp_path / "link.png"
+    path.write_bytes(b"old")
+    path.chmod(0o640)
+    link.symlink_to(path)
+    dp.write_image(link, GRAY)
+    assert link.is_symlink() and path.stat().st_mode & 0o777 == 0o640
+    assert sorted(os.listdir(tmp_path)) == ["a.png", "link.png"]
+    old = path.read_bytes()
+    with pytest.raises(dp.DappleError):
+        dp.write_image(path, np.full((4, 4), 0.5), depth=12)
+    assert path.read_bytes() == old
+    (tmp_path / "folder.png").mkdir()
+    with pytest.raises(dp.DappleError) as error:
+        dp.write_image(tmp_path / "folder.png", GRAY)
+    assert error.value.kind == "io" and "folder.png" in str(error.value)
+    assert sorted(os.listdir(tmp_path)) == ["a.png", "folder.png", "link.png"]
+
+
+@pytest.mark.parametrize(
+    ("call", "kind"),
+    [
+        (lambda: dp.read_image("/nowhere/a.png"), "io"),
+        (lambda: dp.decode_image(b"GIF89a"), "unknown_format"),
+        (lambda: dp.decode_image(dp.encode_image(GRAY), max_pixels=10), "too_many_pixels"),
+        (lambda: dp.decode_image(dp.encode_image(GRAY), content="colour"), "name"),
+        (lambda: dp.decode_image(dp.encode_image(GRAY), content="normal"), "channels"),
+        (lambda: dp.decode_image(dp.encode_image(COLOR), content="gray"), "channels"),
+        (lambda: dp.decode_image(dp.encode_image(COLOR), alpha="under"), "options"),
+        (lambda: dp.encode_image(COLOR, "jpg"), "format"),
+        (lambda: dp.encode_image(COLOR, "exr", depth=16), "depth"),
+        (lambda: dp.encode_image(COLOR, "r16"), None),
+        (lambda: dp.encode_image(COLOR, content="gray"), "channels"),
+        (lambda: dp.encode_image(np.zeros((4, 4, 2))), "channels"),
+        (lambda: dp.encode_image(np.zeros((4, 4), np.uint8)), "type"),
+        (lambda: dp.encode_image(np.zeros((0, 4))), None),
+        (lambda: dp.write_image("noending", GRAY), "format"),
+    ],
+)
+def test_what_cannot_be_is_refused(call, kind):
+    with pytest.raises(dp.DappleError) as error:
+        call()
+    assert error.value.kind == kind or kind is None
+
+
+def test_no_bytes_panic():
+    for array, content, ending, depth, _ in FILES:
+        data = bytearray(dp.encode_image(array, ending, content=content, depth=depth))
+        for _ in range(20):
+            broken = bytearray(data)
+            for at in RNG.integers(0, len(data), 3):
+                broken[at] ^= int(RNG.integers(1, 256))
+            try:
+                dp.decode_image(bytes(broken[: int(RNG.integers(1, len(data) + 1))]))
+            except dp.DappleError:
+                pass

@@ -1,0 +1,264 @@
+"""Textures from examples, in the plane and on meshes; mesh files."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+
+import numpy as np
+import pytest
+import trimesh
+
+import dapple_textures as dp
+
+CHECKER = np.kron([[0.0, 1.0], [1.0, 0.0]], np.ones((8, 8))).astype(np.float32)
+#: Cells in colors, which repeat.
+CELLS = dp.ramp(dp.worley(seed=3, period=8, value="f1").normalized().render(64), "giraffe")
+HEIGHT = dp.worley(seed=3, period=8).normalized().render(64)
+MATERIAL = {
+    "albedo": CELLS,
+    "normal": dp.normal_map(HEIGHT, relief=0.05),
+    "height": HEIGHT,
+    "orm": np.dstack([HEIGHT, 1 - HEIGHT, 0 * HEIGHT]),
+}
+COMMAND = os.environ.get("DAPPLE") or shutil.which("dapple")
+
+
+def torus(n=24, m=12):
+    """A torus of 2 n m triangles around the y axis."""
+    u, v = np.meshgrid(np.arange(n) * 2 * np.pi / n, np.arange(m) * 2 * np.pi / m, indexing="ij")
+    radius = 1 + 0.4 * np.cos(v)
+    vertices = np.stack([radius * np.cos(u), 0.4 * np.sin(v), -radius * np.sin(u)], 2).reshape(-1, 3)
+    i, j = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
+    at = lambda i, j: (i % n) * m + j % m
+    faces = np.stack([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1)], 2)
+    return vertices, faces.reshape(-1, 3)
+
+
+TORUS = torus()
+QUICK = {"texels": 256, "sites": 3000, "edges": "wrap", "levels": 2}
+MODEL = dp.synthesize_on(TORUS, MATERIAL, **QUICK, seed=5)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_every_pixel_is_one_of_the_example_and_maps_follow(threads):
+    before = dp.threads()
+    try:
+        dp.set_threads(threads)
+        texture, sources = dp.synthesize(MATERIAL, (40, 56), seed=7, wrap=True, edges="wrap", sources=True)
+    finally:
+        dp.set_threads(before)
+    assert sources.shape == (40, 56, 2) and list(texture) == list(MATERIAL)
+    for name, array in texture.items():
+        np.testing.assert_array_equal(array, MATERIAL[name].astype(np.float32)[sources[..., 1], sources[..., 0]])
+    np.testing.assert_array_equal(dp.synthesize(CELLS, (40, 56), seed=7, wrap=True, edges="wrap"), texture["albedo"])
+    assert (dp.synthesize(CELLS, (40, 56), seed=8, wrap=True, edges="wrap") != texture["albedo"]).any()
+
+
+def test_a_texture_that_wraps_is_a_tile_and_alpha_follows():
+    image = np.dstack([CELLS, HEIGHT])
+    tile = dp.synthesize(image, 64, wrap=True, edges="wrap")
+    assert tile.shape == (64, 64, 4)
+    assert dp.seam_report(tile[..., :3]).passes
+    assert not dp.seam_report(dp.synthesize(image, 64, edges="wrap")[..., :3]).passes
+
+
+def test_options_have_an_effect():
+    plain = dp.synthesize(CELLS, 48, levels=2)
+    for options in ({"coherence": 5.0}, {"evenness": 0.0}, {"paper": True}, {"levels": 3}, {"edges": "wrap"}):
+        assert (dp.synthesize(CELLS, 48, **{"levels": 2, **options}) != plain).any(), options
+    np.testing.assert_array_equal(dp.synthesize(CELLS, 48, levels=2, coherence="auto", evenness=1), plain)
+
+
+@pytest.mark.skipif(COMMAND is None, reason="the command dapple is not on PATH")
+def test_textures_are_those_of_the_command(tmp_path):
+    dp.write_image(tmp_path / "a.png", CELLS)
+    example = dp.read_image(tmp_path / "a.png")
+    run = [COMMAND, "synth", tmp_path / "a.png", "--seed", "7", "-q"]
+    subprocess.run([*run, "--size", "48x40", "--wrap", "both", "-o", tmp_path / "b.png", "--format", "png16"], check=True)
+    plane = dp.synthesize(example, (40, 48), seed=7, wrap=True)
+    assert (tmp_path / "b.png").read_bytes() == dp.encode_image(plane, depth=16)
+    trimesh.Trimesh(*TORUS, process=False).export(tmp_path / "torus.ply")
+    mesh = ["--mesh", tmp_path / "torus.ply", "--sites", "3000", "--texture-size", "256", "--crease", "30"]
+    subprocess.run([*run, *mesh, "-o", tmp_path / "b.glb"], check=True)
+    model = dp.synthesize_on(dp.read_model(tmp_path / "torus.ply"), example, texels=256, sites=3000, seed=7)
+    model.export(tmp_path / "c.glb")
+    assert (tmp_path / "b.glb").read_bytes() == (tmp_path / "c.glb").read_bytes()
+
+
+def test_progress_is_told_and_what_it_raises_comes_out():
+    told = []
+    dp.synthesize(CELLS, 400, progress=told.append)
+    assert told == sorted(told) and 0 <= told[0] and told[-1] <= 1
+
+    def refuse(part):
+        raise KeyError(part)
+
+    with pytest.raises(KeyError):
+        dp.synthesize(CELLS, 600, progress=refuse)
+    with pytest.raises(KeyError):
+        dp.synthesize_on(TORUS, CELLS, sites=100_000, progress=refuse)
+
+
+def test_ctrl_c_stops_a_synthesis_and_the_next_call_works():
+    script = """
+        import dapple_textures as dp, numpy as np, time
+        example = np.random.default_rng(1).random((128, 128, 3))
+        begin = time.perf_counter()
+        try:
+            dp.synthesize(example, 4000, progress=lambda part: print("going on", flush=True))
+        except KeyboardInterrupt:
+            print("stopped after", time.perf_counter() - begin)
+        print(dp.synthesize(example, 16).shape)
+    """
+    python = subprocess.Popen([sys.executable, "-c", textwrap.dedent(script)], stdout=subprocess.PIPE, text=True)
+    watchdog = threading.Timer(120, python.kill)
+    watchdog.start()
+    assert python.stdout.readline() == "going on\n"
+    python.send_signal(signal.SIGINT)
+    rest = python.communicate()[0]
+    watchdog.cancel()
+    assert "stopped after" in rest and rest.endswith("(16, 16, 3)\n") and python.returncode == 0
+
+
+def test_a_model_has_the_mesh_its_layout_and_all_maps():
+    np.testing.assert_allclose(MODEL.vertices, TORUS[0])
+    assert MODEL.faces.shape == TORUS[1].shape and MODEL.uv.shape == (len(TORUS[1]), 3, 2)
+    assert 0 <= MODEL.uv.min() and MODEL.uv.max() <= 1 and not MODEL.double_sided
+    np.testing.assert_allclose(np.linalg.norm(MODEL.normals, axis=2), 1)
+    assert {name: map.shape for name, map in MODEL.maps.items()} == {
+        name: (256, 256, *array.shape[2:]) for name, array in MATERIAL.items()
+    }
+    np.testing.assert_array_equal(MODEL.texture, MODEL.maps["albedo"])
+    np.testing.assert_array_equal(MODEL.maps["orm"][..., 0], MODEL.maps["height"])
+    assert (MODEL.maps["normal"][..., 2] > 0).all()
+    # The texture has the colors of the example: the mean at the middles of faces is that of the example.
+    middle = MODEL.uv.mean(1) * 256
+    colors = MODEL.texture[middle[:, 1].astype(int), middle[:, 0].astype(int)]
+    np.testing.assert_allclose(colors.mean(0), CELLS.mean((0, 1)), atol=0.08)
+
+
+def test_meshes_of_all_kinds_and_any_threads_give_the_same_bits(tmp_path):
+    vertices, faces = TORUS
+    path = tmp_path / "torus.obj"
+    trimesh.Trimesh(vertices, faces, process=False).export(path)
+    before = dp.threads()
+    try:
+        for mesh, threads in [
+            ((vertices.tolist(), faces.tolist()), 1),
+            ((np.asfortranarray(vertices), faces.astype(np.uint32)[:, ::1]), 2),
+            (trimesh.Trimesh(vertices, faces, process=False), 2),
+        ]:
+            dp.set_threads(threads)
+            again = dp.synthesize_on(mesh, MATERIAL, **QUICK, seed=5)
+            np.testing.assert_array_equal(again.texture, MODEL.texture)
+    finally:
+        dp.set_threads(before)
+    assert dp.synthesize_on(dp.read_model(path), CHECKER, **QUICK).texture.shape == (256, 256)
+
+
+def test_directions_turn_the_texture():
+    stripes = np.repeat(np.sin(np.arange(32) * np.pi / 4)[:, None] * 0.5 + 0.5, 32, 1)
+    square = np.array([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
+    options = {**QUICK, "sites": 8000, "levels": 3}
+    for turned in ({"down": (1, 0, 0)}, {"directions": ([[2, 2, 0]], [[1, 0, 0]])}):
+        for model, axis in ((dp.synthesize_on(square, stripes, **options), 1), (dp.synthesize_on(square, stripes, **options, **turned), 0)):
+            # Positions of the first face along both of its legs, and how the texture changes between them.
+            a, b, c = model.uv[0] * 256
+            x, y = np.meshgrid(np.linspace(0.05, 0.95, 100), np.linspace(0.05, 0.95, 100))
+            at = a + x[..., None] * (b - a) + y[..., None] * (c - b)
+            values = np.where(y < x, model.texture[at[..., 1].astype(int) % 256, at[..., 0].astype(int) % 256], np.nan)
+            change = [np.nanmean(np.abs(np.diff(values, axis=axis))) for axis in (1, 0)]
+            assert change[axis] > 2.5 * change[1 - axis], (turned, axis, change)
+
+
+def test_models_are_exported_and_read_back(tmp_path):
+    for ending in ("glb", "obj", "ply"):
+        (tmp_path / ending).mkdir()
+        MODEL.export(tmp_path / ending / f"model.{ending}")
+        back = dp.read_model(tmp_path / ending / f"model.{ending}")
+        if ending == "ply":
+            assert len(back.vertices) == 3000 and back.colors.shape == (3000, 4) and back.texture is None
+            continue
+        assert len(back.faces) == len(MODEL.faces)
+        np.testing.assert_allclose(back.vertices[back.faces], MODEL.vertices[MODEL.faces], atol=1e-6)
+        np.testing.assert_allclose(back.uv, MODEL.uv, atol=1e-6)
+        np.testing.assert_array_equal(dp.srgb_from_linear(back.texture), dp.srgb_from_linear(MODEL.texture))
+    names = sorted(os.listdir(tmp_path / "obj"))
+    assert "model.obj" in names and "model.mtl" in names and not [name for name in names if name.startswith(".")]
+    again = dp.synthesize_on(dp.read_model(tmp_path / "glb" / "model.glb"), CELLS, **QUICK, atlas="uv")
+    assert again.texture.shape == (256, 256, 3)
+
+
+def test_trimesh_takes_the_model_with_its_material(tmp_path):
+    mesh = MODEL.to_trimesh()
+    assert mesh.faces.shape == MODEL.faces.shape and mesh.visual.uv.shape == (3 * len(MODEL.faces), 2)
+    material = mesh.visual.material
+    np.testing.assert_array_equal(np.asarray(material.baseColorTexture), dp.srgb_from_linear(MODEL.texture))
+    assert material.normalTexture.size == (256, 256) and material.metallicRoughnessTexture is not None
+    # trimesh and we agree on which way v goes: the color at the corners of faces is the same.
+    at = mesh.visual.uv * [1, -1] + [0, 1]
+    np.testing.assert_allclose(at, MODEL.uv.reshape(-1, 2), atol=1e-12)
+    MODEL.export(tmp_path / "ours.glb")
+    ours = trimesh.load(tmp_path / "ours.glb", force="mesh", process=False)
+    np.testing.assert_allclose(ours.vertices[ours.faces], mesh.vertices[mesh.faces], atol=1e-6)
+    np.testing.assert_allclose(ours.visual.uv[ours.faces], mesh.visual.uv[mesh.faces], atol=1e-6)
+    gray = dp.synthesize_on(TORUS, CHECKER, **QUICK).to_trimesh()
+    assert np.asarray(gray.visual.material.baseColorTexture).shape == (256, 256, 3)
+
+
+def test_a_report_counts_what_is_wrong():
+    report = dp.mesh_report(TORUS)
+    assert report["vertices"] == 288 and report["faces"] == 576 and report["components"] == 1
+    assert sum(report.values()) == 288 + 576 + 1
+    vertices, faces = TORUS
+    broken = np.concatenate([faces[1:], faces[5:6], [[0, 0, 1]]])
+    report = dp.mesh_report(trimesh.Trimesh(vertices, broken, process=False))
+    assert report["duplicate_faces"] == 1 and report["degenerate_faces"] == 1 and report["boundary_edges"] >= 1
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: dp.synthesize(CHECKER, 0),
+        lambda: dp.synthesize(CHECKER, 2**16),
+        lambda: dp.synthesize(CHECKER, 16, levels=0),
+        lambda: dp.synthesize(CHECKER, 16, levels=9),
+        lambda: dp.synthesize(CHECKER, 17, wrap=True),
+        lambda: dp.synthesize(CHECKER, 16, edges="fold"),
+        lambda: dp.synthesize(CELLS, 16, coherence="much"),
+        lambda: dp.synthesize(CELLS, 16, coherence=-1.0),
+        lambda: dp.synthesize(CELLS, 16, evenness=np.nan),
+        lambda: dp.synthesize(np.full((64, 64), np.inf), 16),
+        lambda: dp.synthesize({"normal": MATERIAL["normal"]}, 16),
+        lambda: dp.synthesize({"a": CELLS, "b": HEIGHT[:9]}, 16),
+        lambda: dp.synthesize_on(TORUS, np.dstack([CELLS, HEIGHT])),
+        lambda: dp.synthesize_on(TORUS, CELLS, sites=0),
+        lambda: dp.synthesize_on(TORUS, CELLS, texels=2),
+        lambda: dp.synthesize_on(TORUS, CELLS, texels=2**30),
+        lambda: dp.synthesize_on(TORUS, CELLS, atlas="cube"),
+        lambda: dp.synthesize_on(TORUS, CELLS, padding=0),
+        lambda: dp.synthesize_on(TORUS, CELLS, down=(0, 0, 0), **QUICK),
+        lambda: dp.synthesize_on(TORUS, CELLS, directions=([[0, 0, 0]], [[0, np.nan, 0]]), **QUICK),
+        lambda: dp.synthesize_on(TORUS, CELLS, directions=([[0, 0, 0]], np.zeros((2, 3)))),
+        lambda: dp.synthesize_on((TORUS[0], TORUS[1] + 10_000), CELLS),
+        lambda: dp.synthesize_on((TORUS[0], TORUS[1] - 1), CELLS),
+        lambda: dp.synthesize_on((TORUS[0], TORUS[1] + 0.5), CELLS),
+        lambda: dp.synthesize_on((TORUS[0] * np.nan, TORUS[1]), CELLS),
+        lambda: dp.synthesize_on((TORUS[0][:, :2], TORUS[1]), CELLS),
+        lambda: dp.synthesize_on((TORUS[0], TORUS[1][:, :2]), CELLS),
+        lambda: dp.synthesize_on((TORUS[0], np.zeros((0, 3), int)), CELLS),
+        lambda: dp.synthesize_on("torus.obj", CELLS),
+        lambda: MODEL.export("model.stl"),
+        lambda: MODEL.export("/nowhere/model.glb"),
+        lambda: dp.read_model("/nowhere/model.glb"),
+        lambda: dp.read_model("model.fbx"),
+    ],
+)
+def test_what_cannot_be_is_refused(call):
+    with pytest.raises(dp.DappleError) as error:
+        call()
+    assert error.value.kind
