@@ -207,6 +207,3 @@ fn crop(whole: &Window, region: Region) -> Result<Window, RecipeError> {
         ..*whole
     })
 }
-
-#[cfg(test)]
-mod tests;

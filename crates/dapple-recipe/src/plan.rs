@@ -28,7 +28,7 @@ use dapple_raster::{Raster, Window};
 use glam::DVec2;
 use indexmap::IndexMap;
 use std::sync::Arc;
-use step::{ancestors, needed};
+use step::ancestors;
 use work::check_steps;
 
 /// An image that a recipe may name.
@@ -255,16 +255,7 @@ impl Plan {
     /// The steps on the way to `wanted` that the height is made of, too. Who knows them needs nothing of what they have in
     /// common any more.
     pub(crate) fn shared_with_height(&self, wanted: &[usize]) -> Vec<usize> {
-        let of_height = needed(&self.steps, &[self.channels.height], |_| false);
-        let is_shared = |index: usize| {
-            // A constant is made as soon as it is copied, and what sees the whole tile lies ready.
-            let step = &self.steps[index];
-            let is_ready = matches!(step, Step::Number(_) | Step::Color(_) | Step::Global(_));
-            !is_ready && of_height.binary_search(&index).is_ok()
-        };
-        let mut steps = needed(&self.steps, wanted, is_shared);
-        steps.retain(|&index| is_shared(index));
-        steps
+        step::shared(&self.steps, self.channels.height, wanted)
     }
 
     pub(crate) fn material(&self) -> &Material {
@@ -319,6 +310,3 @@ pub(crate) fn not_a_number(input: &Input) -> RecipeError {
         input: input.written(),
     })
 }
-
-#[cfg(test)]
-mod tests;

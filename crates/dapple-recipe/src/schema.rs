@@ -155,6 +155,3 @@ schemas! {
         })
     };
 }
-
-#[cfg(test)]
-mod tests;

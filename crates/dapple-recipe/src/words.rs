@@ -24,21 +24,3 @@ pub fn similar_words<'a>(written: &str, valid: impl IntoIterator<Item = &'a str>
     words.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(b.1)));
     words.into_iter().map(|(_, word)| word).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::similar_words;
-
-    #[test]
-    fn the_nearest_word_is_that_of_a_slip_and_no_other() {
-        let words = ["weight", "height", "normal"];
-        for (typed, expected) in [
-            ("weigth", Some(&"weight")),
-            ("Hight", Some(&"height")),
-            ("normals", Some(&"normal")),
-            ("roughness", None),
-        ] {
-            assert_eq!(similar_words(typed, words).first(), expected, "{typed}");
-        }
-    }
-}

@@ -12,7 +12,7 @@ import os
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 from ._native import Plan, Recipe, _plan_from_parts, encode_image
 from ._types import refusal
@@ -20,8 +20,11 @@ from ._types import refusal
 #: The property of a material that holds what it was baked from.
 _PROPERTY = "dapple_textures"
 
+_Depth: TypeAlias = Literal[8, 16]
+_Content: TypeAlias = Literal["gray", "color", "normal", "data"]
+
 #: The maps of a material: bits of PNG, what they hold, and Blender's name of their color space.
-_IMAGES: dict[str, tuple[int, str, str]] = {
+_IMAGES: dict[str, tuple[_Depth, _Content, str]] = {
     "albedo": (8, "color", "sRGB"),
     "orm": (8, "data", "Non-Color"),
     "normal": (16, "normal", "Non-Color"),
@@ -102,7 +105,7 @@ def _opengl(plan: Plan) -> Plan:
     return _plan_from_parts(json.dumps(data), images, time)
 
 
-def _image(bpy: Any, name: str, values: Any, depth: int, content: str, space: str) -> Any:
+def _image(bpy: Any, name: str, values: Any, depth: _Depth, content: _Content, space: str) -> Any:
     """An image of Blender's, packed as PNG; the one of this name with new pixels where there is one."""
     data = encode_image(values, "png", content=content, depth=depth)
     image = bpy.data.images.get(name)

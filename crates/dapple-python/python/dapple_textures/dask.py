@@ -9,7 +9,7 @@ from typing import Any
 
 import dask.array as da
 import numpy as np
-from dask import delayed
+from dask.delayed import delayed
 from distributed import Client, KilledWorker, as_completed, get_client
 
 from . import _sources, _workers, jobs
@@ -110,17 +110,18 @@ def _run(client: Client, job: jobs.Job, missing: list[int]) -> Iterator[int]:
     threads = sum(client.nthreads().values())
     running = as_completed()
     attempts: dict[int, int] = {}
+    indices: dict[str, int] = {}
 
     def submit(index: int) -> None:
         attempts[index] = attempts.get(index, -1) + 1
         future = client.submit(_workers.bake_shard, job.store, job.hash, index, pure=False)
-        future.dapple_index = index
+        indices[future.key] = index
         running.add(future)
 
     for index in islice(waiting, max(1, threads) * _AHEAD):
         submit(index)
     for future in running:
-        index = future.dapple_index
+        index = indices.pop(future.key)
         if future.status == "error":
             error = future.exception()
             if not isinstance(error, KilledWorker) or attempts[index] >= _ATTEMPTS:

@@ -106,7 +106,7 @@ impl dapple::raster::Field for Section {
 /// dtype('float32')
 #[pyfunction]
 #[pyo3(signature = (*, seed = SeedArgument::default(), dims = 2, period = None, weights = vec![1.0]),
-    text_signature = "(*, seed=0, dims=2, period=64, weights=(1.0,))")]
+    text_signature = "(*, seed=0, dims=2, period=64, weights=[1.0])")]
 pub(crate) fn wavelet_noise(
     seed: SeedArgument,
     dims: usize,

@@ -114,7 +114,7 @@ fn indices<const N: usize>(
 
 #[pymethods]
 impl Graph {
-    /// The points.
+    /// The points that it connects.
     #[getter]
     fn points(&self) -> Points {
         Points::shared_with(&self.points)

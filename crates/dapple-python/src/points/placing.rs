@@ -21,7 +21,7 @@ enum Wanted {
 }
 
 impl Wanted {
-    /// The points.
+    /// The points that it connects.
     fn place(
         self,
         domain: dapple::points::Domain,

@@ -231,25 +231,52 @@ impl Laid {
 #[cfg(test)]
 mod tests {
     use super::{Places, evaluate, last_uses, needed};
-    use crate::{Images, Plan, Recipe};
+    use crate::Values;
+    use crate::plan::step::{Local, Step, shared};
     use dapple_raster::glam::DVec2;
+
+    /// The sum of the absolute values of some inputs: without a plan, which would compile all nodes again.
+    fn sum(inputs: &[usize]) -> Step {
+        Step::Local(Local {
+            inputs: inputs.to_vec(),
+            color: false,
+            apply: Box::new(|inputs| {
+                let sum = inputs.iter().map(|values| values.numbers()[0].abs()).sum();
+                Ok(Values::Numbers(vec![sum]))
+            }),
+        })
+    }
 
     #[test]
     fn values_are_kept_until_their_last_use_or_as_long_as_they_are_wanted() {
-        let text = "dapple = 1\nnodes.a.coordinate = {}\nnodes.b.absolute = \"a\"\nnodes.c.add = [\"a\", \"b\", \"b\"]\nnodes.d.absolute = \"c\"\n[material]\n";
-        let plan = Plan::new(&Recipe::from_toml(text).unwrap(), &Images::new(), 0.0).unwrap();
-        let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| plan.names[name]);
+        let [a, b, c, d] = [0, 1, 2, 3];
+        let steps = [Step::Number(0.25), sum(&[a]), sum(&[a, b, b]), sum(&[c])];
         let kept_until = |wanted: &[usize]| {
-            let order = needed(&plan.steps, wanted, |_| false);
-            let last_uses = last_uses(&plan.steps, &order, wanted);
+            let order = needed(&steps, wanted, |_| false);
+            let last_uses = last_uses(&steps, &order, wanted);
             [a, b, c, d].map(|index| last_uses[index])
         };
         assert_eq!(kept_until(&[d]), [c, c, d, usize::MAX]);
         assert_eq!(kept_until(&[b, d]), [c, usize::MAX, d, usize::MAX]);
         let positions = [DVec2::new(0.25, 0.5)];
         let places = Places::Positions(&positions);
-        let values = evaluate(&plan.steps, None, places, &[b, d, a], &[]).unwrap();
+        let values = evaluate(&steps, None, places, &[b, d, a], &[]).unwrap();
         let values: Vec<_> = values.iter().map(|values| values.numbers()[0]).collect();
         assert_eq!(values, [0.25, 0.75, 0.25]);
+    }
+    #[test]
+    fn steps_on_the_way_to_the_height_are_shared_but_for_constants() {
+        let [a, b, c, d, e] = [0, 1, 2, 3, 4];
+        let steps = [
+            Step::Number(0.25),
+            sum(&[a]),
+            sum(&[b]),
+            sum(&[b, c]),
+            sum(&[a, d]),
+        ];
+        assert_eq!(shared(&steps, c, &[d, e]), [b, c]);
+        assert_eq!(shared(&steps, b, &[c]), [b]);
+        assert_eq!(shared(&steps, e, &[c]), [c]);
+        assert_eq!(shared(&steps, a, &[e]), [0; 0]);
     }
 }

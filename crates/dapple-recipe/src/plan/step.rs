@@ -167,3 +167,19 @@ fn reached(steps: &[Step], wanted: &[usize], leads_to: impl Fn(usize) -> Vec<usi
     }
     (0..steps.len()).filter(|&index| reached[index]).collect()
 }
+
+/// The steps on the way to `wanted` that `height` is made of, too, but for those that are ready without being kept.
+pub(super) fn shared(steps: &[Step], height: usize, wanted: &[usize]) -> Vec<usize> {
+    let of_height = needed(steps, &[height], |_| false);
+    let is_shared = |index: usize| {
+        // A constant is made as soon as it is copied, and what sees the whole tile lies ready.
+        let is_ready = matches!(
+            steps[index],
+            Step::Number(_) | Step::Color(_) | Step::Global(_)
+        );
+        !is_ready && of_height.binary_search(&index).is_ok()
+    };
+    let mut shared = needed(steps, wanted, is_shared);
+    shared.retain(|&index| is_shared(index));
+    shared
+}

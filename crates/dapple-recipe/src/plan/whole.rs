@@ -177,6 +177,3 @@ impl Whole {
         pixels
     }
 }
-
-#[cfg(test)]
-mod tests;

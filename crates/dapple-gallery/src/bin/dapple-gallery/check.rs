@@ -1,7 +1,7 @@
 //! `--check` and `--bless`: the figures as they are now, beside `figures.lock`.
 #![expect(clippy::disallowed_methods, reason = "the lock is a file")]
 
-use crate::{progress, say};
+use crate::{say, with_progress};
 use anyhow::{Context, bail};
 use dapple_gallery::lock::Change;
 use dapple_gallery::{Figure, LOCK_SIZE, Lock, figures};
@@ -10,7 +10,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// Fails if one of `selected` has another hash than its line, or a line is missing or left over.
-pub(crate) fn check(selected: &[&Figure], path: &Path) -> anyhow::Result<()> {
+pub(crate) fn check(selected: &[&'static Figure], path: &Path) -> anyhow::Result<()> {
     let old = read(path)?;
     let changes = old.changes(&updated(&old, selected)?);
     if changes.is_empty() {
@@ -29,7 +29,7 @@ pub(crate) fn check(selected: &[&Figure], path: &Path) -> anyhow::Result<()> {
 }
 
 /// Writes the hashes of `selected` into the lock, drops lines without a figure, and says what changed.
-pub(crate) fn bless(selected: &[&Figure], path: &Path) -> anyhow::Result<()> {
+pub(crate) fn bless(selected: &[&'static Figure], path: &Path) -> anyhow::Result<()> {
     let old = read(path)?;
     let new = updated(&old, selected)?;
     let changes: Vec<Change> = old.changes(&new);
@@ -43,17 +43,13 @@ pub(crate) fn bless(selected: &[&Figure], path: &Path) -> anyhow::Result<()> {
 }
 
 /// The old lock with the hashes of `selected` as they are now, and without the lines that have no figure.
-fn updated(old: &Lock, selected: &[&Figure]) -> anyhow::Result<Lock> {
+fn updated(old: &Lock, selected: &[&'static Figure]) -> anyhow::Result<Lock> {
     let mut lock = old.clone();
     let names: Vec<String> = figures().map(Figure::name).collect();
     lock.retain(|name| names.iter().any(|figure| figure == name));
-    let bar = progress(selected);
-    for figure in selected {
-        bar.set_message(figure.name());
+    for figure in with_progress(selected) {
         lock.insert(figure.name(), figure.hash(LOCK_SIZE)?);
-        bar.inc(1);
     }
-    bar.finish_and_clear();
     Ok(lock)
 }
 

@@ -4,7 +4,7 @@
     reason = "files are written here, and the page says how long a figure took"
 )]
 
-use crate::{progress, root};
+use crate::{root, with_progress};
 use anyhow::{Context, ensure};
 use dapple_gallery::page::{self, Entry, Image};
 use dapple_gallery::{Figure, Panel, Picture};
@@ -21,14 +21,10 @@ pub(crate) fn export(
     out: &Path,
 ) -> anyhow::Result<PathBuf> {
     fs::create_dir_all(out).with_context(|| format!("cannot make the folder {}", out.display()))?;
-    let bar = progress(figures);
     let mut entries = Vec::new();
-    for figure in figures {
-        bar.set_message(figure.name());
+    for figure in with_progress(figures) {
         entries.push(export_figure(figure, size, out)?);
-        bar.inc(1);
     }
-    bar.finish_and_clear();
     let page = out.join("index.html");
     let html = page::html(&entries, &relative_root(out)?);
     fs::write(&page, html).with_context(|| format!("cannot write {}", page.display()))?;

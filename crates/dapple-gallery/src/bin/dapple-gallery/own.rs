@@ -3,7 +3,6 @@
 
 use crate::say;
 use anyhow::{Context, Result};
-use clap::Args;
 use dapple_gallery::{Own, Picture};
 use dapple_image::{Depth, Limits, read_image, write_color_png};
 use dapple_mesh_io::{read_model, write_model};
@@ -11,47 +10,32 @@ use dapple_synth::{Coherence, Direction, Edges, HierarchyOptions};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What is put on what.
-#[derive(Debug, Args)]
+/// A mesh, the exemplar of its texture, and how that is made.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct OwnArguments {
-    /// Renders a mesh of your own, of any format that is read, with the texture of `--exemplar`.
-    #[arg(long, value_name = "FILE", requires = "exemplar")]
-    pub(crate) mesh: Option<PathBuf>,
-
+    /// The file of the mesh, of any format that is read.
+    pub(crate) mesh: PathBuf,
     /// The image (PNG, JPEG) that the texture is synthesized from.
-    #[arg(long, value_name = "FILE", requires = "mesh")]
-    exemplar: Option<PathBuf>,
-
+    pub(crate) exemplar: PathBuf,
     /// The exemplar tiles.
-    #[arg(long, requires = "mesh")]
-    tiles: bool,
-
-    /// Directions of the texture's down, as lines `x,y,z,dx,dy,dz`; without any it runs along -y.
-    #[arg(long, value_name = "FILE", requires = "mesh")]
-    directions: Option<PathBuf>,
-
+    pub(crate) tiles: bool,
+    /// The file with directions of the texture's down, as lines `x,y,z,dx,dy,dz`; without any it runs along -y.
+    pub(crate) directions: Option<PathBuf>,
     /// How many points get a color.
-    #[arg(long, value_name = "N", default_value_t = 262_144, requires = "mesh")]
-    points: usize,
-
+    pub(crate) points: usize,
     /// How many levels the points have: 4 for large features.
-    #[arg(long, value_name = "N", default_value_t = 3, requires = "mesh")]
-    levels: usize,
-
+    pub(crate) levels: usize,
     /// How much worse a match may be that continues its neighbors; 0 as in the paper.
-    #[arg(long, value_name = "auto|K", default_value = "auto", requires = "mesh")]
-    coherence: Coherence,
+    pub(crate) coherence: Coherence,
 }
 
 /// Renders the mesh from four sides and writes it with its texture map.
 pub(crate) fn run(arguments: &OwnArguments, size: u32, out: &Path) -> Result<()> {
-    let path = |path: &Option<PathBuf>| path.clone().context("the file is not named");
-    let (mesh, exemplar) = (path(&arguments.mesh)?, path(&arguments.exemplar)?);
     let text = arguments.directions.as_ref().map(fs::read_to_string);
     let directions = text.transpose()?.unwrap_or_default();
     let own = Own {
-        mesh: read_model(mesh)?.mesh,
-        image: read_image(exemplar, &Limits::default())?.color()?,
+        mesh: read_model(&arguments.mesh)?.mesh,
+        image: read_image(&arguments.exemplar, &Limits::default())?.color()?,
         edges: if arguments.tiles {
             Edges::Wrap
         } else {

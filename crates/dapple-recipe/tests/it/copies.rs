@@ -1,11 +1,11 @@
 //! Nodes that are made of copies and pieces of others.
 
-use crate::{
+use dapple_color::LinearRgb;
+use dapple_raster::Raster;
+use dapple_recipe::{
     Bake, BakeOptions, ImageAlpha, Images, MapKind, MapRows, Plan, Recipe, RecipeError,
     RecipeErrorKind,
 };
-use dapple_color::LinearRgb;
-use dapple_raster::Raster;
 use dapple_tile::{CornerTiles, Disturbance, Map, MatchBorders};
 
 /// Two textures that repeat, and a color that follows one of them.

@@ -1,7 +1,7 @@
 //! Tests of what a plan refuses.
 
-use crate::{Images, Plan, PlanLimits, Recipe, RecipeError, RecipeErrorKind};
 use dapple_raster::{Field, glam::DVec2};
+use dapple_recipe::{Images, Plan, PlanLimits, Recipe, RecipeError, RecipeErrorKind};
 
 /// What is wrong with a recipe of these nodes, whose height is the node `a`.
 fn refusal(nodes: &str) -> RecipeError {

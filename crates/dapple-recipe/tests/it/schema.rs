@@ -1,10 +1,12 @@
 //! Tests of the schema against the reader, by a validator of the keywords that the schema has.
 
-use super::HEX;
-use crate::{Images, KINDS, Plan, PupsNode, Recipe};
+use dapple_recipe::{Images, KINDS, Plan, PupsNode, Recipe};
 use serde_json::{Map, Value};
 
 const README: &str = include_str!("../../README.md");
+
+/// The pattern of a color.
+const HEX: &str = "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$";
 
 /// Why a value does not fit a schema.
 type Misfit = String;

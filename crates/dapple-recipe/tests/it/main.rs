@@ -1,0 +1,10 @@
+//! Recipes through their public doors: nodes and readers are compiled once, in the library.
+
+mod bakes;
+mod copies;
+mod program;
+mod refusals;
+#[cfg(feature = "schema")]
+mod schema;
+mod text;
+mod words;

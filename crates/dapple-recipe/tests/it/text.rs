@@ -1,0 +1,161 @@
+//! Recipes read from text and written to it, and what is refused with its place.
+
+use dapple_recipe::{MAX_TEXT, Place, Recipe, RecipeErrorKind};
+
+const STONES: &str = "dapple = 1\n\n[nodes.cells.worley]\nvalue = \"f2_minus_f1\"\nfrequency = 8\n\n[material]\nheight = \"cells\"\n";
+
+#[test]
+fn a_recipe_is_the_same_after_toml_and_json() {
+    let recipe = Recipe::from_toml(STONES).unwrap();
+    let toml = Recipe::from_toml(&recipe.to_toml().unwrap()).unwrap();
+    let json = Recipe::from_json(&recipe.to_json().unwrap()).unwrap();
+    assert_eq!(
+        recipe.to_json().unwrap(),
+        toml.to_json().unwrap(),
+        "through TOML"
+    );
+    assert_eq!(
+        recipe.to_json().unwrap(),
+        json.to_json().unwrap(),
+        "through JSON"
+    );
+}
+
+#[test]
+fn json_keeps_every_bit_of_a_number() {
+    let text = STONES.replace(
+        "frequency = 8",
+        "range = [0, 1]\n[nodes.wide.distance]\ncenter = [0.218446744073709551616, 1.3e-7]",
+    );
+    let json = Recipe::from_toml(&text).unwrap().to_json().unwrap();
+    let again = Recipe::from_json(&json).unwrap().to_json().unwrap();
+    assert_eq!(json, again, "written and read again");
+}
+
+#[test]
+fn a_wrong_word_is_told_with_its_line_and_the_nearest_valid_one() {
+    let cases = [
+        ("frequency", "frequenzy", 5, "frequency"),
+        ("worley", "worly", 3, "worley"),
+        ("f2_minus_f1", "f2-minus-f1", 4, "f2_minus_f1"),
+        ("height", "heigth", 8, "height"),
+        ("[material]", "[materials]", 7, "material"),
+    ];
+    for (right, wrong, line, nearest) in cases {
+        let error = Recipe::from_toml(&STONES.replacen(right, wrong, 1)).unwrap_err();
+        assert_eq!(
+            error.place().map(|place| place.line),
+            Some(line),
+            "{wrong}: {error}"
+        );
+        assert_eq!(error.nearest(), Some(nearest), "{wrong}: {error}");
+    }
+}
+
+#[test]
+fn a_wrong_value_is_told_without_names_of_types() {
+    for (wrong, expected) in [
+        ("octaves = 3", "a table"),
+        ("metric = 3", "a word or a table"),
+        ("octaves.gain = \"high\"", "a number"),
+        ("octaves.count = -1", "a whole number that is not negative"),
+        ("octaves.count = []", "a whole number that is not negative"),
+    ] {
+        let text = STONES.replace("frequency = 8", wrong);
+        let error = Recipe::from_toml(&text).unwrap_err().to_string();
+        assert!(
+            error.ends_with(&format!("expected {expected}")),
+            "{wrong}: {error}"
+        );
+    }
+}
+
+#[test]
+fn words_of_other_programs_are_read() {
+    let text = |gain: &str, albedo: &str| {
+        let nodes = format!(
+            "frequency = 8\noctaves = {{ count = 2, {gain} = 0.7 }}\n[nodes.n.noise]\n{gain} = 0.7\n[nodes.o.pups.octaves]\n{gain} = 0.7\n[nodes.c.pups.cellular_noise]\n{gain} = 0.7\n"
+        );
+        STONES.replace("frequency = 8", &nodes) + &format!("{albedo} = \"cells\"\n")
+    };
+    let json = |gain, albedo| {
+        Recipe::from_toml(&text(gain, albedo))
+            .unwrap()
+            .to_json()
+            .unwrap()
+    };
+    assert_eq!(json("gain", "albedo"), json("persistence", "basecolor"));
+}
+
+#[test]
+fn json_errors_name_the_line_too() {
+    let json = Recipe::from_toml(STONES).unwrap().to_json().unwrap();
+    let error = Recipe::from_json(&json.replace("frequency", "frequenzy")).unwrap_err();
+    assert_eq!(error.nearest(), Some("frequency"), "{error}");
+    assert!(error.place().is_some_and(|place| place.line > 3), "{error}");
+    assert!(
+        !error.to_string().contains(" at line "),
+        "the place is told once: {error}"
+    );
+}
+
+#[test]
+fn a_key_that_is_there_twice_is_refused_with_its_line() {
+    let json = |nodes: &str, material: &str| {
+        format!("{{\n\"dapple\": 1,\n\"nodes\": {{\n{nodes}\n}},\n\"material\": {{{material}}}\n}}")
+    };
+    let a = "\"a\": {\"worley\": {}}";
+    for (text, line, key) in [
+        (json(&format!("{a},\n{a}"), ""), 5, "a"),
+        (
+            json(
+                "\"a\": {\"worley\": {\"seed\": 1,\n\"frequency\": 2, \"seed\": 3}}",
+                "",
+            ),
+            5,
+            "seed",
+        ),
+        (json(a, "\"relief\": 1, \"relief\": 2"), 6, "relief"),
+        (json(a, "}, \"seed\": 1, \"seed\": {"), 6, "seed"),
+    ] {
+        let error = Recipe::from_json(&text).expect_err(&text);
+        let message = error.to_string();
+        assert!(
+            message.contains(&format!("`{key}` is there twice")),
+            "{message}"
+        );
+        assert_eq!(error.place().map(|place| place.line), Some(line), "{error}");
+    }
+    let once = Recipe::from_json(&json(a, "")).unwrap();
+    assert_eq!(once.nodes.len(), 1);
+}
+
+#[test]
+fn what_is_no_toml_is_told_with_its_place() {
+    let error = Recipe::from_toml("dapple = 1\nseed = = 3\n").unwrap_err();
+    assert!(
+        matches!(error.kind(), RecipeErrorKind::Text { .. }),
+        "{error}"
+    );
+    assert_eq!(error.place(), Some(Place { line: 2, column: 8 }), "{error}");
+}
+
+#[test]
+fn another_version_is_told_before_anything_else() {
+    for text in ["dapple = 2\nflowers = 3\n", "dapple = 0\n"] {
+        let error = Recipe::from_toml(text).unwrap_err();
+        assert!(
+            matches!(error.kind(), RecipeErrorKind::Schema { .. }),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn a_text_past_the_limit_is_refused() {
+    let error = Recipe::from_toml(&"#".repeat(MAX_TEXT + 1)).unwrap_err();
+    assert!(
+        matches!(error.kind(), RecipeErrorKind::Count { .. }),
+        "{error}"
+    );
+}
