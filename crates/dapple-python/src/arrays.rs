@@ -5,8 +5,7 @@
 
 use crate::error::{Error, Result};
 use crate::threads;
-use dapple::raster::glam::DVec2;
-use dapple::raster::{Raster, RasterView};
+use dapple::raster::Raster;
 use numpy::ndarray::{ArrayD, IxDyn};
 use numpy::{
     AllowTypeChange, Element, IntoPyArray, PyArrayDyn, PyArrayLike, PyArrayLikeDyn, PyArrayMethods,
@@ -35,7 +34,7 @@ pub(crate) fn filled<'py>(
     let Some(out) = out else {
         let n_values = shape.iter().product();
         let values = threads::run(py, || -> Result<Vec<f32>> {
-            let mut values = vec![0.0; n_values];
+            let mut values = zeros(n_values)?;
             fill(&mut values)?;
             Ok(values)
         })??;
@@ -56,6 +55,21 @@ pub(crate) fn filled<'py>(
     threads::run(py, || fill(values))??;
     drop(memory);
     Ok(out.into_any())
+}
+
+/// As many zeros, refused where there is no memory for them.
+fn zeros(count: usize) -> Result<Vec<f32>> {
+    // Zeros are pages that the system has not touched yet, and asking for memory does not touch it either.
+    reserve(&mut Vec::new(), count)?;
+    Ok(vec![0.0; count])
+}
+
+/// Room for as many numbers, refused where there is no memory for them.
+pub(crate) fn reserve(values: &mut Vec<f32>, count: usize) -> Result<()> {
+    values.try_reserve_exact(count).map_err(|_| {
+        let message = format!("there is no memory for {count} numbers");
+        Error::new("memory", message)
+    })
 }
 
 /// A raster of numbers as an array (rows, columns).
@@ -107,16 +121,6 @@ impl Positions {
             shape: shape.to_vec(),
         })
     }
-
-    /// Positions of the plane.
-    pub(crate) fn plane(positions: &Bound<'_, PyAny>) -> Result<Vec<DVec2>> {
-        let positions = Self::read(positions, 2)?;
-        Ok(positions
-            .numbers
-            .chunks_exact(2)
-            .map(DVec2::from_slice)
-            .collect())
-    }
 }
 
 /// An array of two axes (rows, columns) as a raster. It is copied.
@@ -162,11 +166,6 @@ pub(crate) fn raster_size(what: &str, shape: &[usize]) -> Result<[u32; 2]> {
         })
     };
     Ok([side(shape[1])?, side(shape[0])?])
-}
-
-/// Memory as a raster that it holds without gaps.
-pub(crate) fn view<T>(values: &[T], size: [u32; 2]) -> Result<RasterView<'_, T>> {
-    Ok(RasterView::new(values, size[0] as usize, size)?)
 }
 
 /// Distances, vectors and ids of feature points as Python's `Features`.

@@ -31,7 +31,7 @@ pub(crate) fn object(py: Python<'_>, made: Made) -> Result<Py<PyAny>> {
     let vectors = threads::run(py, || made.vectors())??;
     Ok(match vectors {
         Some(vectors) => Py::new(py, ColorField { made, vectors })?.into_any(),
-        None => Py::new(py, threads::run(py, || Field::new(made))??)?.into_any(),
+        None => Py::new(py, Field::new(made)?)?.into_any(),
     })
 }
 

@@ -27,15 +27,10 @@ pub(crate) struct Field {
 const CHUNK: usize = 4096;
 
 impl Field {
-    /// The field that a description gives.
+    /// The field that a description gives, made on the threads of the package.
     pub(crate) fn new(made: Made) -> Result<Self> {
-        let function = made.build()?;
+        let function = Python::attach(|py| threads::run(py, || made.build()))??;
         Ok(Self { made, function })
-    }
-
-    /// How it was made.
-    pub(crate) fn made(&self) -> &Made {
-        &self.made
     }
 
     /// The function of the plane that it is.

@@ -4,8 +4,9 @@
 
 use crate::error::{Error, Result};
 use crate::generators::{CellsMade, GradientMade, WaveletMade};
-use crate::pups::{PupsMade, Shared, TextureMade};
+use crate::pups::{PupsMade, TextureMade};
 use crate::recipe::NodeMade;
+use crate::shared::Shared;
 use dapple::raster::glam::DVec2;
 use dapple::raster::{
     Field, FieldExt, Fractal, FractalShape, PairOperation, RasterError, RasterViewMut, Window,
@@ -60,13 +61,13 @@ pub(crate) enum Made {
     /// Perlin's gradient noise.
     GradientNoise(GradientMade),
     /// Wavelet noise.
-    WaveletNoise(WaveletMade),
+    WaveletNoise(Shared<WaveletMade>),
     /// Values of control points.
     Pups(Shared<PupsMade>),
     /// A texture of control points, by its name.
     Texture(Shared<TextureMade>),
     /// A node of a recipe.
-    Node(NodeMade),
+    Node(Shared<NodeMade>),
     /// A plane through a function of more axes.
     Slice { field: Box<Made>, rest: Vec<f64> },
     /// At positions times a frequency.
@@ -124,10 +125,10 @@ impl Made {
             Self::Constant(number) => Arc::new(*number),
             Self::Worley(made) => return made.build(),
             Self::GradientNoise(made) => return made.build(),
-            Self::WaveletNoise(made) => return made.build(),
+            Self::WaveletNoise(made) => return made.get(),
             Self::Pups(made) => made.get()?.numbers()?,
             Self::Texture(made) => made.get()?.numbers()?,
-            Self::Node(made) => return made.build(),
+            Self::Node(made) => return made.get(),
             Self::Slice { field, rest } => match field.build()? {
                 Function::Space(volume) if volume.period().len() == rest.len() + 2 => {
                     volume.slice(rest)

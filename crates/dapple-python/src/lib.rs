@@ -22,6 +22,7 @@ mod points;
 mod pups;
 mod recipe;
 mod seed;
+mod shared;
 mod synthesis;
 mod threads;
 mod tiles;

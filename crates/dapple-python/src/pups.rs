@@ -2,7 +2,6 @@
 
 mod assignments;
 mod partition;
-mod shared;
 mod textures;
 mod vectors;
 
@@ -11,6 +10,5 @@ pub(crate) use assignments::{
     random_orientations, random_values, reference_labels,
 };
 pub(crate) use partition::{_partition_from_description, Partition, PupsMade, pups};
-pub(crate) use shared::Shared;
 pub(crate) use textures::{_texture, _texture_defaults, TextureMade};
 pub(crate) use vectors::{Values, Vectors};

@@ -7,6 +7,7 @@ use crate::field::Field;
 use crate::function::{Function, Made};
 use crate::grid::{Grid, GridArguments, size as size_of};
 use crate::seed::SeedArgument;
+use crate::shared::{Build, Shared};
 use crate::threads;
 use dapple::color::{LinearRgb, Normal};
 use dapple::recipe::{
@@ -269,6 +270,9 @@ impl Plan {
     }
 }
 
+/// The text of a recipe, its images, and the time.
+type PlanParts<'py> = (String, Bound<'py, PyDict>, f64);
+
 /// The numbers of a map, gathered band by band.
 struct Gathered {
     kind: MapKind,
@@ -284,13 +288,16 @@ impl Gathered {
             MapRows::Normal(raster) => flat(raster.into_pixels(), Normal::to_array),
             MapRows::Packed(raster) => raster.into_pixels().into_flattened(),
         };
-        if self.values.is_empty() {
+        if self.values.capacity() == 0 {
             self.values = rows;
         } else {
             self.values.extend_from_slice(&rows);
         }
     }
 }
+
+/// The most pixels that come in one band.
+const BAND_PIXELS: usize = 1 << 20;
 
 /// The numbers of pixels, in the memory of the pixels.
 fn flat<T>(pixels: Vec<T>, numbers: impl Fn(T) -> [f32; 3]) -> Vec<f32> {
@@ -372,12 +379,20 @@ impl Plan {
         };
         let mut bake = threads::run(py, || Bake::new(&self.plan, &options))??;
         let [columns, rows] = bake.size().map(|side| side as usize);
-        let gathered = kinds.into_iter().map(|kind| Gathered {
-            kind,
-            n_channels: n_channels(kind),
-            values: Vec::new(),
-        });
-        let mut gathered: Vec<_> = gathered.collect();
+        let mut gathered = Vec::new();
+        for kind in kinds {
+            let n_channels = n_channels(kind);
+            let mut values = Vec::new();
+            // A map of a single band is taken as it is.
+            if columns * rows > BAND_PIXELS {
+                arrays::reserve(&mut values, columns * rows * n_channels)?;
+            }
+            gathered.push(Gathered {
+                kind,
+                n_channels,
+                values,
+            });
+        }
         loop {
             let band = threads::run(py, || {
                 let Some(band) = bake.next() else {
@@ -472,11 +487,11 @@ impl Plan {
                 "fields are made again from their description, which holds no images: bake the maps of this plan instead",
             ));
         }
-        Field::new(Made::Node(NodeMade {
+        Field::new(Made::Node(Shared::new(NodeMade {
             recipe: self.recipe.to_json()?,
             node,
             time: self.time,
-        }))
+        })))
     }
 
     /// The SHA-256 of all that the plan is made of, its images too: the same on every machine.
@@ -515,10 +530,7 @@ impl Plan {
         Ok(u64::from_str_radix(&self.hash()?[..16], 16).unwrap_or(0))
     }
 
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> Result<(Py<PyAny>, (String, Bound<'py, PyDict>, f64))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> Result<(Py<PyAny>, PlanParts<'py>)> {
         let images = PyDict::new(py);
         for (name, picture) in &self.images {
             let array = match picture {
@@ -565,8 +577,10 @@ pub(crate) struct NodeMade {
     time: f64,
 }
 
-impl NodeMade {
-    pub(crate) fn build(&self) -> Result<Function> {
+impl Build for NodeMade {
+    type Built = Function;
+
+    fn build(&self) -> Result<Function> {
         let plan = RustPlan::new(
             &RustRecipe::from_json(&self.recipe)?,
             &Images::new(),
@@ -619,11 +633,8 @@ impl ShardList {
         let Region {
             first: [column, row],
             size: [columns, rows],
-        } = region.ok_or_else(|| {
-            PyErr::from(pyo3::exceptions::PyIndexError::new_err(
-                "there are fewer shards",
-            ))
-        })?;
+        } = region
+            .ok_or_else(|| pyo3::exceptions::PyIndexError::new_err("there are fewer shards"))?;
         Ok(((row, column), (rows, columns)))
     }
 }

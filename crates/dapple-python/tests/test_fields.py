@@ -254,6 +254,8 @@ def test_cell_points_are_found_as_features():
         (lambda: dp.worley().render(5, window=np.s_[0:4:2, 0:2]), "window", "steps of 2"),
         (lambda: dp.worley().render(5, window=(slice(0, 1),)), "count", "slices"),
         (lambda: dp.worley().render((2**31, 2**31)), "too_large", "values"),
+        (lambda: dp.worley().render((2**20, 2**19)), "memory", "no memory"),
+        (lambda: dp.Recipe.builtin("rock").plan().bake((2**20, 2**19)), "memory", "no memory"),
         (lambda: dp.set_threads(10**6), "threads", "1024"),
     ],
 )

@@ -651,7 +651,8 @@ where
     };
     let gradients = dapple::raster::parallel::map_at_least(256, positions.len() / N, |index| {
         let position: [f64; N] = core::array::from_fn(|axis| positions[index * N + axis]);
-        <[f64; N]>::from(gradient(position.into()).into())
+        let gradient: [f64; N] = gradient(position.into()).into();
+        gradient
     });
     Ok(gradients.into_flattened())
 }

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::field::Field;
 use crate::function::{Function, Made, Volume};
 use crate::seed::SeedArgument;
+use crate::shared::{Build, Shared};
 use dapple::hash::Seed;
 use dapple::raster::glam::{DVec2, DVec3};
 use dapple::raster::{RasterError, RasterViewMut, Window};
@@ -21,8 +22,10 @@ pub(crate) struct WaveletMade {
     weights: Vec<f32>,
 }
 
-impl WaveletMade {
-    pub(crate) fn build(&self) -> Result<Function> {
+impl Build for WaveletMade {
+    type Built = Function;
+
+    fn build(&self) -> Result<Function> {
         match self.period.len() {
             2 => {
                 let noise = WaveletNoise2::of_size(array(&self.period)?, self.seed)?;
@@ -132,9 +135,9 @@ pub(crate) fn wavelet_noise(
             ),
         ));
     }
-    Field::new(Made::WaveletNoise(WaveletMade {
+    Field::new(Made::WaveletNoise(Shared::new(WaveletMade {
         seed: seed.0,
         period,
         weights,
-    }))
+    })))
 }

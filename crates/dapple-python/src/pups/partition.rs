@@ -1,6 +1,5 @@
 //! Control points with weights that sum to 1 at every position, and what they make of values.
 
-use super::shared::{Build, Shared};
 use super::vectors::Values;
 use crate::arrays::{self, Positions};
 use crate::color_field;
@@ -10,6 +9,7 @@ use crate::function::{Made, position};
 use crate::grid::{Grid, GridArguments};
 use crate::points::{Domain, Graph, GraphMade, Points};
 use crate::seed::SeedArgument;
+use crate::shared::{Build, Shared};
 use crate::threads;
 use dapple::points::{PointIdx, PointSet};
 use dapple::pups::{Orientation, Orientations, Pups, PupsOptions};

@@ -1,6 +1,5 @@
 //! The textures of the paper, by their names and options as data.
 
-use super::shared::{Build, Shared};
 use super::vectors::Values;
 use crate::arrays;
 use crate::color_field;
@@ -9,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::function::Made;
 use crate::points::Domain;
 use crate::seed::SeedArgument;
+use crate::shared::{Build, Shared};
 use dapple::hash::Seed;
 use dapple::pups::{PupsField, PupsRecipe, ReferenceImage};
 use dapple::raster::Raster;
