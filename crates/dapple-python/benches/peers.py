@@ -61,15 +61,16 @@ def main() -> None:
 
 def kinds() -> dict[str, list[Entry]]:
     """The entries of each row of the table."""
-    cells = {"scatter": {"jittered": {"jitter": 1}}}
+    # One point in each cell, as the peer has them.
+    scatter = {"jittered": {"jitter": 1.0}}
     return {
-        "cells, F1": [ours(dp.worley(**cells)), fast("Cellular", "Distance")],
+        "cells, F1": [ours(dp.worley(scatter=scatter)), fast("Cellular", "Distance")],
         "cells, F2 − F1": [
-            ours(dp.worley(**cells, value="f2_minus_f1")),
+            ours(dp.worley(scatter=scatter, value="f2_minus_f1")),
             fast("Cellular", "Distance2Sub"),
         ],
         "cells, F2 − F1, at scattered positions": [
-            ours(dp.worley(**cells, value="f2_minus_f1"), scattered=True),
+            ours(dp.worley(scatter=scatter, value="f2_minus_f1"), scattered=True),
             fast("Cellular", "Distance2Sub", scattered=True),
         ],
         "gradient noise": [ours(dp.gradient_noise()), fast("Perlin"), *grids(1), loops(1)],

@@ -3,7 +3,7 @@
 The blocks of ```python of a page run in order, in one namespace and in a folder of their own, and so do comments that begin with
 `python`, which readers do not see, and blocks of shell that are marked `.run`. The pictures and models of the page are the files
 that its code has written; `<!-- output -->` becomes what the block before it has printed, and `<!-- output as markdown -->`
-likewise.
+likewise. A page shows the picture `a.png` of a page `b.md` beside it as `b-a.png`.
 """
 
 from __future__ import annotations
@@ -137,6 +137,9 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
     if result is None:
         return markdown
     for name in files_of(markdown):
+        # What it shows of other pages has its name already.
+        if not (result.folder / name).is_file():
+            continue
         shown = rf"(?<=\]\(){re.escape(name)}(?=\))"
         markdown = re.sub(shown, f"{Path(page.file.src_uri).stem}-{name}", markdown)
     return with_output(markdown, result.printed)

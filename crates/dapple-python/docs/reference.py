@@ -35,7 +35,7 @@ def markdown() -> str:
     parts = []
     for group, names in groups.items():
         parts += [f"## {group}", *(entry(name, getattr(dp, name)) for name in names if hasattr(dp, name))]
-    for module in ("dask", "jobs"):
+    for module in ("dask", "jobs", "blender"):
         parts += _module(module)
     return "\n\n".join(parts)
 

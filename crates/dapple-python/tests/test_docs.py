@@ -45,6 +45,16 @@ NEEDS = {
 }
 
 
+def files_beside(page):
+    """The pictures of the pages in the same folder, as they are named there."""
+    return {
+        f"{other.stem}-{name}"
+        for other in page.parent.glob("*.md")
+        if other != page
+        for name in hooks.files_of(other.read_text(encoding="utf-8"))
+    }
+
+
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_the_code_of_a_page_runs_and_writes_what_it_shows(page, tmp_path):
@@ -52,7 +62,7 @@ def test_the_code_of_a_page_runs_and_writes_what_it_shows(page, tmp_path):
         for package in NEEDS.get(page.stem, []):
             pytest.importorskip(package)
     result = hooks.run(page, tmp_path)
-    shown = hooks.files_of(page.read_text(encoding="utf-8"))
+    shown = hooks.files_of(page.read_text(encoding="utf-8")) - files_beside(page)
     assert {name for name in shown if (tmp_path / name).is_file()} == shown
     if result.missing:
         pytest.skip(f"the rest of the page needs {result.missing}")
