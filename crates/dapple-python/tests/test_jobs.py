@@ -173,6 +173,9 @@ def test_the_command_bakes_in_parts(tmp_path, whole):
     assert "0 of 20 shards are missing" in run("status", place).stdout
     assert_whole(jobs.Job(str(place)), whole)
     assert run("bake", place, "--part", "0/2").stdout.count("was there") == 10
+    for arguments in (["bake", place, "--part", "2/2"], ["status", tmp_path / "none"], ["create", place, "rokc", "--size", 9]):
+        refused = run(*arguments)
+        assert refused.returncode == 2 and refused.stderr.startswith("error: "), refused.stderr
 
 
 def test_openjd_runs_the_shards(tmp_path, whole):

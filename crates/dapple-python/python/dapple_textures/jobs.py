@@ -326,10 +326,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     status = commands.add_parser("status", help="say what is missing")
     status.add_argument("store")
     options = parser.parse_args(arguments)
-    if options.command == "create":
-        job = _create(options)
-    else:
-        job = Job(options.store)
+    try:
+        return _run(options)
+    except (ValueError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+
+
+def _run(options: argparse.Namespace) -> int:
+    job = _create(options) if options.command == "create" else Job(options.store)
     if options.command == "bake":
         indices: Iterable[int] = job.missing()
         if options.part:
