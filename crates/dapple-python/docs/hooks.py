@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 #: Packages that a page may do without: its code ends there.
-OPTIONAL = {"torch"}
+OPTIONAL = {"bpy", "torch"}
 
 _BLOCK = re.compile(r"^(?:```(?P<kind>python|\{\.sh \.run\})|<!-- python) *\n(?P<code>.*?)^(?:```|-->) *$", re.M | re.S)
 _OUTPUT = re.compile(r"^<!-- output(?P<markdown> as markdown)? -->$", re.M)

@@ -106,9 +106,9 @@ impl From<RecipeError> for Error {
             hint: error.nearest().map(str::to_owned),
         };
         if refusal.kind == "global" {
-            refusal.hint = Some(
-                "bake the node `tile` or `blend_map` first and give the result to the recipe as an image".to_owned(),
-            );
+            let way = "bake the node `tile` or `blend_map` first and give the result to the recipe as an image";
+            refusal.message = format!("{}; {way}", refusal.message);
+            refusal.hint = Some(way.to_owned());
         }
         Self::Refused(refusal)
     }

@@ -35,6 +35,7 @@ PAGES = sorted(DOCS.rglob("*.md")) + [ROOT / "README.md"]
 #: What pages need; where it is missing, the page is skipped.
 NEEDS = {
     "augmentation": ["skimage", "scipy"],
+    "blender": ["bpy", "trimesh"],
     "farm": ["distributed", "zarr", "openjd"],
     "loops": ["PIL"],
     "meshes": ["trimesh", "skimage", "PIL"],
