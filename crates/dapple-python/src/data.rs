@@ -29,16 +29,76 @@ pub(crate) fn read<T: DeserializeOwned>(what: &str, data: Value) -> Result<T> {
     serde_json::from_value(data).map_err(|error| Error::new("options", format!("{what}: {error}")))
 }
 
+/// Python's data as text in JSON, entry by entry on lines of their own, in the order of the dictionaries.
+pub(crate) fn text(data: &Bound<'_, PyAny>) -> Result<String> {
+    let mut text = String::new();
+    write(data, 0, &mut text)?;
+    Ok(text)
+}
+
+fn write(data: &Bound<'_, PyAny>, depth: usize, text: &mut String) -> Result<()> {
+    check_depth(depth)?;
+    let (ends, entries) = if let Some(pairs) = pairs(data)? {
+        (
+            "{}",
+            pairs
+                .into_iter()
+                .map(|(key, data)| (Some(key), data))
+                .collect(),
+        )
+    } else if data.cast::<PySequence>().is_ok() && data.cast::<PyString>().is_err() {
+        let items = data.try_iter()?.map(|item| Ok((None, item?)));
+        ("[]", items.collect::<Result<Vec<_>>>()?)
+    } else {
+        text.push_str(&nested(data, depth)?.to_string());
+        return Ok(());
+    };
+    text.push_str(&ends[..1]);
+    for (index, (key, data)) in entries.iter().enumerate() {
+        text.push_str(if index > 0 { ",\n" } else { "\n" });
+        if let Some(key) = key {
+            text.push_str(&format!("{}: ", Value::from(key.as_str())));
+        }
+        write(data, depth + 1, text)?;
+    }
+    text.push_str(&ends[1..]);
+    Ok(())
+}
+
+/// The entries of a dictionary.
+type Entries<'py> = Vec<(String, Bound<'py, PyAny>)>;
+
+/// The entries of a dictionary; None of other data.
+fn pairs<'py>(data: &Bound<'py, PyAny>) -> Result<Option<Entries<'py>>> {
+    let pairs: Vec<(Bound<'py, PyAny>, _)> = if let Ok(mapping) = data.cast::<PyDict>() {
+        mapping.iter().collect()
+    } else if let Ok(mapping) = data.cast::<PyMapping>() {
+        mapping.items()?.extract()?
+    } else {
+        return Ok(None);
+    };
+    let named = pairs.into_iter().map(|(key, data)| {
+        let key = key.cast::<PyString>().map_err(PyErr::from)?;
+        Ok((key.to_str()?.to_owned(), data))
+    });
+    Ok(Some(named.collect::<Result<_>>()?))
+}
+
+fn check_depth(depth: usize) -> Result<()> {
+    if depth > DEEPEST {
+        let message = format!("data is nested more than {DEEPEST} times");
+        return Err(Error::new("options", message));
+    }
+    Ok(())
+}
+
 /// Python's data as that of the crates.
 pub(crate) fn value(data: &Bound<'_, PyAny>) -> Result<Value> {
     nested(data, 0)
 }
 
 fn nested(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
-    if depth > DEEPEST {
-        let message = format!("data is nested more than {DEEPEST} times");
-        return Err(Error::new("options", message));
-    }
+    check_depth(depth)?;
     if data.is_none() {
         return Ok(Value::Null);
     }
@@ -48,34 +108,16 @@ fn nested(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {
     if let Ok(text) = data.cast::<PyString>() {
         return Ok(Value::String(text.to_str()?.to_owned()));
     }
-    if let Ok(mapping) = data.cast::<PyDict>() {
-        return object(mapping.iter(), depth);
-    }
-    if let Ok(mapping) = data.cast::<PyMapping>() {
-        let items = mapping.items()?;
-        let pairs: Vec<(Bound<'_, PyAny>, Bound<'_, PyAny>)> = items.extract()?;
-        return object(pairs.into_iter(), depth);
+    if let Some(pairs) = pairs(data)? {
+        let entries = pairs
+            .into_iter()
+            .map(|(key, data)| Ok((key, nested(&data, depth + 1)?)));
+        return Ok(Value::Object(entries.collect::<Result<Map<_, _>>>()?));
     }
     if let Ok(sequence) = data.cast::<PySequence>() {
         return list(sequence.as_any(), depth);
     }
     number(data, depth)
-}
-
-fn object<'py>(
-    pairs: impl Iterator<Item = (Bound<'py, PyAny>, Bound<'py, PyAny>)>,
-    depth: usize,
-) -> Result<Value> {
-    let mut map = Map::new();
-    for (key, data) in pairs {
-        let key = key
-            .cast::<PyString>()
-            .map_err(PyErr::from)?
-            .to_str()?
-            .to_owned();
-        map.insert(key, nested(&data, depth + 1)?);
-    }
-    Ok(Value::Object(map))
 }
 
 fn list(data: &Bound<'_, PyAny>, depth: usize) -> Result<Value> {

@@ -59,8 +59,7 @@ fn sha256(parts: &[&[u8]]) -> String {
 
 /// The recipe that data holds. Errors name the entry, and not a place in a text that nobody wrote.
 fn from_data(data: &Bound<'_, PyAny>) -> Result<RustRecipe> {
-    let text = serde_json::to_string_pretty(&data::value(data)?);
-    let text = text.map_err(|error| Error::new("text", error.to_string()))?;
+    let text = data::text(data)?;
     RustRecipe::from_json(&text).map_err(|error| {
         // A value that nobody closes yet is refused at the line after it.
         let before = error.place().map_or(0, |place| place.line);

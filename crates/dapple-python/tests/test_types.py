@@ -13,11 +13,12 @@ pytest.importorskip("mypy")
 
 import dapple_textures  # noqa: E402
 
-PACKAGE = Path(dapple_textures.__file__).parent
+#: Empty where the package is installed: there the checkers find it by themselves.
+SOURCES = "" if "site-packages" in dapple_textures.__file__ else Path(dapple_textures.__file__).parents[1]
 
 
 def run(*arguments, cwd):
-    environment = {**os.environ, "MYPYPATH": str(PACKAGE.parent)}
+    environment = {**os.environ, "MYPYPATH": str(SOURCES)}
     return subprocess.run(
         [sys.executable, "-m", *map(str, arguments)], capture_output=True, text=True, cwd=cwd, env=environment
     )

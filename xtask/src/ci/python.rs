@@ -1,86 +1,94 @@
 //! The step `python`: the package of `crates/dapple-python`, built as a wheel, installed and tested.
 //!
 //! It needs Python 3.11 or newer, and the Python index for what the tests use. Where one is missing, the step says so and is
-//! skipped; Blender's module `bpy` is there for few Pythons, and its tests skip themselves without it. The environment is in
-//! `target/python`.
+//! skipped. Blender's module `bpy` wants an older NumPy than others, so its tests have an environment of their own, and are
+//! skipped where no index has it for this Python. All of it lies in `target/python`.
 
-use std::path::Path;
-use xshell::{Shell, cmd};
-
-/// The packages that no index has for some Pythons: without them their tests are skipped.
-const OPTIONAL: [&str; 2] = ["bpy==4.5.*", "scikit-image"];
+use anyhow::Context;
+use std::path::{Path, PathBuf};
+use xshell::{Cmd, Shell, cmd};
 
 /// Builds and tests the package.
 pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
     let root = shell.current_dir();
-    let package = root.join("crates/dapple-python");
-    let folder = root.join("target/python");
-    if let Some(missing) = prepare(shell, &folder) {
-        crate::say(&format!("skipped: {missing}"));
+    let (package, folder) = (
+        root.join("crates/dapple-python"),
+        root.join("target/python"),
+    );
+    let is_new = "import sys, venv; sys.exit(sys.version_info < (3, 11))";
+    if !works(cmd!(shell, "python3 -c {is_new}")) {
+        crate::say("skipped: there is no Python 3.11 with venv");
         return Ok(());
     }
-    let bin = folder.join(if cfg!(windows) { "Scripts" } else { "bin" });
-    let pip = bin.join("pip");
-    {
-        let _package = shell.push_dir(&package);
-        cmd!(shell, "cargo fmt --check").run()?;
-        cmd!(shell, "cargo clippy --quiet --release -- -D warnings").run()?;
-    }
-    cmd!(shell, "{pip} install --quiet {package}[test,docs]").run()?;
-    for optional in OPTIONAL {
-        let installed = cmd!(
-            shell,
-            "{pip} install --quiet --only-binary :all: {optional}"
-        );
-        if installed.ignore_stderr().run().is_err() {
-            crate::say(&format!(
-                "{optional} cannot be had: what needs it is skipped"
-            ));
-        }
-    }
-    let (python, path) = (bin.join("python"), with_first(&bin)?);
+    let Some(main) = environment(shell, &folder.join("main"), &["maturin"]) else {
+        crate::say("skipped: the Python index cannot be reached");
+        return Ok(());
+    };
     let _package = shell.push_dir(&package);
-    let mut tests = cmd!(shell, "{python} -m pytest -q -rs").env("PATH", path);
+    cmd!(shell, "cargo fmt --check").run()?;
+    cmd!(shell, "cargo clippy --quiet --release -- -D warnings").run()?;
+    let wheel = wheel(shell, &main, &folder.join("wheels"))?;
+    let wheel = wheel.display().to_string();
+    let with_extras = format!("{wheel}[test,docs]");
+    let (pip, python) = (main.join("pip"), main.join("python"));
+    cmd!(shell, "{pip} install --quiet {with_extras}").run()?;
+    let tests = cmd!(shell, "{python} -m pytest -q -rs").env("PATH", with_first(&main)?);
     // The command that the tests of the workspace built: the package has its bits.
     let command = root.join("target/debug/dapple");
     if shell.path_exists(&command) {
-        tests = tests.env("DAPPLE", command);
+        tests.env("DAPPLE", command).run()?;
+    } else {
+        tests.run()?;
     }
-    tests.run()?;
-    Ok(cmd!(
+    cmd!(
         shell,
         "{python} -m mkdocs build --quiet --strict --site-dir {folder}/site"
     )
-    .run()?)
+    .run()?;
+    let wants = ["bpy==4.5.*", "pytest", "trimesh", "pillow"];
+    let Some(blender) = environment(shell, &folder.join("blender"), &wants) else {
+        crate::say("the tests in Blender are skipped: there is no bpy 4.5 for this Python");
+        return Ok(());
+    };
+    let (pip, python) = (blender.join("pip"), blender.join("python"));
+    cmd!(
+        shell,
+        "{pip} install --quiet --force-reinstall --no-deps {wheel}"
+    )
+    .run()?;
+    Ok(cmd!(shell, "{python} -m pytest -q -rs tests/test_blender.py").run()?)
 }
 
-/// Makes the environment, or says what is missing for it.
-fn prepare(shell: &Shell, folder: &Path) -> Option<&'static str> {
-    let is_new = "import sys, venv; sys.exit(sys.version_info < (3, 11))";
-    let python = cmd!(shell, "python3 -c {is_new}").ignore_stderr().quiet();
-    if python.run().is_err() {
-        return Some("there is no Python 3.11 with venv");
-    }
-    if cmd!(shell, "python3 -m venv {folder}").run().is_err() {
-        return Some("Python cannot make an environment");
-    }
-    let pip = folder.join(if cfg!(windows) {
-        "Scripts/pip"
-    } else {
-        "bin/pip"
-    });
-    let download = cmd!(shell, "{pip} install --quiet maturin").ignore_stderr();
-    download
-        .run()
-        .is_err()
-        .then_some("the Python index cannot be reached")
+/// The folder of the programs of an environment with some packages, if they can be had.
+fn environment(shell: &Shell, folder: &Path, packages: &[&str]) -> Option<PathBuf> {
+    let bin = folder.join(if cfg!(windows) { "Scripts" } else { "bin" });
+    let pip = bin.join("pip");
+    let is_there = works(cmd!(shell, "python3 -m venv {folder}"))
+        && works(cmd!(
+            shell,
+            "{pip} install --quiet --only-binary :all: {packages...}"
+        ));
+    is_there.then_some(bin)
+}
+
+/// Builds the wheel, the only file of its folder.
+fn wheel(shell: &Shell, bin: &Path, folder: &Path) -> anyhow::Result<PathBuf> {
+    shell.remove_path(folder)?;
+    let maturin = bin.join("maturin");
+    cmd!(shell, "{maturin} build --release --quiet --out {folder}").run()?;
+    let files = shell.read_dir(folder)?;
+    files.into_iter().next().context("maturin made no wheel")
+}
+
+fn works(command: Cmd<'_>) -> bool {
+    command.quiet().ignore_stderr().run().is_ok()
 }
 
 /// The search path with a folder in front.
 fn with_first(folder: &Path) -> anyhow::Result<std::ffi::OsString> {
     let path = std::env::var_os("PATH").unwrap_or_default();
-    let folders = [folder.to_owned()]
-        .into_iter()
-        .chain(std::env::split_paths(&path));
-    Ok(std::env::join_paths(folders)?)
+    let folders = [folder.to_owned()].into_iter();
+    Ok(std::env::join_paths(
+        folders.chain(std::env::split_paths(&path)),
+    )?)
 }

@@ -84,6 +84,8 @@ pub fn write(model: &Model) -> Result<Vec<u8>, MeshIoError> {
         document["samplers"] = json!([{ "minFilter": min_filter, "magFilter": LINEAR, "wrapS": REPEAT, "wrapT": REPEAT }]);
         document["images"] = bin.images.into();
     }
+    // As they are without the feature `preserve_order` of serde_json, which any other crate of a program may turn on.
+    document.sort_all_objects();
     container(document.to_string().into_bytes(), bin.bytes)
 }
 
