@@ -61,6 +61,9 @@ fn write(data: &Bound<'_, PyAny>, depth: usize, text: &mut String) -> Result<()>
         }
         write(data, depth + 1, text)?;
     }
+    if !entries.is_empty() {
+        text.push('\n');
+    }
     text.push_str(&ends[1..]);
     Ok(())
 }
