@@ -55,11 +55,11 @@ def fields(options):
             field.render(1024, extent=extent, out=out)
             return (time.perf_counter() - started) * 1e9 / 1024**2
 
-        beside = "" if rust is None else f", {run_ratio(median(run, 31), rust)} of Rust's {rust}"
+        beside = "" if rust is None else f", {ratio(median(run, 31), rust)} of Rust's {rust}"
         print(f"{name}: {median(run, 31):.2f} ns/pixel{beside}")
 
 
-def run_ratio(value, reference):
+def ratio(value, reference):
     return f"{value / reference:.2f} times"
 
 
@@ -89,6 +89,8 @@ def bake(workers, side, shard, planes=("height",), what=None):
 
     with tempfile.TemporaryDirectory() as folder, cluster(workers) as them, Client(them) as client:
         pids = list(client.run(os.getpid).values())
+        # Workers import what they need with their first shard.
+        bake_to_zarr(dp.constant(0), (2 * workers, 64), ["value"], f"{folder}/first.zarr", shard=(1, 64), client=client)
         idle = [peak(pid) for pid in pids]
         before, mine, started = sum(map(cpu, pids)), cpu(), time.perf_counter()
         bake_to_zarr(what or dp.Recipe.builtin(RECIPE), side, planes, f"{folder}/a.zarr", shard=shard, client=client)
@@ -121,7 +123,7 @@ def shards(options):
         return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
     theirs = median(command, 3)
-    print(f"8192 x 8192 in 64 shards: {parts} s of processor time, the command {theirs:.1f} s: {run_ratio(total, theirs)}")
+    print(f"8192 x 8192 in 64 shards: {parts} s of processor time, the command {theirs:.1f} s: {ratio(total, theirs)}")
 
 
 def workers(_options):
@@ -129,7 +131,7 @@ def workers(_options):
     for _ in range(3):
         one.append(bake(1, 8192, 1024)["wall"])
         two.append(bake(2, 8192, 1024)["wall"])
-    print(f"one worker {statistics.median(one):.2f} s, two {statistics.median(two):.2f} s: {run_ratio(statistics.median(one), statistics.median(two))} as fast")
+    print(f"one worker {statistics.median(one):.2f} s, two {statistics.median(two):.2f} s: {ratio(statistics.median(one), statistics.median(two))} as fast")
 
 
 def memory(_options):

@@ -25,8 +25,8 @@ def block(
     return source.render(shape, [plane], window)[plane]
 
 
-def bake_shard(store: Any, digest: str, index: int) -> jobs.Record:
-    """Bakes a shard of the job with this hash."""
+def bake_shards(store: Any, digest: str, indices: list[int]) -> list[jobs.Record]:
+    """Bakes shards of the job with this hash; those that are there already take no time."""
     from .jobs import Job
 
     job = _OPEN.get(digest)
@@ -36,7 +36,7 @@ def bake_shard(store: Any, digest: str, index: int) -> jobs.Record:
             raise refusal("store", f"{store} holds another job than the scheduler was given")
         _OPEN.clear()
         _OPEN[digest] = job
-    return job.bake(index)
+    return [job.bake(index) for index in indices]
 
 
 class OneThreadEach(WorkerPlugin):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -16,11 +17,14 @@ from . import _sources, _workers, jobs
 from ._native import ColorField, Field, Plan, Recipe
 from ._types import refusal
 
-#: Shards that are in the hands of the scheduler for each thread of the workers: enough that none waits, and few enough
+#: Tasks that are in the hands of the scheduler for each thread of the workers: enough that none waits, and few enough
 #: that a job of any length takes little memory there.
 _AHEAD = 4
 
-#: How often a shard is begun again after its workers died.
+#: The pixels of a task, at least: what takes longer than to hand it over.
+_TASK = 1 << 20
+
+#: How often a task is begun again after its workers died.
 _ATTEMPTS = 10
 
 
@@ -72,7 +76,7 @@ class Report:
     job: jobs.Job
     #: The shards that were baked; the others were there before.
     baked: int
-    #: How often a shard was begun again after its worker died.
+    #: How often a task was begun again after its workers died.
     restarted: int
 
 
@@ -105,30 +109,37 @@ def bake_to_zarr(
 
 
 def _run(client: Client, job: jobs.Job, missing: list[int]) -> Iterator[int]:
-    """Bakes shards on the workers, and tells of each how often it was begun again."""
-    waiting = iter(missing)
-    threads = sum(client.nthreads().values())
+    """Bakes shards on the workers, and tells of each task how often it was begun again."""
+    threads = max(1, sum(client.nthreads().values()))
+    tasks = iter(_tasks(job, missing, threads))
     running = as_completed()
-    attempts: dict[int, int] = {}
-    indices: dict[Any, int] = {}
+    begun: dict[Any, tuple[list[int], int]] = {}
 
-    def submit(index: int) -> None:
-        attempts[index] = attempts.get(index, -1) + 1
-        future = client.submit(_workers.bake_shard, job.store, job.hash, index, pure=False)
-        indices[future.key] = index
+    def submit(indices: list[int], attempt: int = 0) -> None:
+        future = client.submit(_workers.bake_shards, job.store, job.hash, indices, pure=False)
+        begun[future.key] = indices, attempt
         running.add(future)
 
-    for index in islice(waiting, max(1, threads) * _AHEAD):
-        submit(index)
+    for indices in islice(tasks, threads * _AHEAD):
+        submit(indices)
     for future in running:
-        index = indices.pop(future.key)
+        indices, attempt = begun.pop(future.key)
         if future.status == "error":
             error = future.exception()
-            if not isinstance(error, KilledWorker) or attempts[index] >= _ATTEMPTS:
+            if not isinstance(error, KilledWorker) or attempt >= _ATTEMPTS:
                 raise error
-            submit(index)
+            submit(indices, attempt + 1)
             continue
         future.release()
-        yield attempts.pop(index)
-        for index in islice(waiting, 1):
-            submit(index)
+        yield attempt
+        for indices in islice(tasks, 1):
+            submit(indices)
+
+
+def _tasks(job: jobs.Job, missing: list[int], threads: int) -> Iterator[list[int]]:
+    """The shards that are baked by one task each: several where they are small, since a task costs some milliseconds."""
+    together = max(1, _TASK // math.prod(job.shard))
+    together = min(together, max(1, len(missing) // (threads * _AHEAD)))
+    remaining = iter(missing)
+    while indices := list(islice(remaining, together)):
+        yield indices
