@@ -97,6 +97,13 @@ def test_two_of_three_workers_are_killed(tmp_path, whole):
             bake_to_zarr(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=100, client=client, resume=False)
 
 
+def test_one_job_in_two_places(tmp_path):
+    with cluster(1) as workers, Client(workers) as client:
+        for place in ("a.zarr", "b.zarr"):
+            report = bake_to_zarr(dp.constant(0.5), 64, "value", str(tmp_path / place), shard=32, client=client)
+            assert (report.job.array("value")[:] == 0.5).all()
+
+
 class DieInside(WorkerPlugin):
     """Ends the process in the middle of a shard, as often as there are files to take away."""
 

@@ -12,8 +12,8 @@ from ._types import refusal
 if TYPE_CHECKING:
     from . import _sources, jobs
 
-#: The job that a worker has opened, by its hash.
-_OPEN: dict[str, jobs.Job] = {}
+#: The job that a worker has opened last.
+_open: jobs.Job | None = None
 
 
 def block(
@@ -29,13 +29,13 @@ def bake_shards(store: Any, digest: str, indices: list[int]) -> list[jobs.Record
     """Bakes shards of the job with this hash; those that are there already take no time."""
     from .jobs import Job
 
-    job = _OPEN.get(digest)
-    if job is None:
-        job = Job(store)
-        if job.hash != digest:
+    global _open
+    # One job may be baked into several stores.
+    if _open is None or _open.hash != digest or _open.store != store:
+        _open = Job(store)
+        if _open.hash != digest:
             raise refusal("store", f"{store} holds another job than the scheduler was given")
-        _OPEN.clear()
-        _OPEN[digest] = job
+    job = _open
     return [job.bake(index) for index in indices]
 
 

@@ -105,6 +105,9 @@ def bake_to_zarr(
         raise refusal("store", f"{store} holds shards of this job already", "pass `resume=True`")
     client.register_plugin(_workers.OneThreadEach(), name="dapple-threads")
     restarted = sum(_run(client, job, missing))
+    if lost := job.missing():
+        message = f"{len(lost)} shards are not there although they were baked, the first of them {lost[0]}"
+        raise refusal("store", message, "look at what else writes to the store, and call again")
     return Report(job, len(missing), restarted)
 
 
