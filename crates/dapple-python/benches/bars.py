@@ -169,7 +169,10 @@ def kills(options):
             def kill():
                 nonlocal deaths
                 while not done.wait(chance.uniform(0.05, 0.6)):
-                    pids = [worker.pid for worker in them.workers.values() if worker.pid]
+                    # A nanny gives up a worker that dies before it has begun.
+                    known = client.scheduler_info(n_workers=-1)["workers"]
+                    pids = [nanny.pid for nanny in them.workers.values() if nanny.worker_address in known]
+                    pids = [pid for pid in pids if pid]
                     if pids:
                         os.kill(chance.choice(pids), signal.SIGKILL)
                         deaths += 1

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import os
 import random
+import shutil
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -27,7 +30,7 @@ SHAPE = (1000, 1200)
 PLANES = ["height", "normal"]
 
 # Without these, a worker that was killed is missed for a minute.
-config.set({"distributed.comm.timeouts.connect": "10s", "distributed.nanny.pre-spawn-environ.DAPPLE_THREADS": "1"})
+config.set({"distributed.comm.timeouts.connect": "10s"})
 
 
 @pytest.fixture(scope="module")
@@ -102,6 +105,75 @@ def test_one_job_in_two_places(tmp_path):
         for place in ("a.zarr", "b.zarr"):
             report = bake_to_zarr(dp.constant(0.5), 64, "value", str(tmp_path / place), shard=32, client=client)
             assert (report.job.array("value")[:] == 0.5).all()
+            assert [record.index for record in sorted(report.records, key=lambda record: record.index)] == [0, 1, 2, 3]
+        # What is in a place may be another layout the next time.
+        shutil.rmtree(tmp_path / "a.zarr")
+        report = bake_to_zarr(dp.constant(0.5), 64, "value", str(tmp_path / "a.zarr"), shard=32, chunk=16, client=client)
+        assert (report.job.array("value")[:] == 0.5).all()
+
+
+def test_a_cluster_that_is_restarted_goes_on(tmp_path):
+    with cluster(2) as workers, Client(workers) as client:
+
+        def restart():
+            while not list((tmp_path / "a.zarr/height/c").glob("*/*")):
+                time.sleep(0.01)
+            client.restart()
+
+        restarter = threading.Thread(target=restart)
+        restarter.start()
+        report = bake_to_zarr(RECIPE, (600, 600), "height", str(tmp_path / "a.zarr"), shard=16, client=client)
+        restarter.join()
+        assert report.restarted > 0 and jobs.Job(report.job.store).missing() == []
+
+
+def test_workers_may_come_late_and_the_client_need_not_be_the_default(tmp_path):
+    with cluster(0) as workers, Client(workers, set_as_default=False) as client:
+        grow = threading.Timer(0.5, lambda: workers.scale(2))
+        grow.start()
+        report = bake_to_zarr(RECIPE, (300, 300), "height", str(tmp_path / "a.zarr"), shard=100, client=client)
+        assert report.baked == 9
+
+
+def test_a_scheduler_that_is_gone_is_an_error(tmp_path):
+    command = [sys.executable, "-m", "dask", "scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", str(tmp_path / "scheduler")]
+    scheduler = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    try:
+        with config.set({"distributed.comm.timeouts.connect": "2s"}):
+            client = Client(scheduler_file=str(tmp_path / "scheduler"), timeout=8)
+            # Nobody works: it waits for workers until there is no scheduler.
+            threading.Timer(1, scheduler.kill).start()
+            with pytest.raises(dp.DappleError) as caught:
+                bake_to_zarr(RECIPE, 64, "height", str(tmp_path / "a.zarr"), client=client)
+            assert caught.value.kind == "cluster"
+            client.close(timeout=1)
+    finally:
+        scheduler.kill()
+
+
+def test_a_lost_worker_that_the_scheduler_gives_up_is_tried_again(tmp_path, whole):
+    deaths = tmp_path / "deaths"
+    deaths.mkdir()
+    (deaths / "one").touch()
+    with config.set({"distributed.scheduler.allowed-failures": 0}), cluster(2) as workers, Client(workers) as client:
+        client.register_plugin(DieInside(str(deaths)))
+        report = bake_to_zarr(RECIPE, SHAPE, PLANES, str(tmp_path / "a.zarr"), shard=400, client=client)
+        assert report.restarted > 0
+        assert_whole(report.job, whole)
+
+
+def test_tasks_have_the_threads_of_their_worker(tmp_path):
+    with config.set({"distributed.nanny.pre-spawn-environ.DAPPLE_THREADS": None}):
+        with LocalCluster(n_workers=1, threads_per_worker=2, dashboard_address=None) as workers, Client(workers) as client:
+            bake(RECIPE, (64, 64), chunks=32).compute()
+            assert list(client.run(dp.threads).values()) == [2]
+        with cluster(1) as workers, Client(workers) as client:
+            bake_to_zarr(RECIPE, 64, "height", str(tmp_path / "a.zarr"), client=client)
+            assert list(client.run(dp.threads).values()) == [1]
+    before = dp.threads()
+    with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as workers, Client(workers):
+        bake_to_zarr(RECIPE, 64, "height", str(tmp_path / "b.zarr"))
+    assert dp.threads() == before
 
 
 class DieInside(WorkerPlugin):

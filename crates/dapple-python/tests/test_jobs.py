@@ -144,16 +144,72 @@ def test_parts_share_all_shards(tmp_path):
         ({"shard": (1, 2, 3)}, "count"),
         ({"shard": 64, "chunk": 48}, "shape"),
         ({"extent": 2.0}, "conflict"),
+        ({"origin": 2.0}, "conflict"),
+        ({"shape": (1, 2, 3, 4)}, "shape"),
+        ({"what": dp.worley(dims=3), "planes": "value"}, "shape"),
+        ({"what": dp.worley(), "planes": "value", "extent": (1, 2, 3)}, "extent"),
+        ({"what": dp.worley(), "planes": "value", "extent": float("nan")}, "extent"),
         ({"planes": ["hieght"]}, "name"),
         ({"planes": []}, "planes"),
         ({"planes": ["height", "height"]}, "planes"),
     ],
 )
 def test_a_job_is_refused_before_anything_is_written(tmp_path, options, kind):
-    planes = options.pop("planes", PLANES)
+    options = dict(options)
+    what, shape, planes = options.pop("what", RECIPE), options.pop("shape", SHAPE), options.pop("planes", PLANES)
     with pytest.raises(dp.DappleError) as caught:
-        jobs.create(RECIPE, SHAPE, planes, str(tmp_path / "a.zarr"), **options)
+        jobs.create(what, shape, planes, str(tmp_path / "a.zarr"), **options)
     assert caught.value.kind == kind
+    assert not list(tmp_path.iterdir())
+
+
+def test_stores_that_other_processes_do_not_see_are_refused(tmp_path):
+    import zarr
+
+    for store in (zarr.storage.MemoryStore(), {}, "memory://a", zarr.storage.ZipStore(tmp_path / "a.zip", mode="w")):
+        with pytest.raises(dp.DappleError) as caught:
+            jobs.create(RECIPE, SHAPE, PLANES, store)
+        assert caught.value.kind == "store"
+
+
+def test_numpy_numbers_and_relative_paths(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    job = jobs.create(RECIPE, np.int64(64), "height", "a.zarr", shard=np.int64(32))
+    assert job.store == str(tmp_path / "a.zarr") and job.shape == (64, 64) and len(job) == 4
+
+
+def test_a_creation_that_was_killed_is_finished(tmp_path, monkeypatch):
+    import zarr
+
+    place, made = str(tmp_path / "a.zarr"), zarr.Group.create_array
+
+    def dying(group, name, **options):
+        if name == "normal":
+            raise KeyboardInterrupt
+        return made(group, name, **options)
+
+    with monkeypatch.context() as context:
+        context.setattr(zarr.Group, "create_array", dying)
+        with pytest.raises(KeyboardInterrupt):
+            jobs.create(RECIPE, SHAPE, PLANES, place, shard=64)
+    assert len(jobs.create(RECIPE, SHAPE, PLANES, place, shard=64).missing()) == 20
+    with pytest.raises(dp.DappleError, match="another job"):
+        jobs.create(RECIPE, SHAPE, PLANES, place, shard=64, chunk=32)
+
+
+def test_many_processes_create_one_job(tmp_path):
+    (tmp_path / "stones.toml").write_text(RECIPE.to_toml())
+    command = [sys.executable, "-m", "dapple_textures.jobs", "create", tmp_path / "a.zarr", tmp_path / "stones.toml"]
+    command = [*map(str, command), "--size", "100", "--maps", "height,normal", "--shard", "32"]
+    processes = [subprocess.Popen(command, stderr=subprocess.PIPE, text=True) for _ in range(6)]
+    assert [(process.wait(), process.stderr.read()) for process in processes] == [(0, "")] * 6
+
+
+def test_the_store_writes_whole_files():
+    from zarr.storage import _local
+
+    # Older versions write in place: what a killed worker leaves would count as a shard.
+    assert hasattr(_local, "_atomic_write")
 
 
 def run(*arguments):

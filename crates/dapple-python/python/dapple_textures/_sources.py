@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import base64
 import hashlib
 import json
+import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -26,8 +26,8 @@ from ._types import refusal
 
 Image = npt.NDArray[np.float32]
 
-#: Recipes and fields that stay ready in a process: those of the frames that it works on.
-_READY = 16
+#: Recipes and fields that stay ready in a process: those of the frames that it works on. Each holds its images.
+_READY = 4
 
 
 class Source(Protocol):
@@ -45,8 +45,14 @@ class Source(Protocol):
     ) -> dict[str, Image]:
         """The numbers of a window of an array of this shape, for each plane."""
 
+    def check(self, shape: tuple[int, ...]) -> None:
+        """Refuses the shape of an array that it has no numbers for."""
+
     def to_data(self) -> dict[str, Any]:
-        """All of it as data that JSON can hold."""
+        """All of it but its images as data that JSON can hold, with the SHA-256 of these."""
+
+    def images_by_hash(self) -> dict[str, Image]:
+        """Its images, by their SHA-256."""
 
 
 @dataclass(frozen=True)
@@ -56,14 +62,13 @@ class RecipeSource:
     recipe: str
     images: tuple[tuple[str, tuple[int, ...], bytes], ...]
     time: float
-    hash: str
 
     @classmethod
     def of(cls, plan: Plan) -> RecipeSource:
         plan.check_local()
         _, (recipe, images, time) = plan.__reduce__()
         packed = tuple((name, image.shape, image.tobytes()) for name, image in sorted(images.items()))
-        return cls(recipe, packed, time, plan.hash)
+        return cls(recipe, packed, time)
 
     @property
     def planes(self) -> tuple[str, ...]:
@@ -92,12 +97,21 @@ class RecipeSource:
         ]
         return {plane: np.stack([picture[plane] for picture in pictures]) for plane in planes}
 
+    def check(self, shape: tuple[int, ...]) -> None:
+        if len(shape) not in (2, 3):
+            message = f"the shape is {shape}, but a recipe has (rows, columns) or (frames, rows, columns)"
+            raise refusal("shape", message)
+
     def to_data(self) -> dict[str, Any]:
-        images = [
-            {"name": name, "shape": list(shape), "float32": base64.b64encode(data).decode()}
-            for name, shape, data in self.images
-        ]
+        images = [{"name": name, "hash": hashed} for (name, _, _), hashed in zip(self.images, self._hashes())]
         return {"recipe": json.loads(self.recipe), "images": images, "time": self.time}
+
+    def images_by_hash(self) -> dict[str, Image]:
+        arrays = (np.frombuffer(data, np.float32).reshape(shape) for _, shape, data in self.images)
+        return dict(zip(self._hashes(), arrays))
+
+    def _hashes(self) -> list[str]:
+        return [digest([list(shape), hashlib.sha256(data).hexdigest()]) for _, shape, data in self.images]
 
 
 @dataclass(frozen=True)
@@ -126,15 +140,22 @@ class FieldSource:
             values = values[..., 0]
         return {plane: values for plane in planes}
 
+    def check(self, shape: tuple[int, ...]) -> None:
+        if len(shape) != len(self.extent):
+            raise refusal("shape", f"the shape is {shape}, but the field has {len(self.extent)} axes")
+
     def to_data(self) -> dict[str, Any]:
-        return {"field": self.description, "extent": self.extent, "origin": self.origin}
+        return {"field": self.description, "extent": list(self.extent), "origin": list(self.origin)}
+
+    def images_by_hash(self) -> dict[str, Image]:
+        return {}
 
 
 def source(
     what: Recipe | Plan | Field | ColorField,
     *,
     extent: float | Sequence[float] | None = None,
-    origin: float | Sequence[float] = 0.0,
+    origin: float | Sequence[float] | None = None,
 ) -> RecipeSource | FieldSource:
     """What can be baked in parts, of a recipe, a plan or a field.
 
@@ -144,8 +165,8 @@ def source(
     if isinstance(what, Recipe):
         what = what.plan()
     if isinstance(what, Plan):
-        if extent is not None:
-            raise refusal("conflict", "a recipe has an extent of its own: leave `extent` out")
+        if extent is not None or origin is not None:
+            raise refusal("conflict", "a recipe has an extent of its own: leave `extent` and `origin` out")
         return RecipeSource.of(what)
     if not isinstance(what, Field | ColorField):
         raise TypeError(f"a Recipe, a Plan or a Field is needed, not {type(what).__name__}")
@@ -153,18 +174,23 @@ def source(
         extent = [period or 1.0 for period in what.period]
     _, (description,) = what.__reduce__()
     axes = what.ndim
-    return FieldSource(description, _numbers(extent, axes), _numbers(origin, axes))
+    return FieldSource(description, _numbers("extent", extent, axes), _numbers("origin", 0.0 if origin is None else origin, axes))
 
 
-def from_data(data: dict[str, Any]) -> RecipeSource | FieldSource:
-    """The source that data holds."""
+def from_data(data: dict[str, Any], images: dict[str, Image]) -> RecipeSource | FieldSource:
+    """The source that data holds, with its images by their SHA-256."""
     if "field" in data:
         return FieldSource(data["field"], tuple(data["extent"]), tuple(data["origin"]))
-    images = {
-        image["name"]: np.frombuffer(base64.b64decode(image["float32"]), np.float32).reshape(image["shape"])
-        for image in data["images"]
-    }
-    return RecipeSource.of(_plan_from_parts(json.dumps(data["recipe"]), images, data["time"]))
+    named = {image["name"]: images[image["hash"]] for image in data["images"]}
+    return RecipeSource.of(_plan_from_parts(json.dumps(data["recipe"]), named, data["time"]))
+
+
+def sides(value: Any) -> tuple[int, ...]:
+    """Numbers of pixels: one for rows and columns, or one for each axis."""
+    try:
+        return (operator.index(value),) * 2
+    except TypeError:
+        return tuple(operator.index(side) for side in value)
 
 
 def digest(data: object) -> str:
@@ -179,9 +205,13 @@ def sha256(values: npt.NDArray[Any]) -> str:
     return hashlib.sha256(values.data).hexdigest()
 
 
-def _numbers(value: float | Sequence[float], axes: int) -> tuple[float, ...]:
-    numbers = np.broadcast_to(np.asarray(value, dtype=np.float64), axes)
-    return tuple(float(number) for number in numbers)
+def _numbers(what: str, value: float | Sequence[float], axes: int) -> tuple[float, ...]:
+    numbers = np.ravel(np.asarray(value, dtype=np.float64)).tolist()
+    numbers = numbers * axes if len(numbers) == 1 else numbers
+    if len(numbers) != axes or not np.isfinite(numbers).all() or (what == "extent" and 0 in numbers):
+        message = f"the {what} is {value}, but {axes} finite numbers are needed, x first, and none of an extent is 0"
+        raise refusal("extent", message)
+    return tuple(numbers)
 
 
 def _unknown(what: str, name: str, known: Sequence[str] | dict[str, Any]) -> DappleError:

@@ -2,46 +2,61 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any
 
-from distributed import Worker, WorkerPlugin
+from distributed import get_worker
 
-from ._native import set_threads
+from ._native import __version__, set_threads
 from ._types import refusal
 
 if TYPE_CHECKING:
     from . import _sources, jobs
 
-#: The job that a worker has opened last.
-_open: jobs.Job | None = None
+#: The job that a worker has opened last, and the call that it belongs to.
+_open: tuple[str, jobs.Job] | None = None
+
+#: The process whose threads are set.
+_prepared: int | None = None
 
 
 def block(
-    source: _sources.Source, *, shape: tuple[int, ...], plane: str, block_info: dict[Any, Any]
+    source: _sources.Source, *, shape: tuple[int, ...], plane: str, version: str, block_info: dict[Any, Any]
 ) -> _sources.Image:
     """A chunk of a lazy array."""
+    _prepare()
+    if version != __version__:
+        message = f"the array was made by version {version}, but this worker has {__version__}"
+        raise refusal("version", message, "use one version on all machines")
     location = block_info[None]["array-location"]
     window = tuple(slice(first, end) for first, end in location[: len(shape)])
     return source.render(shape, [plane], window)[plane]
 
 
-def bake_shards(store: Any, digest: str, indices: list[int]) -> list[jobs.Record]:
-    """Bakes shards of the job with this hash; those that are there already take no time."""
+def bake_shards(store: Any, call: str, indices: list[int]) -> list[jobs.Record]:
+    """Bakes shards of the job of a store; those that are there already take no time."""
     from .jobs import Job
 
     global _open
-    # One job may be baked into several stores.
-    if _open is None or _open.hash != digest or _open.store != store:
-        _open = Job(store)
-        if _open.hash != digest:
-            raise refusal("store", f"{store} holds another job than the scheduler was given")
-    job = _open
+    _prepare()
+    if _open is None or _open[0] != call:
+        _open = call, Job(store)
+    _, job = _open
     return [job.bake(index) for index in indices]
 
 
-class OneThreadEach(WorkerPlugin):
-    """Gives each task of a worker one thread, so that tasks and threads together are as many as the worker has."""
+def _prepare() -> None:
+    """Gives the package as many threads as the worker has, where the process is the worker's own and nobody said more.
 
-    def setup(self, worker: Worker) -> None:
-        """Sets the threads of the package to those of the worker."""
+    So the tasks of a machine and their threads together are as many as its workers have.
+    """
+    global _prepared
+    if _prepared == os.getpid():
+        return
+    _prepared = os.getpid()
+    try:
+        worker = get_worker()
+    except ValueError:
+        return
+    if worker.nanny is not None and "DAPPLE_THREADS" not in os.environ:
         set_threads(worker.state.nthreads)

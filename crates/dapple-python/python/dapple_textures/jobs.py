@@ -16,6 +16,8 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import operator
+import os
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -25,7 +27,8 @@ from typing import Any
 import numpy as np
 import zarr
 from zarr.core.sync import sync
-from zarr.storage import StorePath
+from zarr.errors import ContainsArrayError
+from zarr.storage import LocalStore, MemoryStore, StorePath, ZipStore
 
 from . import _sources
 from ._native import ColorField, Field, Plan, Recipe, __version__
@@ -33,6 +36,9 @@ from ._types import refusal
 
 #: The attribute of the store that holds the job.
 _ATTRIBUTE = "dapple_textures"
+
+#: The group of the images of its recipe.
+_IMAGES = "images"
 
 
 @dataclass(frozen=True)
@@ -53,18 +59,21 @@ class Job:
 
     def __init__(self, store: Any) -> None:
         """Opens the job of a store: a path, the address of an object store, or a Zarr store."""
-        self.store = store
-        group = zarr.open_group(store, mode="r+")
+        #: Where it lies; paths are absolute, so that they hold in the folder of any process.
+        self.store = place_of(store)
+        group = zarr.open_group(self.store, mode="r+")
         data = group.attrs.get(_ATTRIBUTE)
         if not isinstance(data, dict):
             raise refusal("store", f"{store} holds no job: make one with `create`")
         if data["version"] != __version__:
             message = f"the job was made by version {data['version']}, but this is {__version__}"
             raise refusal("version", message, "use one version on all machines")
-        self._data: dict[str, Any] = data
         self._group = group
         self._arrays: dict[str, zarr.Array[Any]] = {}
-        self.source = _sources.from_data(data["source"])
+        #: The SHA-256 of all that the job is made of.
+        self.hash = _sources.digest(data)
+        #: What is baked.
+        self.source = _sources.from_data(data["source"], _read_images(group, data["source"]))
         #: The planes that are made.
         self.planes: tuple[str, ...] = tuple(data["planes"])
         #: The shape of the whole, without channels.
@@ -79,11 +88,6 @@ class Job:
 
     def __len__(self) -> int:
         return math.prod(self.grid)
-
-    @property
-    def hash(self) -> str:
-        """The SHA-256 of all that the job is made of."""
-        return _sources.digest(self._data)
 
     def window(self, index: int) -> tuple[slice, ...]:
         """Where a shard lies."""
@@ -100,10 +104,10 @@ class Job:
 
     def missing(self) -> list[int]:
         """The shards of which a plane is not there yet, in their order."""
-        whole = set(range(len(self)))
+        missing: set[int] = set()
         for plane in self.planes:
-            whole -= whole & self._missing(plane)
-        return sorted(set(range(len(self))) - whole)
+            missing |= self._missing(plane)
+        return sorted(missing)
 
     def bake(self, index: int) -> Record:
         """Bakes what is not there of a shard, and writes it."""
@@ -143,7 +147,7 @@ class Job:
             "specificationVersion": "jobtemplate-2023-09",
             "name": "dapple-textures",
             "parameterDefinitions": [
-                {"name": "Store", "type": "STRING", "default": _place_of(self.store)},
+                {"name": "Store", "type": "STRING", "default": str(self.store)},
                 {"name": "Python", "type": "STRING", "default": python},
             ],
             "steps": [
@@ -191,19 +195,17 @@ class Job:
         return bool(sync((path / key).exists()))
 
     def _missing(self, plane: str) -> set[int]:
-        path, _ = self._key(plane, (0,) * len(self.grid))
+        array = self.array(plane)
+        path = array.store_path
         prefix = f"{path.path}/" if path.path else ""
 
         async def keys() -> set[str]:
-            return {key.removeprefix(prefix) async for key in path.store.list_prefix(f"{prefix}c/")}
+            return {key.removeprefix(prefix) async for key in path.store.list_prefix(prefix)}
 
-        there = sync(keys())
-        places = np.ndindex(*self.grid)
-        return {index for index, place in enumerate(places) if self._key_of(plane, place) not in there}
-
-    def _key_of(self, plane: str, place: tuple[int, ...]) -> str:
-        channels = self.source.channels(plane)
-        return "/".join(["c", *map(str, place), *(["0"] if channels > 1 else [])])
+        there, encode = sync(keys()), array.metadata.encode_chunk_key
+        channels = (0,) * (array.ndim - len(self.grid))
+        places = enumerate(np.ndindex(*self.grid))
+        return {index for index, place in places if encode((*place, *channels)) not in there}
 
 
 def create(
@@ -216,7 +218,7 @@ def create(
     chunk: int | Sequence[int] | None = None,
     compressors: Any = "auto",
     extent: float | Sequence[float] | None = None,
-    origin: float | Sequence[float] = 0.0,
+    origin: float | Sequence[float] | None = None,
 ) -> Job:
     """Makes the arrays of a job in a store, or opens the job where the same one was made before.
 
@@ -234,11 +236,13 @@ def create(
     """
     source = _sources.source(what, extent=extent, origin=origin)
     planes = (planes,) if isinstance(planes, str) else tuple(planes)
-    shape = (shape, shape) if isinstance(shape, int) else tuple(int(side) for side in shape)
+    shape = _sources.sides(shape)
+    source.check(shape)
     if not planes or len(set(planes)) < len(planes):
         raise refusal("planes", "at least one plane is needed, and each once")
-    shard = _sides(shard, shape)
-    chunk = shard if chunk is None else _sides(chunk, shape)
+    channels = {plane: source.channels(plane) for plane in planes}
+    shard = shard_sides(shard, shape)
+    chunk = shard if chunk is None else shard_sides(chunk, shape)
     if any(side < 1 for side in (*shape, *shard, *chunk)) or any(s % c for s, c in zip(shard, chunk)):
         message = f"the shape is {shape}, a shard {shard} and a chunk {chunk}, but sides must be at least 1, and a chunk divides a shard"
         raise refusal("shape", message)
@@ -248,37 +252,66 @@ def create(
         "planes": list(planes),
         "shape": list(shape),
         "shard": list(shard),
+        "layout": {"chunk": list(chunk), "compressors": repr(compressors)},
     }
+    store = place_of(store)
+    # Others may do the same at this moment: whatever is there already is what they would make, too.
+    group = zarr.open_group(store, mode="a", zarr_format=3)
+    before = group.attrs.get(_ATTRIBUTE)
     # As it is read again.
     data = json.loads(json.dumps(data))
-    group = zarr.open_group(store, mode="a")
-    before = group.attrs.get(_ATTRIBUTE)
     if before is not None and before != data:
         message = f"{store} holds another job"
         raise refusal("store", message, "choose another place, or remove what is there")
     if before is None and list(group.keys()):
         raise refusal("store", f"{store} is not empty", "choose another place")
-    for plane in planes if before is None else ():
-        channels = source.channels(plane)
-        last = (channels,) if channels > 1 else ()
-        group.create_array(
-            plane,
-            shape=(*shape, *last),
-            shards=(*shard, *last) if chunk != shard else None,
-            chunks=(*chunk, *last),
-            dtype=np.float32,
-            fill_value=np.nan,
-            compressors=compressors,
-            dimension_names=(*_axes(len(shape), source), *(["channel"] if last else [])),
-        )
     group.attrs[_ATTRIBUTE] = data
+    for hashed, image in source.images_by_hash().items():
+        if f"{_IMAGES}/{hashed}" not in group:
+            group.create_array(f"{_IMAGES}/{hashed}", data=image, overwrite=True)
+    for plane in planes:
+        last = (channels[plane],) if channels[plane] > 1 else ()
+        if plane in group:
+            continue
+        try:
+            group.create_array(
+                plane,
+                shape=(*shape, *last),
+                shards=(*shard, *last) if chunk != shard else None,
+                chunks=(*chunk, *last),
+                dtype=np.float32,
+                fill_value=np.nan,
+                compressors=compressors,
+                dimension_names=(*_axes(len(shape), source), *(["channel"] if last else [])),
+            )
+        except ContainsArrayError:
+            pass
     return Job(store)
 
 
-def _place_of(store: Any) -> str:
-    """The address of a store that holds in any folder."""
-    text = str(store)
-    return text if "://" in text else str(Path(text).absolute())
+def place_of(store: Any) -> Any:
+    """A store that other processes reach, too: an absolute path, the address of an object store, or a Zarr store."""
+    if isinstance(store, LocalStore):
+        store = store.root
+    if isinstance(store, os.PathLike) or (isinstance(store, str) and "://" not in store):
+        return os.path.abspath(os.fspath(store))
+    if isinstance(store, (dict, MemoryStore, ZipStore)) or str(store).startswith("memory://"):
+        message = "a job needs a store that all processes see, and that writes a file or an object as a whole"
+        raise refusal("store", message, "give a path, or the address of an object store")
+    return store
+
+
+def _read_images(group: zarr.Group, source: dict[str, Any]) -> dict[str, _sources.Image]:
+    """The images of a job, by their SHA-256."""
+    images = {}
+    for image in source.get("images", ()):
+        name = f"{_IMAGES}/{image['hash']}"
+        if name not in group:
+            raise refusal("store", f"the image `{image['name']}` is not there yet", "call `create` again")
+        array = group[name]
+        assert isinstance(array, zarr.Array)
+        images[image["hash"]] = np.asarray(array[...], np.float32)
+    return images
 
 
 def _axes(count: int, source: object) -> tuple[str, ...]:
@@ -286,11 +319,14 @@ def _axes(count: int, source: object) -> tuple[str, ...]:
     return ("w", first, "y", "x")[4 - count :] if count != 3 else (first, "y", "x")
 
 
-def _sides(side: int | Sequence[int], shape: Sequence[int]) -> tuple[int, ...]:
-    """A side of rows and columns, or one for each axis; no longer than the whole."""
-    if isinstance(side, int):
-        side = [1] * (len(shape) - 2) + [side, side]
-    sides = tuple(int(part) for part in side)
+def shard_sides(side: Any, shape: Sequence[int]) -> tuple[int, ...]:
+    """The sides of a part of an array: a number is both rows and columns, and 1 along further axes."""
+    sides = _sources.sides(side)
+    try:
+        operator.index(side)
+        sides = (1,) * (len(shape) - 2) + sides
+    except TypeError:
+        pass
     if len(sides) != len(shape):
         raise refusal("count", f"a shard has {len(sides)} sides, but {len(shape)} are needed")
     return sides
