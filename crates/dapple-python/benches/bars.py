@@ -151,7 +151,7 @@ def digest(place):
 
 def kills(options):
     """Workers are killed with SIGKILL at random moments; then whole clusters, which are started again."""
-    from distributed import Client
+    from distributed import Client, Status
 
     from dapple_textures import jobs
     from dapple_textures.dask import bake_to_zarr
@@ -170,9 +170,8 @@ def kills(options):
                 nonlocal deaths
                 while not done.wait(chance.uniform(0.05, 0.6)):
                     # A nanny gives up a worker that dies before it has begun.
-                    known = client.scheduler_info(n_workers=-1)["workers"]
-                    pids = [nanny.pid for nanny in them.workers.values() if nanny.worker_address in known]
-                    pids = [pid for pid in pids if pid]
+                    ready = [nanny.process for nanny in them.workers.values() if nanny.status == Status.running]
+                    pids = [process.pid for process in ready if process and process.status == Status.running]
                     if pids:
                         os.kill(chance.choice(pids), signal.SIGKILL)
                         deaths += 1
@@ -181,11 +180,13 @@ def kills(options):
             killer = threading.Thread(target=kill)
             killer.start()
             place = f"{folder}/{number}.zarr"
+            client.wait_for_workers(1, timeout=60)
             bake_to_zarr(recipe, shape, planes, place, shard=64, client=client)
             done.set()
             killer.join()
             assert digest(place) == expected, f"run {number} has other bits"
             shutil.rmtree(place)
+            print(f"run {number}: {deaths} killed so far", flush=True)
     print(f"{runs} runs with {deaths} killed workers: all have the bits of the whole")
     for number in range(clusters):
         with tempfile.TemporaryDirectory() as folder:

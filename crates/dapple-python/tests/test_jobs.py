@@ -163,13 +163,18 @@ def test_a_job_is_refused_before_anything_is_written(tmp_path, options, kind):
     assert not list(tmp_path.iterdir())
 
 
-def test_stores_that_other_processes_do_not_see_are_refused(tmp_path):
+def test_stores_that_other_processes_do_not_see_stay_in_this_one(tmp_path, whole):
     import zarr
 
-    for store in (zarr.storage.MemoryStore(), {}, "memory://a", zarr.storage.ZipStore(tmp_path / "a.zip", mode="w")):
+    job = jobs.create(RECIPE, SHAPE, PLANES, zarr.storage.MemoryStore(), shard=64)
+    assert len(list(job.bake_all())) == 20
+    assert_whole(job, whole)
+    for give in (pickle.dumps, jobs.Job.openjd):
         with pytest.raises(dp.DappleError) as caught:
-            jobs.create(RECIPE, SHAPE, PLANES, store)
+            give(job)
         assert caught.value.kind == "store"
+    with pytest.raises(dp.DappleError, match="as a whole"):
+        jobs.create(RECIPE, SHAPE, PLANES, zarr.storage.ZipStore(tmp_path / "a.zip", mode="w"))
 
 
 def test_numpy_numbers_and_relative_paths(tmp_path, monkeypatch):

@@ -113,6 +113,7 @@ def bake_to_zarr(
     default, and workers may come and go.
     """
     client = client or get_client()
+    jobs.check_shared(store)
     job = jobs.create(
         what, shape, planes, store, shard=shard, chunk=chunk, compressors=compressors, extent=extent, origin=origin
     )

@@ -84,6 +84,7 @@ class Job:
         self.grid: tuple[int, ...] = _grid(self.shape, self.shard)
 
     def __reduce__(self) -> tuple[type[Job], tuple[Any]]:
+        check_shared(self.store)
         return Job, (self.store,)
 
     def __len__(self) -> int:
@@ -137,9 +138,10 @@ class Job:
     def openjd(self, *, parts: int | None = None, python: str = "python") -> dict[str, Any]:
         """An Open Job Description template (2023-09) whose tasks bake the shards: for OpenJD farms such as Deadline Cloud.
 
-        `parts` is the number of tasks, by default one for each shard, and at most 1024. The place of the store is written as
+        `parts` is the number of tasks, by default one for each shard, but no more than 1024, which farms take. The place of the store is written as
         it is from any folder.
         """
+        check_shared(self.store)
         parts = min(len(self), 1024) if parts is None else parts
         if not 1 <= parts <= len(self):
             raise refusal("range", f"the number of parts is {parts}, but it must be from 1 to {len(self)}")
@@ -295,10 +297,16 @@ def place_of(store: Any) -> Any:
         store = store.root
     if isinstance(store, os.PathLike) or (isinstance(store, str) and "://" not in store):
         return os.path.abspath(os.fspath(store))
-    if isinstance(store, (dict, MemoryStore, ZipStore)) or str(store).startswith("memory://"):
-        message = "a job needs a store that all processes see, and that writes a file or an object as a whole"
-        raise refusal("store", message, "give a path, or the address of an object store")
+    if isinstance(store, ZipStore):
+        raise refusal("store", "a job needs a store that writes a file or an object as a whole, which ZipStore does not")
     return store
+
+
+def check_shared(store: Any) -> None:
+    """Refuses a store that lies in the memory of this process, where no other writes."""
+    if isinstance(store, (dict, MemoryStore)) or str(store).startswith("memory://"):
+        message = "the store lies in the memory of this process, and others do not see it"
+        raise refusal("store", message, "give a path, or the address of an object store")
 
 
 def _read_images(group: zarr.Group, source: dict[str, Any]) -> dict[str, _sources.Image]:
