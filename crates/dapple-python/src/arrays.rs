@@ -131,30 +131,6 @@ pub(crate) fn raster(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>>
     Ok(Raster::from_vec(raster_size(what, array.shape())?, values)?)
 }
 
-/// An array of three axes (rows, columns, channels) as a raster. It is copied.
-pub(crate) fn raster_of<const N: usize>(
-    what: &str,
-    data: &Bound<'_, PyAny>,
-) -> Result<Raster<[f32; N]>> {
-    let array: PyArrayLike<'_, f32, numpy::Ix3, AllowTypeChange> = data.extract()?;
-    let array = array.as_array();
-    if array.shape()[2] != N {
-        let message = format!(
-            "the {what} has {} channels, but {N} are needed",
-            array.shape()[2]
-        );
-        return Err(Error::new("channels", message));
-    }
-    let values: Vec<f32> = array.iter().copied().collect();
-    let pixels = values
-        .chunks_exact(N)
-        .map(|pixel| core::array::from_fn(|channel| pixel[channel]));
-    Ok(Raster::from_vec(
-        raster_size(what, array.shape())?,
-        pixels.collect(),
-    )?)
-}
-
 /// The columns and rows of an array whose first axes are rows and columns.
 pub(crate) fn raster_size(what: &str, shape: &[usize]) -> Result<[u32; 2]> {
     let side = |length: usize| {

@@ -6,15 +6,16 @@ use crate::error::{Error, Result};
 use crate::field::Field;
 use crate::function::{Function, Made};
 use crate::grid::{Grid, GridArguments, size as size_of};
+use crate::pictures::Pixels;
 use crate::seed::SeedArgument;
 use crate::shared::{Build, Shared};
 use crate::threads;
 use dapple::color::{LinearRgb, Normal};
+use dapple::raster::Raster;
 use dapple::recipe::{
     Bake, BakeMemory, BakeOptions, Images, MapKind, MapRows, Picture, Plan as RustPlan,
     Recipe as RustRecipe, Region, Shards,
 };
-use numpy::{PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::{Deserialize, Serialize};
@@ -190,13 +191,17 @@ impl Recipe {
     ///
     /// Parameters
     /// ----------
-    /// images : the images that it names: arrays (rows, columns) of numbers or (rows, columns, 3) of linear colors.
+    /// images : the images that it names (see `image_files`): arrays (rows, columns) of numbers or (rows, columns, 3) of linear
+    ///     colors, floating point.
     /// time : the part of a loop that has passed, for what moves: 0 and 1 are the same.
     #[pyo3(signature = (*, images = None, time = 0.0))]
     fn plan(&self, py: Python<'_>, images: Option<&Bound<'_, PyDict>>, time: f64) -> Result<Plan> {
         let mut pictures = Images::new();
         for (name, image) in images.into_iter().flat_map(|images| images.iter()) {
-            pictures.insert(name.extract()?, picture(&image)?);
+            let name: String = name.extract()?;
+            self.check_image(py, &name)?;
+            let image = picture(&format!("image `{name}`"), &image)?;
+            pictures.insert(name, image);
         }
         Plan::new(py, self.recipe.clone(), pictures, time)
     }
@@ -232,19 +237,47 @@ impl Recipe {
     }
 }
 
+impl Recipe {
+    /// Refuses an image that the recipe does not name.
+    fn check_image(&self, py: Python<'_>, name: &str) -> Result<()> {
+        let names = self.recipe.image_files();
+        if names.contains(&name) {
+            return Ok(());
+        }
+        let message = match names.is_empty() {
+            true => format!("the recipe names no images, but `{name}` is given"),
+            false => format!(
+                "the recipe names no image `{name}`, but {}",
+                names.join(", ")
+            ),
+        };
+        let near = py
+            .import("difflib")?
+            .call_method1("get_close_matches", (name, names, 1))?;
+        let near: Vec<String> = near.extract()?;
+        Err(Error::new("unknown_image", message).with_near(near.into_iter().next()))
+    }
+}
+
 /// An image of a recipe from an array.
-fn picture(image: &Bound<'_, PyAny>) -> Result<Picture> {
-    let n_axes = image
-        .cast::<PyUntypedArray>()
-        .map(|array| array.ndim())
-        .unwrap_or(2);
-    Ok(if n_axes == 3 {
-        let colors = arrays::raster_of::<3>("image", image)?;
-        Picture::Colors(Arc::new(
-            colors.map(|&[red, green, blue]| LinearRgb::new(red, green, blue)),
-        ))
-    } else {
-        Picture::Numbers(Arc::new(arrays::raster("image", image)?))
+fn picture(what: &str, image: &Bound<'_, PyAny>) -> Result<Picture> {
+    let pixels = Pixels::read(what, image)?;
+    let values = pixels.values();
+    Ok(match pixels.n_channels {
+        1 => Picture::Numbers(Arc::new(Raster::from_vec(
+            pixels.size,
+            values.into_owned(),
+        )?)),
+        3 => {
+            let colors = values
+                .chunks_exact(3)
+                .map(|at| LinearRgb::new(at[0], at[1], at[2]));
+            Picture::Colors(Arc::new(Raster::from_vec(pixels.size, colors.collect())?))
+        }
+        n => {
+            let message = format!("the {what} has {n} channels, but 1 or 3 are needed");
+            return Err(Error::new("channels", message));
+        }
     })
 }
 

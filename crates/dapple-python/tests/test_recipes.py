@@ -84,6 +84,26 @@ def test_images_are_arrays():
         dp.Recipe(data).plan(images={"photo.png": colors}).field("photo")
 
 
+def test_images_are_no_codes_and_are_named_by_the_recipe():
+    nodes = {"photo": {"image": {"file": "photo.png"}}}
+    recipe = dp.Recipe(changed(nodes=nodes, material={"albedo": "photo"}))
+    colors = np.full((4, 4, 3), 0.25, np.float32)
+    for dtype in (np.uint8, np.uint16, np.int64, np.complex64):
+        with pytest.raises(dp.DappleError, match="`photo.png` is an array of") as caught:
+            recipe.plan(images={"photo.png": colors.astype(dtype)})
+        assert caught.value.kind == "type"
+    assert recipe.plan(images={"photo.png": colors.tolist()}) == recipe.plan(images={"photo.png": colors})
+    for axes in [(4,), (4, 4, 2), (4, 4, 4), (4, 4, 3, 1)]:
+        with pytest.raises(dp.DappleError, match="`photo.png` has"):
+            recipe.plan(images={"photo.png": np.zeros(axes)})
+    with pytest.raises(dp.DappleError, match="did you mean `photo.png`") as caught:
+        recipe.plan(images={"photo.png": colors, "foto.png": colors})
+    assert (caught.value.kind, caught.value.hint) == ("unknown_image", "photo.png")
+    with pytest.raises(dp.DappleError, match="no images") as caught:
+        dp.Recipe(DATA).plan(images={"photo.png": colors})
+    assert caught.value.hint is None
+
+
 def test_time_goes_round():
     nodes = {"a": {"worley": {"motion": {"cells": 2}}}}
     recipe = dp.Recipe(changed(nodes=nodes, material={"height": "a"}))
