@@ -323,7 +323,7 @@ impl Worley {
 /// value : "f1" to "f4" (distance to the nearest, second, … feature point), a difference such as "f2_minus_f1",
 ///     "cell_value" (a random number from 0 to 1 for each cell), "edge_distance" (to the nearest border of a cell), or
 ///     the four coefficients of F1 to F4.
-/// metric : "euclidean", "squared", "manhattan", "chebyshev", or {"minkowski": 3}.
+/// metric : "euclidean", "manhattan", "chebyshev", or {"minkowski": 3}.
 /// scatter : {"poisson": {"density": 3}}, the paper's; {"unclamped": {"density": 3}}; {"jittered": {"jitter": 1}}, one
 ///     point in each cell.
 /// period : cells after which it repeats exactly: one number, or one for each axis, x first; None where it does not.
