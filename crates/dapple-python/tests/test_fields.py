@@ -267,6 +267,67 @@ def test_what_is_refused_says_its_limit(make, kind, words):
     assert isinstance(caught.value, ValueError)
 
 
+@pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf, 1e39])
+def test_numbers_of_fields_are_finite(number):
+    field, one = dp.worley(), dp.constant(1.0)
+    for make in [
+        lambda: dp.constant(number),
+        lambda: field + number,
+        lambda: number * field,
+        lambda: field.maximum(number),
+        lambda: field.mix(number, 0.5),
+        lambda: field.remap((0, number)),
+        lambda: field.remap((0, 1), (number, 1)),
+        lambda: field.clamp(-number, number),
+        lambda: dp.worley(range=(0, number)),
+        lambda: dp.wavelet_noise(period=8, weights=[number]),
+    ]:
+        with pytest.raises(dp.DappleError):
+            make()
+    if number == 1e39:
+        return
+    for make in [
+        lambda: field / number,
+        lambda: field.frequency(number),
+        lambda: field.offset((0, number)),
+        lambda: field.rotate(number),
+        lambda: field.warp(one, one, number),
+        lambda: field.fbm(2, gain=number),
+        lambda: field.fbm(2, lacunarity=number),
+        lambda: dp.worley(dims=3).slice(number),
+        lambda: dp.worley(octaves={"gain": number}),
+        lambda: dp.gradient_noise(octaves=2, gain=number),
+        lambda: dp.gradient_noise(octaves=2, lacunarity=number),
+        lambda: dp.pups([[0.5, 0.5], [0.2, 0.1], [0.7, 0.3]], [0.0, number, 1.0], domain=dp.Domain(1)),
+    ]:
+        with pytest.raises(dp.DappleError):
+            make()
+
+
+def test_arithmetic_with_numbers():
+    field = FIELDS["gradient"]
+    pixels = field.render(16, extent=4)
+    assert np.array_equal((field / 4).render(16, extent=4), pixels / 4)
+    assert np.array_equal((np.float64(2.0) * field - np.int64(1)).render(16, extent=4), 2 * pixels - 1)
+    assert +field == field and type(+dp.worley()) is dp.Worley
+    assert sum([field, field], start=dp.constant(0.0)).render(16, extent=4).any()
+    with pytest.raises(dp.DappleError, match="divided by 0"):
+        field / 0
+    for wrong in (None, "1", [1.0], np.array([1.0, 2.0]), object()):
+        for act in [
+            lambda: field + wrong, lambda: wrong + field, lambda: field - wrong, lambda: wrong - field,
+            lambda: field * wrong, lambda: field / wrong, lambda: wrong / field,
+        ]:
+            with pytest.raises(TypeError, match="support|can't multiply|concatenate"):
+                act()
+        with pytest.raises(TypeError, match="a field or a number is needed"):
+            field.maximum(wrong)
+    with pytest.raises(TypeError, match="unsupported"):
+        1 / field
+    with pytest.raises(TypeError, match="unsupported"):
+        field / field
+
+
 def test_seeds_are_whole_numbers_of_64_bits():
     last = dp.worley(seed=2**64 - 1)
     assert dp.worley(seed=np.uint64(2**64 - 1)) == last
