@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
+from pathlib import Path
 from typing import Any, ClassVar, Literal, Never, Self, SupportsIndex, TypeAlias, final, overload
 
 import numpy as np
@@ -173,7 +174,7 @@ class Plan:
     def bake(
         self,
         size: _Size,
-        maps: Sequence[str] = ("height",),
+        maps: str | Iterable[str] = "height",
         *,
         window: _Window | None = None,
         as_xarray: Literal[False] = False,
@@ -182,7 +183,7 @@ class Plan:
     def bake(
         self,
         size: _Size,
-        maps: Sequence[str] = ("height",),
+        maps: str | Iterable[str] = "height",
         *,
         window: _Window | None = None,
         as_xarray: Literal[True],
@@ -210,6 +211,9 @@ class ShardList:
     def grid(self) -> tuple[int, int]: ...
     def __len__(self) -> int: ...
     def __getitem__(self, index: int, /) -> tuple[tuple[int, int], tuple[int, int]]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+    def __reduce__(self) -> tuple[Any, tuple[tuple[int, int], tuple[int, int]]]: ...
 
 def map_names() -> list[str]: ...
 def shards(size: _Size, shard: _Size) -> ShardList: ...
@@ -413,6 +417,7 @@ def linear_from_srgb(codes: npt.NDArray[np.uint8] | npt.NDArray[np.uint16]) -> _
 def read_image(path: _Path, *, content: _Content | None = None, alpha: str | None = None, max_pixels: int = 268435456, max_bytes: int = 4294967296) -> _F32: ...
 def decode_image(data: bytes, *, content: _Content | None = None, alpha: str | None = None, max_pixels: int = 268435456, max_bytes: int = 4294967296) -> _F32: ...
 def write_image(path: _Path, image: npt.ArrayLike, *, content: _Content | None = None, depth: Literal[8, 16] | None = None) -> None: ...
+def write_maps(folder: _Path, maps: _Maps, *, name: str | None = None, format: Literal["png", "exr", "npy"] = "png", depth: Literal[8, 16] | None = None) -> list[Path]: ...
 def encode_image(image: npt.ArrayLike, format: Literal["png", "exr", "npy", "r16"] = "png", *, content: _Content | None = None, depth: Literal[8, 16] | None = None) -> bytes: ...
 
 # Tiles.

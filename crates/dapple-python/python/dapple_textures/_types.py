@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -72,6 +72,8 @@ class MapInfo(NamedTuple):
     channels: int
     #: "linear", for colors with the primaries of sRGB, or "non-color".
     color_space: str
+    #: With which `content` `write_image` writes it.
+    content: Literal["gray", "color", "normal", "data"]
 
 
 def refusal(kind: str, message: str, hint: str | None = None) -> DappleError:
