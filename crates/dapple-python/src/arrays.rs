@@ -9,8 +9,9 @@ use dapple::raster::Raster;
 use numpy::ndarray::{ArrayD, IxDyn};
 use numpy::{
     AllowTypeChange, Element, IntoPyArray, PyArrayDyn, PyArrayLike, PyArrayLikeDyn, PyArrayMethods,
-    PyUntypedArrayMethods,
+    PyUntypedArray, PyUntypedArrayMethods,
 };
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 /// Values as an array of a shape, without a copy.
@@ -28,7 +29,7 @@ pub(crate) fn array<'py, T: Element>(
 pub(crate) fn filled<'py>(
     py: Python<'py>,
     shape: &[usize],
-    out: Option<Bound<'py, PyArrayDyn<f32>>>,
+    out: Option<Bound<'py, PyAny>>,
     fill: impl FnOnce(&mut [f32]) -> Result<()> + Send,
 ) -> Result<Bound<'py, PyAny>> {
     let Some(out) = out else {
@@ -40,6 +41,16 @@ pub(crate) fn filled<'py>(
         })??;
         return array(py, values, shape);
     };
+    let kind = |out: &Bound<'_, PyAny>| match out.cast::<PyUntypedArray>() {
+        Ok(array) => format!("an array of {}", array.dtype()),
+        Err(_) => out.get_type().to_string(),
+    };
+    let out = out.cast_into::<PyArrayDyn<f32>>().map_err(|error| {
+        let kind = kind(&error.into_inner());
+        PyTypeError::new_err(format!(
+            "`out` is {kind}, but it must be an array of float32"
+        ))
+    })?;
     let mut memory = out.try_readwrite().map_err(PyErr::from)?;
     if memory.as_array().shape() != shape {
         let message = format!(

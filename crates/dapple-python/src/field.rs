@@ -9,7 +9,6 @@ use crate::grid::{Grid, GridArguments, pair};
 use crate::shared::Shared;
 use crate::threads;
 use dapple::raster::{Field as _, FractalShape, PairOperation, RasterViewMut};
-use numpy::PyArrayDyn;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -164,10 +163,12 @@ impl Field {
     ///
     /// Parameters
     /// ----------
-    /// size : (rows, columns), or a number for both; (depth, rows, columns) of three axes.
-    /// extent : (x, y), what the array covers, in units of the field; one period by default, and 1 where there is none.
-    /// origin : (x, y) of the corner of the first pixel; 0 by default.
-    /// window : the part to make, as `np.s_[100:150, 33:94]`: bit for bit the crop of the whole. It may lie outside.
+    /// size : (rows, columns), or a number for all axes; (z, rows, columns) of three axes, (w, z, rows, columns) of four.
+    /// extent : (x, y), what the array covers, in units of the field; one period by default, and 1 where there is none. (x, y, z)
+    ///     of three axes and (x, y, z, w) of four.
+    /// origin : (x, y) of the corner of the first pixel, with z and w as for `extent`; 0 by default.
+    /// window : the part to make, as `np.s_[100:150, 33:94]`, a slice for each axis of `size`: bit for bit the crop of the whole.
+    ///     It may lie outside: negative numbers lie before the array, and not at its end as NumPy has it.
     /// out : memory for the values, a float32 array in C order; a new array by default.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
     fn render<'py>(
@@ -177,7 +178,7 @@ impl Field {
         extent: Option<&Bound<'py, PyAny>>,
         origin: Option<&Bound<'py, PyAny>>,
         window: Option<&Bound<'py, PyAny>>,
-        out: Option<Bound<'py, PyArrayDyn<f32>>>,
+        out: Option<Bound<'py, PyAny>>,
     ) -> Result<Bound<'py, PyAny>> {
         let grid = Grid::new(
             &GridArguments {

@@ -134,8 +134,17 @@ def test_render_fills_memory_that_it_is_given():
     frozen.flags.writeable = False
     with pytest.raises((TypeError, ValueError)):
         field.render((32, 48), out=frozen)
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match="`out` is an array of float64, but"):
         field.render((32, 48), out=out.astype(np.float64))
+    with pytest.raises(TypeError, match="`out` is <class 'list'>, but"):
+        field.render((32, 48), out=[0.0])
+
+
+def test_sizes_and_periods_are_numbers_of_numpy_too():
+    field = dp.worley(period=np.array([4, 4]))
+    assert field == dp.worley(period=np.int64(4)) == dp.worley(period=(np.uint8(4), 4))
+    assert field.render(np.array([3, 5]), extent=np.array([1, 2])).shape == (3, 5)
+    assert field.render(np.int32(3), extent=np.float32(1)).shape == (3, 3)
 
 
 def test_positions_of_any_shape_type_and_stride():
@@ -231,7 +240,22 @@ def test_cell_points_are_found_as_features():
         (lambda: dp.worley(value="f9"), "options", "f2_minus_f1"),
         (lambda: dp.worley(metric="taxi"), "options", "manhattan"),
         (lambda: dp.worley(scatter={"poisson": {"density": 1e9}}), "range", "density"),
-        (lambda: dp.worley(period=[1, 2, 3]), "count", "3 numbers"),
+        (lambda: dp.worley(period=[1, 2, 3]), "period", "[1, 2, 3]"),
+        (lambda: dp.worley(period=-1), "period", "is -1"),
+        (lambda: dp.gradient_noise(period=1.5), "period", "is 1.5"),
+        (lambda: dp.gradient_noise(period="ab"), "period", "whole number"),
+        (lambda: dp.wavelet_noise(period=(8, None)), "period", "(8, None)"),
+        (lambda: dp.worley().render(-3), "size", "is -3"),
+        (lambda: dp.worley().render(16.0), "size", "is 16.0"),
+        (lambda: dp.worley().render("ab"), "size", "is 'ab'"),
+        (lambda: dp.worley().render(5, origin="a"), "count", "is 'a'"),
+        (lambda: dp.worley().render(5, window=np.s_[...]), "window", "is Ellipsis"),
+        (lambda: dp.worley().render(5, window=np.s_[3:5]), "window", "slice(3, 5, None)"),
+        (lambda: dp.worley().render(5, window=np.s_[3:5, 3]), "window", "2 slices"),
+        (lambda: dp.set_threads(-1), "threads", "is -1"),
+        (lambda: dp.set_threads(1.5), "threads", "is 1.5"),
+        (lambda: dp.mesh_report(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, -1]])), "corner", "vertex -1"),
+        (lambda: dp.mesh_report(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [0, 1, 2**40]])), "corner", "face 1"),
         (lambda: dp.worley(octaves={"cuont": 2}), "options", "cuont"),
         (lambda: dp.worley(octaves={"count": float("nan")}), "options", "finite"),
         (lambda: dp.worley(value="cell_value", octaves={}), "conflict", "cell_value"),
@@ -252,7 +276,7 @@ def test_cell_points_are_found_as_features():
         (lambda: dp.worley().render(5, extent=(1, 2, 3)), "count", "x first"),
         (lambda: dp.worley().render(5, window=np.s_[3:3, 0:2]), "window", "pixel"),
         (lambda: dp.worley().render(5, window=np.s_[0:4:2, 0:2]), "window", "steps of 2"),
-        (lambda: dp.worley().render(5, window=(slice(0, 1),)), "count", "slices"),
+        (lambda: dp.worley().render(5, window=(slice(0, 1),)), "window", "slices"),
         (lambda: dp.worley().render((2**31, 2**31)), "too_large", "values"),
         (lambda: dp.worley().render((2**20, 2**19)), "memory", "no memory"),
         (lambda: dp.Recipe.builtin("rock").plan().bake((2**20, 2**19)), "memory", "no memory"),

@@ -13,7 +13,7 @@ from ._native import DappleError
 class Features(NamedTuple):
     """The nearest feature points of positions or of pixels; what was not asked for is None."""
 
-    #: Distances, in cells.
+    #: Distances, in cells as the metric measures them: those of "manhattan" are sums along the axes.
     distance: npt.NDArray[np.float32] | None
     #: The ways from the feature points to the positions, in cells.
     vector: npt.NDArray[np.float64 | np.float32] | None

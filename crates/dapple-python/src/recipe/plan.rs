@@ -153,7 +153,7 @@ impl Plan {
     /// ----------
     /// size : (rows, columns) of the whole tile, or a number for both. It may be far larger than memory.
     /// maps : the name of a map, or the names of several, each once: see `map_names`.
-    /// window : the part to make, as `np.s_[100:150, 33:94]`: bit for bit the crop of the whole.
+    /// window : the part to make, as `np.s_[100:150, 33:94]`: bit for bit the crop of the whole. It must lie inside.
     /// as_xarray : gives an `xarray.Dataset` with coordinates in units of the plane instead of a dictionary.
     #[pyo3(signature = (size, maps = None, *, window = None, as_xarray = false),
         text_signature = "(self, size, maps='height', *, window=None, as_xarray=False)")]
