@@ -11,14 +11,12 @@ import numpy as np
 import dapple_textures as dp
 
 name, folder, size = (sys.argv[1:] + ["flagstone", "out", "1024"][len(sys.argv) - 1 :])[:3]
-place = Path(folder)
-place.mkdir(parents=True, exist_ok=True)
 
 maps = dp.Recipe.builtin(name).plan().bake(int(size), ["height", "normal", "ao", "albedo", "roughness", "orm"])
-for plane, pixels in maps.items():
-    dp.write_image(place / f"{name}_{plane}.png", pixels, content={"normal": "normal", "orm": "data"}.get(plane))
+paths = dp.write_maps(folder, maps, name=name)
 
 lamp = np.array([-0.45, 0.45, 0.77])
 light = np.clip(maps["normal"] @ lamp, 0, 1) * maps["ao"] * 2
-dp.write_image(place / f"{name}_lit.png", maps["albedo"] * light[..., None])
-print(*sorted(str(path) for path in place.glob(f"{name}_*.png")), sep="\n")
+paths.append(Path(folder, f"{name}_lit.png"))
+dp.write_image(paths[-1], maps["albedo"] * light[..., None])
+print(*sorted(paths), sep="\n")

@@ -9,8 +9,9 @@ use dapple::raster::Raster;
 use numpy::ndarray::{ArrayD, IxDyn};
 use numpy::{
     AllowTypeChange, Element, IntoPyArray, PyArrayDyn, PyArrayLike, PyArrayLikeDyn, PyArrayMethods,
-    PyUntypedArrayMethods,
+    PyUntypedArray, PyUntypedArrayMethods,
 };
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 /// Values as an array of a shape, without a copy.
@@ -28,7 +29,7 @@ pub(crate) fn array<'py, T: Element>(
 pub(crate) fn filled<'py>(
     py: Python<'py>,
     shape: &[usize],
-    out: Option<Bound<'py, PyArrayDyn<f32>>>,
+    out: Option<Bound<'py, PyAny>>,
     fill: impl FnOnce(&mut [f32]) -> Result<()> + Send,
 ) -> Result<Bound<'py, PyAny>> {
     let Some(out) = out else {
@@ -40,6 +41,16 @@ pub(crate) fn filled<'py>(
         })??;
         return array(py, values, shape);
     };
+    let kind = |out: &Bound<'_, PyAny>| match out.cast::<PyUntypedArray>() {
+        Ok(array) => format!("an array of {}", array.dtype()),
+        Err(_) => out.get_type().to_string(),
+    };
+    let out = out.cast_into::<PyArrayDyn<f32>>().map_err(|error| {
+        let kind = kind(&error.into_inner());
+        PyTypeError::new_err(format!(
+            "`out` is {kind}, but it must be an array of float32"
+        ))
+    })?;
     let mut memory = out.try_readwrite().map_err(PyErr::from)?;
     if memory.as_array().shape() != shape {
         let message = format!(
@@ -129,30 +140,6 @@ pub(crate) fn raster(what: &str, data: &Bound<'_, PyAny>) -> Result<Raster<f32>>
     let array = array.as_array();
     let values = array.iter().copied().collect();
     Ok(Raster::from_vec(raster_size(what, array.shape())?, values)?)
-}
-
-/// An array of three axes (rows, columns, channels) as a raster. It is copied.
-pub(crate) fn raster_of<const N: usize>(
-    what: &str,
-    data: &Bound<'_, PyAny>,
-) -> Result<Raster<[f32; N]>> {
-    let array: PyArrayLike<'_, f32, numpy::Ix3, AllowTypeChange> = data.extract()?;
-    let array = array.as_array();
-    if array.shape()[2] != N {
-        let message = format!(
-            "the {what} has {} channels, but {N} are needed",
-            array.shape()[2]
-        );
-        return Err(Error::new("channels", message));
-    }
-    let values: Vec<f32> = array.iter().copied().collect();
-    let pixels = values
-        .chunks_exact(N)
-        .map(|pixel| core::array::from_fn(|channel| pixel[channel]));
-    Ok(Raster::from_vec(
-        raster_size(what, array.shape())?,
-        pixels.collect(),
-    )?)
 }
 
 /// The columns and rows of an array whose first axes are rows and columns.

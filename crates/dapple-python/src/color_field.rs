@@ -8,7 +8,6 @@ use crate::grid::{Grid, GridArguments};
 use crate::pups::{Values, Vectors};
 use crate::threads;
 use dapple::raster::parallel;
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
@@ -67,7 +66,7 @@ impl ColorField {
         extent: Option<&Bound<'py, PyAny>>,
         origin: Option<&Bound<'py, PyAny>>,
         window: Option<&Bound<'py, PyAny>>,
-        out: Option<Bound<'py, PyArrayDyn<f32>>>,
+        out: Option<Bound<'py, PyAny>>,
     ) -> Result<Bound<'py, PyAny>> {
         let arguments = GridArguments {
             size,

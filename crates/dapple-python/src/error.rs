@@ -54,6 +54,18 @@ impl Error {
         }
     }
 
+    /// This refusal with the name that was perhaps meant.
+    pub(crate) fn with_near(self, near: Option<String>) -> Self {
+        match (self, near) {
+            (Self::Refused(refusal), Some(near)) => Self::Refused(Refusal {
+                message: format!("{}; did you mean `{near}`?", refusal.message),
+                hint: Some(near),
+                ..refusal
+            }),
+            (refusal, _) => refusal,
+        }
+    }
+
     /// A refusal of a crate: its kind is the name of the value of its enum.
     fn of(kind: &impl core::fmt::Debug, message: &impl ToString) -> Self {
         Self::new(&snake_case(&format!("{kind:?}")), message.to_string())

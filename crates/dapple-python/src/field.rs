@@ -6,9 +6,10 @@ use crate::error::{Error, Result};
 use crate::function::{Function, Made, position};
 use crate::generators::Worley;
 use crate::grid::{Grid, GridArguments, pair};
+use crate::shared::Shared;
 use crate::threads;
 use dapple::raster::{Field as _, FractalShape, PairOperation, RasterViewMut};
-use numpy::PyArrayDyn;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -19,7 +20,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// description gives the same bits on every machine.
 #[pyclass(frozen, subclass, module = "dapple_textures")]
 pub(crate) struct Field {
-    made: Made,
+    made: Shared<Made>,
     function: Function,
 }
 
@@ -29,7 +30,8 @@ const CHUNK: usize = 4096;
 impl Field {
     /// The field that a description gives, made on the threads of the package.
     pub(crate) fn new(made: Made) -> Result<Self> {
-        let function = Python::attach(|py| threads::run(py, || made.build()))??;
+        let made = Shared::new(made);
+        let function = Python::attach(|py| threads::run(py, || made.get()))??.function;
         Ok(Self { made, function })
     }
 
@@ -42,10 +44,6 @@ impl Field {
                 "a field of the plane is needed: take `slice(…)` first",
             )),
         }
-    }
-
-    fn boxed(&self) -> Box<Made> {
-        Box::new(self.made.clone())
     }
 
     /// The periods along all axes.
@@ -72,13 +70,8 @@ impl Field {
     }
 
     /// This field and another field or number, value by value.
-    fn with(
-        &self,
-        other: &Bound<'_, PyAny>,
-        operation: PairOperation,
-        is_first: bool,
-    ) -> Result<Self> {
-        let (this, other) = (self.boxed(), Box::new(operand(other)?));
+    fn with(&self, other: Operand, operation: PairOperation, is_first: bool) -> Result<Self> {
+        let (this, other) = (self.made.clone(), other.0);
         let (first, second) = if is_first {
             (this, other)
         } else {
@@ -91,6 +84,11 @@ impl Field {
         })
     }
 
+    fn times(&self, number: f32) -> Result<Self> {
+        let number = Operand(Shared::new(Made::Constant(number)));
+        self.with(number, PairOperation::Multiply, true)
+    }
+
     fn fractal(
         &self,
         octaves: u32,
@@ -99,7 +97,7 @@ impl Field {
         shape: FractalShape,
     ) -> Result<Self> {
         Self::new(Made::Fractal {
-            field: self.boxed(),
+            field: self.made.clone(),
             octaves,
             gain,
             lacunarity,
@@ -108,16 +106,26 @@ impl Field {
     }
 
     fn description(&self) -> Result<String> {
-        self.made.description()
+        self.made.made().description()
     }
 }
 
 /// A field, or a number as a field.
-fn operand(other: &Bound<'_, PyAny>) -> Result<Made> {
-    if let Ok(field) = other.cast::<Field>() {
-        return Ok(field.get().made.clone());
+pub(crate) struct Operand(Shared<Made>);
+
+impl<'py> FromPyObject<'_, 'py> for Operand {
+    type Error = PyErr;
+
+    fn extract(other: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(field) = other.cast::<Field>() {
+            return Ok(Self(field.get().made.clone()));
+        }
+        let number = other.extract().map_err(|_| {
+            let kind = other.get_type();
+            PyTypeError::new_err(format!("a field or a number is needed, not {kind}"))
+        })?;
+        Ok(Self(Shared::new(Made::Constant(number))))
     }
-    Ok(Made::Constant(other.extract()?))
 }
 
 /// The field that is described, as the class that it has.
@@ -155,10 +163,12 @@ impl Field {
     ///
     /// Parameters
     /// ----------
-    /// size : (rows, columns), or a number for both; (depth, rows, columns) of three axes.
-    /// extent : (x, y), what the array covers, in units of the field; one period by default, and 1 where there is none.
-    /// origin : (x, y) of the corner of the first pixel; 0 by default.
-    /// window : the part to make, as `np.s_[100:150, 33:94]`: bit for bit the crop of the whole. It may lie outside.
+    /// size : (rows, columns), or a number for all axes; (z, rows, columns) of three axes, (w, z, rows, columns) of four.
+    /// extent : (x, y), what the array covers, in units of the field; one period by default, and 1 where there is none. (x, y, z)
+    ///     of three axes and (x, y, z, w) of four.
+    /// origin : (x, y) of the corner of the first pixel, with z and w as for `extent`; 0 by default.
+    /// window : the part to make, as `np.s_[100:150, 33:94]`, a slice for each axis of `size`: bit for bit the crop of the whole.
+    ///     It may lie outside: negative numbers lie before the array, and not at its end as NumPy has it.
     /// out : memory for the values, a float32 array in C order; a new array by default.
     #[pyo3(signature = (size, *, extent = None, origin = None, window = None, out = None))]
     fn render<'py>(
@@ -168,7 +178,7 @@ impl Field {
         extent: Option<&Bound<'py, PyAny>>,
         origin: Option<&Bound<'py, PyAny>>,
         window: Option<&Bound<'py, PyAny>>,
-        out: Option<Bound<'py, PyArrayDyn<f32>>>,
+        out: Option<Bound<'py, PyAny>>,
     ) -> Result<Bound<'py, PyAny>> {
         let grid = Grid::new(
             &GridArguments {
@@ -219,7 +229,7 @@ impl Field {
     #[pyo3(signature = (*rest))]
     fn slice(&self, rest: Vec<f64>) -> Result<Self> {
         Self::new(Made::Slice {
-            field: self.boxed(),
+            field: self.made.clone(),
             rest,
         })
     }
@@ -228,7 +238,7 @@ impl Field {
     fn frequency(&self, frequency: &Bound<'_, PyAny>) -> Result<Self> {
         let frequency = pair("frequency", frequency)?.to_array();
         Self::new(Made::Frequency {
-            field: self.boxed(),
+            field: self.made.clone(),
             frequency,
         })
     }
@@ -237,7 +247,7 @@ impl Field {
     fn offset(&self, offset: &Bound<'_, PyAny>) -> Result<Self> {
         let offset = pair("offset", offset)?.to_array();
         Self::new(Made::Offset {
-            field: self.boxed(),
+            field: self.made.clone(),
             offset,
         })
     }
@@ -245,7 +255,7 @@ impl Field {
     /// This field at positions turned by an angle about the origin, in radians, from x to y.
     fn rotate(&self, angle: f64) -> Result<Self> {
         Self::new(Made::Rotate {
-            field: self.boxed(),
+            field: self.made.clone(),
             angle,
         })
     }
@@ -253,9 +263,9 @@ impl Field {
     /// This field at positions moved by `amount` times the values of the fields `x` and `y` (domain warping).
     fn warp(&self, x: &Self, y: &Self, amount: f64) -> Result<Self> {
         Self::new(Made::Warp {
-            field: self.boxed(),
-            x: x.boxed(),
-            y: y.boxed(),
+            field: self.made.clone(),
+            x: x.made.clone(),
+            y: y.made.clone(),
             amount,
         })
     }
@@ -264,7 +274,7 @@ impl Field {
     #[pyo3(signature = (old, new = [0.0, 1.0]), text_signature = "(self, old, new=(0.0, 1.0))")]
     fn remap(&self, old: [f32; 2], new: [f32; 2]) -> Result<Self> {
         Self::new(Made::Remap {
-            field: self.boxed(),
+            field: self.made.clone(),
             from: old,
             to: new,
         })
@@ -274,28 +284,27 @@ impl Field {
     #[pyo3(signature = (low = 0.0, high = 1.0))]
     fn clamp(&self, low: f32, high: f32) -> Result<Self> {
         Self::new(Made::Clamp {
-            field: self.boxed(),
+            field: self.made.clone(),
             bounds: [low, high],
         })
     }
 
     /// The smaller of this field and another field or number, everywhere.
-    fn minimum(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+    fn minimum(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Minimum, true)
     }
 
     /// The larger of this field and another field or number, everywhere.
-    fn maximum(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+    fn maximum(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Maximum, true)
     }
 
     /// From this field, where `by` is 0, to another field or number, where it is 1.
-    fn mix(&self, to: &Bound<'_, PyAny>, by: &Bound<'_, PyAny>) -> Result<Self> {
-        let (to, by) = (Box::new(operand(to)?), Box::new(operand(by)?));
+    fn mix(&self, to: Operand, by: Operand) -> Result<Self> {
         Self::new(Made::Mix {
-            from: self.boxed(),
-            to,
-            by,
+            from: self.made.clone(),
+            to: to.0,
+            by: by.0,
         })
     }
 
@@ -317,41 +326,56 @@ impl Field {
         self.fractal(octaves, gain, lacunarity, FractalShape::Billow)
     }
 
-    fn __add__(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+    fn __add__(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Add, true)
     }
 
-    fn __radd__(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+    fn __radd__(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Add, false)
     }
 
-    fn __sub__(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+    fn __sub__(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Subtract, true)
     }
 
-    fn __rsub__(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+    fn __rsub__(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Subtract, false)
     }
 
-    fn __mul__(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+    fn __mul__(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Multiply, true)
     }
 
-    fn __rmul__(&self, other: &Bound<'_, PyAny>) -> Result<Self> {
+    fn __rmul__(&self, other: Operand) -> Result<Self> {
         self.with(other, PairOperation::Multiply, false)
     }
 
+    /// This field times `1 / divisor`, rounded to float32.
+    fn __truediv__(&self, divisor: f64) -> Result<Self> {
+        if divisor == 0.0 || !divisor.is_finite() {
+            let message =
+                format!("a field is divided by {divisor}, but it must be finite and not 0");
+            return Err(Error::new("range", message));
+        }
+        self.times((1.0 / divisor) as f32)
+    }
+
     fn __neg__(&self) -> Result<Self> {
-        let (first, second) = (self.boxed(), Box::new(Made::Constant(-1.0)));
-        Self::new(Made::Pair {
-            first,
-            second,
-            operation: PairOperation::Multiply,
-        })
+        self.times(-1.0)
+    }
+
+    fn __pos__(field: Py<Self>) -> Py<Self> {
+        field
+    }
+
+    /// NumPy leaves `array + field` to the field, which refuses it.
+    #[classattr]
+    fn __array_ufunc__() -> Option<()> {
+        None
     }
 
     fn __abs__(&self) -> Result<Self> {
-        Self::new(Made::Absolute(self.boxed()))
+        Self::new(Made::Absolute(self.made.clone()))
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
@@ -375,10 +399,10 @@ impl Field {
 
     /// The name by which Dask knows what is computed from the field: the same in all processes.
     fn __dask_tokenize__(&self) -> Result<String> {
-        self.made.token()
+        self.made.made().token()
     }
 
     fn __repr__(&self) -> Result<String> {
-        Ok(format!("Field({})", self.made.summary()?))
+        Ok(format!("Field({})", self.made.made().summary()?))
     }
 }

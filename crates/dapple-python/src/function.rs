@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::generators::{CellsMade, GradientMade, WaveletMade};
 use crate::pups::{PupsMade, TextureMade};
 use crate::recipe::NodeMade;
-use crate::shared::Shared;
+use crate::shared::{Build, Shared};
 use dapple::raster::glam::DVec2;
 use dapple::raster::{
     Field, FieldExt, Fractal, FractalShape, PairOperation, RasterError, RasterViewMut, Window,
@@ -69,48 +69,54 @@ pub(crate) enum Made {
     /// A node of a recipe.
     Node(Shared<NodeMade>),
     /// A plane through a function of more axes.
-    Slice { field: Box<Made>, rest: Vec<f64> },
+    Slice { field: Shared<Made>, rest: Vec<f64> },
     /// At positions times a frequency.
     Frequency {
-        field: Box<Made>,
+        field: Shared<Made>,
         frequency: [f64; 2],
     },
     /// At positions plus an offset.
-    Offset { field: Box<Made>, offset: [f64; 2] },
+    Offset {
+        field: Shared<Made>,
+        offset: [f64; 2],
+    },
     /// At positions turned by an angle.
-    Rotate { field: Box<Made>, angle: f64 },
+    Rotate { field: Shared<Made>, angle: f64 },
     /// At positions that two fields move.
     Warp {
-        field: Box<Made>,
-        x: Box<Made>,
-        y: Box<Made>,
+        field: Shared<Made>,
+        x: Shared<Made>,
+        y: Shared<Made>,
         amount: f64,
     },
     /// With one range of values mapped to another.
     Remap {
-        field: Box<Made>,
+        field: Shared<Made>,
         from: [f32; 2],
         to: [f32; 2],
     },
     /// With two bounds.
-    Clamp { field: Box<Made>, bounds: [f32; 2] },
+    Clamp {
+        field: Shared<Made>,
+        bounds: [f32; 2],
+    },
     /// The absolute values.
-    Absolute(Box<Made>),
+    Absolute(Shared<Made>),
     /// Two fields, value by value.
     Pair {
-        first: Box<Made>,
-        second: Box<Made>,
+        first: Shared<Made>,
+        second: Shared<Made>,
         operation: PairOperation,
     },
     /// Between two fields, by a third.
     Mix {
-        from: Box<Made>,
-        to: Box<Made>,
-        by: Box<Made>,
+        from: Shared<Made>,
+        to: Shared<Made>,
+        by: Shared<Made>,
     },
     /// Sums at several scales.
     Fractal {
-        field: Box<Made>,
+        field: Shared<Made>,
         octaves: u32,
         gain: f64,
         lacunarity: f64,
@@ -118,9 +124,120 @@ pub(crate) enum Made {
     },
 }
 
+/// A function, and how much it is composed of.
+#[derive(Clone)]
+pub(crate) struct Built {
+    pub(crate) function: Function,
+    /// The longest chain of operations in it.
+    depth: usize,
+    /// The number of operations and of fields without any, as often as they are evaluated.
+    n_parts: usize,
+}
+
+/// The deepest composition: its description nests two times for each operation, and readers of JSON end at 127.
+const DEEPEST: usize = 60;
+
+/// The most parts of a composition.
+const MOST_PARTS: usize = 1 << 16;
+
+impl Build for Made {
+    type Built = Built;
+
+    fn build(&self) -> Result<Built> {
+        self.check_numbers()?;
+        let (mut depth, mut n_parts) = (0, 1_usize);
+        for part in self.parts() {
+            let part = part.get()?;
+            depth = depth.max(part.depth + 1);
+            n_parts = n_parts.saturating_add(part.n_parts);
+        }
+        if depth > DEEPEST {
+            let message = format!(
+                "the field is composed of operations on operations more than {DEEPEST} times: add many fields in pairs, \
+                 (a + b) + (c + d), or take `fbm`"
+            );
+            return Err(Error::new("depth", message));
+        }
+        if n_parts > MOST_PARTS {
+            let message = format!("the field is composed of more than {MOST_PARTS} parts");
+            return Err(Error::new("too_large", message));
+        }
+        Ok(Built {
+            function: self.function()?,
+            depth,
+            n_parts,
+        })
+    }
+}
+
+impl Shared<Made> {
+    /// The function of the plane that this describes.
+    fn plane(&self) -> Result<Arc<dyn Field>> {
+        match self.get()?.function {
+            Function::Plane(field) => Ok(field),
+            Function::Space(_) => Err(Error::new(
+                "axes",
+                "fields of three and four axes are composed by their slices: take `slice(…)` first",
+            )),
+        }
+    }
+}
+
 impl Made {
+    /// The fields that it is composed of.
+    fn parts(&self) -> Vec<&Shared<Self>> {
+        match self {
+            Self::Constant(_)
+            | Self::Worley(_)
+            | Self::GradientNoise(_)
+            | Self::WaveletNoise(_)
+            | Self::Pups(_)
+            | Self::Texture(_)
+            | Self::Node(_) => Vec::new(),
+            Self::Slice { field, .. }
+            | Self::Frequency { field, .. }
+            | Self::Offset { field, .. }
+            | Self::Rotate { field, .. }
+            | Self::Remap { field, .. }
+            | Self::Clamp { field, .. }
+            | Self::Absolute(field)
+            | Self::Fractal { field, .. } => vec![field],
+            Self::Pair { first, second, .. } => vec![first, second],
+            Self::Warp { field, x, y, .. } => vec![field, x, y],
+            Self::Mix { from, to, by } => vec![from, to, by],
+        }
+    }
+
+    /// Refuses numbers that are not finite, which descriptions cannot hold.
+    fn check_numbers(&self) -> Result<()> {
+        let numbers = match self {
+            Self::Constant(number) => vec![f64::from(*number)],
+            Self::Slice { rest, .. } => rest.clone(),
+            Self::Frequency { frequency: at, .. } | Self::Offset { offset: at, .. } => at.to_vec(),
+            Self::Rotate { angle: number, .. } | Self::Warp { amount: number, .. } => vec![*number],
+            Self::Remap { from, to, .. } => {
+                [*from, *to].concat().into_iter().map(f64::from).collect()
+            }
+            Self::Clamp { bounds, .. } => bounds.iter().copied().map(f64::from).collect(),
+            Self::Fractal {
+                gain, lacunarity, ..
+            } => vec![*gain, *lacunarity],
+            _ => Vec::new(),
+        };
+        let Some(number) = numbers.iter().find(|number| !number.is_finite()) else {
+            return Ok(());
+        };
+        let message = match self {
+            Self::Clamp { .. } => format!(
+                "a bound is {number}, but it must be finite: `minimum` and `maximum` have one bound"
+            ),
+            _ => format!("the number {number} is not finite, as the numbers of fields must be"),
+        };
+        Err(Error::new("not_finite", message))
+    }
+
     /// The function that this describes.
-    pub(crate) fn build(&self) -> Result<Function> {
+    fn function(&self) -> Result<Function> {
         let field: Arc<dyn Field> = match self {
             Self::Constant(number) => Arc::new(*number),
             Self::Worley(made) => return made.build(),
@@ -129,7 +246,7 @@ impl Made {
             Self::Pups(made) => made.get()?.numbers()?,
             Self::Texture(made) => made.get()?.numbers()?,
             Self::Node(made) => return made.get(),
-            Self::Slice { field, rest } => match field.build()? {
+            Self::Slice { field, rest } => match field.get()?.function {
                 Function::Space(volume) if volume.period().len() == rest.len() + 2 => {
                     volume.slice(rest)
                 }
@@ -198,17 +315,6 @@ impl Made {
     pub(crate) fn token(&self) -> Result<String> {
         let hash = Sha256::digest(self.description()?);
         Ok(hash.iter().map(|byte| format!("{byte:02x}")).collect())
-    }
-
-    /// The function of the plane that this describes.
-    fn plane(&self) -> Result<Arc<dyn Field>> {
-        match self.build()? {
-            Function::Plane(field) => Ok(field),
-            Function::Space(_) => Err(Error::new(
-                "axes",
-                "fields of three and four axes are composed by their slices: take `slice(…)` first",
-            )),
-        }
     }
 }
 

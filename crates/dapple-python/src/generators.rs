@@ -9,6 +9,7 @@ pub(crate) use gradient::{GradientMade, gradient_noise};
 pub(crate) use wavelet::{WaveletMade, wavelet_noise};
 
 use crate::error::{Error, Result};
+use crate::grid::per_axis;
 use pyo3::prelude::*;
 
 /// Periods along axes in cells: one for all, or one for each, None where a field does not repeat.
@@ -16,18 +17,12 @@ fn periods(data: Option<&Bound<'_, PyAny>>, n_axes: usize) -> Result<Vec<Option<
     let Some(data) = data else {
         return Ok(vec![None; n_axes]);
     };
-    let periods = match data.extract::<u32>() {
-        Ok(cells) => vec![Some(cells); n_axes],
-        Err(_) => data.extract::<Vec<Option<u32>>>()?,
-    };
-    if periods.len() != n_axes {
+    per_axis(data, n_axes).ok_or_else(|| {
         let message = format!(
-            "the period has {} numbers, but {n_axes} are needed, x first",
-            periods.len()
+            "the period is {data:?}, but it must be a whole number of cells, or {n_axes} numbers or None, x first"
         );
-        return Err(Error::new("count", message));
-    }
-    Ok(periods)
+        Error::new("period", message)
+    })
 }
 
 /// Refuses a number of axes that there is no field of.

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use dapple::raster::{Window, glam::DVec2};
+use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
 use pyo3::types::{PySlice, PyTuple};
 
@@ -130,19 +131,28 @@ impl Axis {
     }
 }
 
+/// One value for all axes, or one for each; none of anything else.
+pub(crate) fn per_axis<'py, T>(data: &Bound<'py, PyAny>, n_axes: usize) -> Option<Vec<T>>
+where
+    T: Clone + FromPyObjectOwned<'py>,
+{
+    if let Ok(value) = data.extract() {
+        return Some(vec![value; n_axes]);
+    }
+    let values = data.try_iter().ok()?;
+    let values: Option<Vec<T>> = values.map(|value| value.ok()?.extract().ok()).collect();
+    values.filter(|values| values.len() == n_axes)
+}
+
 /// Numbers of pixels: one for all axes, or one for each.
 pub(crate) fn sizes(size: &Bound<'_, PyAny>, n_axes: usize) -> Result<Vec<u32>> {
-    let sizes = match size.extract::<u32>() {
-        Ok(side) => vec![side; n_axes],
-        Err(_) => size.extract::<Vec<u32>>()?,
-    };
-    if sizes.len() != n_axes || sizes.contains(&0) {
+    let sizes = per_axis(size, n_axes).filter(|sizes| !sizes.contains(&0));
+    sizes.ok_or_else(|| {
         let message = format!(
-            "the size is {sizes:?}, but it must be {n_axes} numbers of at least 1, rows before columns"
+            "the size is {size:?}, but it must be a whole number of at least 1, or {n_axes} numbers, rows before columns"
         );
-        return Err(Error::new("size", message));
-    }
-    Ok(sizes)
+        Error::new("size", message)
+    })
 }
 
 /// The columns and rows of an array of two axes.
@@ -153,18 +163,12 @@ pub(crate) fn size(size: &Bound<'_, PyAny>) -> Result<[u32; 2]> {
 
 /// Numbers along axes: one for all, or one for each.
 fn numbers(what: &str, data: &Bound<'_, PyAny>, n_axes: usize) -> Result<Vec<f64>> {
-    let numbers = match data.extract::<f64>() {
-        Ok(number) => vec![number; n_axes],
-        Err(_) => data.extract::<Vec<f64>>()?,
-    };
-    if numbers.len() != n_axes {
+    per_axis(data, n_axes).ok_or_else(|| {
         let message = format!(
-            "the {what} has {} numbers, but {n_axes} are needed, x first",
-            numbers.len()
+            "the {what} is {data:?}, but it must be a number, or {n_axes} numbers, x first"
         );
-        return Err(Error::new("count", message));
-    }
-    Ok(numbers)
+        Error::new("count", message)
+    })
 }
 
 /// A number along both axes of the plane: one for both, or one for each.
@@ -174,19 +178,17 @@ pub(crate) fn pair(what: &str, data: &Bound<'_, PyAny>) -> Result<DVec2> {
 
 /// The slices of a window, the first axis of the array first.
 fn slices<'py>(window: &Bound<'py, PyAny>, n_axes: usize) -> Result<Vec<Bound<'py, PySlice>>> {
-    let parts = window.cast::<PyTuple>().map_err(PyErr::from)?;
-    let parts: Vec<_> = parts
-        .iter()
-        .map(|part| part.cast_into::<PySlice>().map_err(PyErr::from))
-        .collect::<PyResult<_>>()?;
-    if parts.len() != n_axes {
+    let parts = window.cast::<PyTuple>().ok().and_then(|parts| {
+        let parts = parts.iter().map(|part| part.cast_into::<PySlice>());
+        parts.collect::<core::result::Result<Vec<_>, _>>().ok()
+    });
+    let parts = parts.filter(|parts| parts.len() == n_axes);
+    parts.ok_or_else(|| {
         let message = format!(
-            "the window has {} slices, but {n_axes} are needed, as in `np.s_[100:150, 33:94]`",
-            parts.len()
+            "the window is {window:?}, but it must be {n_axes} slices, as in `np.s_[100:150, 33:94]`"
         );
-        return Err(Error::new("count", message));
-    }
-    Ok(parts)
+        Error::new("window", message)
+    })
 }
 
 /// The first pixel and the number of pixels of a slice, which may begin before the array and end after it.

@@ -3,6 +3,7 @@
 use crate::data;
 use crate::error::{Error, Result};
 use crate::pictures::{Content, Kind, Pixels};
+use crate::recipe::content_of;
 use crate::threads;
 use dapple::color::{Code, LinearRgb, LinearRgba, Normal};
 use dapple::image::{self, Depth, Encoding, Image, Limits, PngPixels, RowWriter};
@@ -10,7 +11,7 @@ use dapple::raster::{Raster, RasterView};
 use dapple::recipe::ImageAlpha;
 use dapple::tile::Map;
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyMapping};
 use std::fs::{self, File};
 use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
@@ -258,10 +259,69 @@ pub(crate) fn write_image(
 ) -> Result<()> {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     let bytes = encoded(py, image, &ending.to_lowercase(), content, depth)?;
-    py.detach(|| replace(&path, &bytes)).map_err(|error| {
-        let message = format!("{} cannot be written: {error}", path.display());
-        Error::new("io", message)
-    })
+    py.detach(|| replace(&path, &bytes))
+        .map_err(|error| unwritten(&path, &error))
+}
+
+fn unwritten(path: &Path, error: &io::Error) -> Error {
+    let message = format!("{} cannot be written: {error}", path.display());
+    Error::new("io", message)
+}
+
+/// Writes the maps of a material as image files into a folder, which is made where there is none, and gives their paths.
+///
+/// Each map is written as what its name says: `normal` as unit vectors, `orm` as data, `albedo` as a color, everything else by its
+/// channels, as `write_image` does.
+///
+/// Parameters
+/// ----------
+/// folder : where the files go.
+/// maps : a dictionary of maps, as `Plan.bake` gives it.
+/// name : what the names of the files begin with: `rock` for `rock_normal.png`; the names of the maps alone by default.
+/// format : `"png"`, `"exr"` or `"npy"`.
+/// depth : 8 or 16 bits of PNG; 8 by default for color, 16 for everything else.
+///
+/// Examples
+/// --------
+/// >>> import tempfile, dapple_textures as dp
+/// >>> maps = dp.Recipe.builtin("rock").plan().bake(64, ["normal", "orm", "albedo"])
+/// >>> paths = dp.write_maps(tempfile.mkdtemp(), maps, name="rock")
+/// >>> [path.name for path in paths]
+/// ['rock_normal.png', 'rock_orm.png', 'rock_albedo.png']
+#[pyfunction]
+#[pyo3(signature = (folder, maps, *, name = None, format = "png", depth = None))]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the library writes files, but makes no folders"
+)]
+pub(crate) fn write_maps(
+    py: Python<'_>,
+    folder: PathBuf,
+    maps: &Bound<'_, PyMapping>,
+    name: Option<&str>,
+    format: &str,
+    depth: Option<u32>,
+) -> Result<Vec<PathBuf>> {
+    let maps: Vec<(String, Bound<'_, PyAny>)> = maps.items()?.extract()?;
+    let begin = name.map(|name| format!("{name}_")).unwrap_or_default();
+    let files = maps.iter().map(|(map, _)| {
+        let file = format!("{begin}{map}.{format}");
+        if Path::new(&file)
+            .file_name()
+            .is_some_and(|name| name == &*file)
+        {
+            return Ok(folder.join(file));
+        }
+        let message = format!("`{file}` is no name of a file");
+        Err(Error::new("name", message))
+    });
+    let files = files.collect::<Result<Vec<_>>>()?;
+    fs::create_dir_all(&folder).map_err(|error| unwritten(&folder, &error))?;
+    for (file, (map, image)) in files.iter().zip(&maps) {
+        let content = content_of(map).map(|content| content.to_string());
+        write_image(py, file.clone(), image, content.as_deref(), depth)?;
+    }
+    Ok(files)
 }
 
 /// The bytes of an array as an image file; see `write_image`.

@@ -48,7 +48,7 @@ mod _native {
     #[pymodule_export]
     use crate::generators::{Worley, gradient_noise, wavelet_noise, worley};
     #[pymodule_export]
-    use crate::images::{decode_image, encode_image, read_image, write_image};
+    use crate::images::{decode_image, encode_image, read_image, write_image, write_maps};
     #[pymodule_export]
     use crate::maps::{
         ambient_occlusion, curvature, linear_from_srgb, normal_map, palettes, ramp,

@@ -69,7 +69,20 @@ pub(crate) fn mesh(data: &Bound<'_, PyAny>) -> Result<Mesh> {
         let numbers: Vec<i64> = array.iter().copied().collect();
         numbers.as_chunks().0.to_vec()
     };
-    // What is below 0 or too large is no vertex; the largest number never is.
+    let wrong = |at: i64| !(0..vertices.len() as i64).contains(&at);
+    for (face, vertex) in (0..)
+        .zip(&faces)
+        .flat_map(|(face, all): (usize, _)| all.map(|at| (face, at)))
+    {
+        if wrong(vertex) {
+            let message = format!(
+                "face {face} names vertex {vertex}, but there are only {}, from 0",
+                vertices.len()
+            );
+            return Err(Error::new("corner", message));
+        }
+    }
+    // All of them are vertices, of which there are fewer than 2^32.
     let faces = faces
         .iter()
         .map(|face| face.map(|at| u32::try_from(at).unwrap_or(u32::MAX)));

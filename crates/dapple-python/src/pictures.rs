@@ -5,6 +5,7 @@
 
 use crate::arrays;
 use crate::error::{Error, Result};
+use crate::recipe::content_of;
 use dapple::color::{LinearRgb, Normal};
 use dapple::raster::Raster;
 use dapple::tile::Map;
@@ -259,12 +260,7 @@ pub(crate) fn read(what: &str, data: &Bound<'_, PyAny>) -> Result<(Layout, Vec<M
         Ok(pictures) => {
             let pictures: Vec<(String, Bound<'_, PyAny>)> = pictures.items()?.extract()?;
             for (name, picture) in &pictures {
-                let content = match name.as_str() {
-                    "normal" => Some(Content::Normal),
-                    "orm" => Some(Content::Data),
-                    _ => None,
-                };
-                add(name, picture, content)?;
+                add(name, picture, content_of(name))?;
             }
             Some(pictures.into_iter().map(|(name, _)| name).collect())
         }

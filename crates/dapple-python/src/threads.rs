@@ -79,11 +79,14 @@ pub(crate) fn threads(py: Python<'_>) -> Result<usize> {
 /// By default it is the number in the environment variable `DAPPLE_THREADS`, or one for each core. Workers of a cluster
 /// that run one task on each core set it to 1.
 #[pyfunction]
-pub(crate) fn set_threads(_py: Python<'_>, count: usize) -> Result<()> {
-    if count > MOST {
-        let message = format!("the number of threads is {count}, but it must be from 0 to {MOST}");
-        return Err(Error::new("threads", message));
-    }
+pub(crate) fn set_threads(count: &Bound<'_, PyAny>) -> Result<()> {
+    let number = count.extract().ok().filter(|&number| number <= MOST);
+    let count = number.ok_or_else(|| {
+        let message = format!(
+            "the number of threads is {count:?}, but it must be a whole number from 0 to {MOST}"
+        );
+        Error::new("threads", message)
+    })?;
     let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
     threads.wanted = Some(count);
     // A forked process leaves the pool of its parent alone.

@@ -134,8 +134,17 @@ def test_render_fills_memory_that_it_is_given():
     frozen.flags.writeable = False
     with pytest.raises((TypeError, ValueError)):
         field.render((32, 48), out=frozen)
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match="`out` is an array of float64, but"):
         field.render((32, 48), out=out.astype(np.float64))
+    with pytest.raises(TypeError, match="`out` is <class 'list'>, but"):
+        field.render((32, 48), out=[0.0])
+
+
+def test_sizes_and_periods_are_numbers_of_numpy_too():
+    field = dp.worley(period=np.array([4, 4]))
+    assert field == dp.worley(period=np.int64(4)) == dp.worley(period=(np.uint8(4), 4))
+    assert field.render(np.array([3, 5]), extent=np.array([1, 2])).shape == (3, 5)
+    assert field.render(np.int32(3), extent=np.float32(1)).shape == (3, 3)
 
 
 def test_positions_of_any_shape_type_and_stride():
@@ -231,7 +240,22 @@ def test_cell_points_are_found_as_features():
         (lambda: dp.worley(value="f9"), "options", "f2_minus_f1"),
         (lambda: dp.worley(metric="taxi"), "options", "manhattan"),
         (lambda: dp.worley(scatter={"poisson": {"density": 1e9}}), "range", "density"),
-        (lambda: dp.worley(period=[1, 2, 3]), "count", "3 numbers"),
+        (lambda: dp.worley(period=[1, 2, 3]), "period", "[1, 2, 3]"),
+        (lambda: dp.worley(period=-1), "period", "is -1"),
+        (lambda: dp.gradient_noise(period=1.5), "period", "is 1.5"),
+        (lambda: dp.gradient_noise(period="ab"), "period", "whole number"),
+        (lambda: dp.wavelet_noise(period=(8, None)), "period", "(8, None)"),
+        (lambda: dp.worley().render(-3), "size", "is -3"),
+        (lambda: dp.worley().render(16.0), "size", "is 16.0"),
+        (lambda: dp.worley().render("ab"), "size", "is 'ab'"),
+        (lambda: dp.worley().render(5, origin="a"), "count", "is 'a'"),
+        (lambda: dp.worley().render(5, window=np.s_[...]), "window", "is Ellipsis"),
+        (lambda: dp.worley().render(5, window=np.s_[3:5]), "window", "slice(3, 5, None)"),
+        (lambda: dp.worley().render(5, window=np.s_[3:5, 3]), "window", "2 slices"),
+        (lambda: dp.set_threads(-1), "threads", "is -1"),
+        (lambda: dp.set_threads(1.5), "threads", "is 1.5"),
+        (lambda: dp.mesh_report(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, -1]])), "corner", "vertex -1"),
+        (lambda: dp.mesh_report(([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [0, 1, 2**40]])), "corner", "face 1"),
         (lambda: dp.worley(octaves={"cuont": 2}), "options", "cuont"),
         (lambda: dp.worley(octaves={"count": float("nan")}), "options", "finite"),
         (lambda: dp.worley(value="cell_value", octaves={}), "conflict", "cell_value"),
@@ -252,7 +276,7 @@ def test_cell_points_are_found_as_features():
         (lambda: dp.worley().render(5, extent=(1, 2, 3)), "count", "x first"),
         (lambda: dp.worley().render(5, window=np.s_[3:3, 0:2]), "window", "pixel"),
         (lambda: dp.worley().render(5, window=np.s_[0:4:2, 0:2]), "window", "steps of 2"),
-        (lambda: dp.worley().render(5, window=(slice(0, 1),)), "count", "slices"),
+        (lambda: dp.worley().render(5, window=(slice(0, 1),)), "window", "slices"),
         (lambda: dp.worley().render((2**31, 2**31)), "too_large", "values"),
         (lambda: dp.worley().render((2**20, 2**19)), "memory", "no memory"),
         (lambda: dp.Recipe.builtin("rock").plan().bake((2**20, 2**19)), "memory", "no memory"),
@@ -265,6 +289,67 @@ def test_what_is_refused_says_its_limit(make, kind, words):
     assert caught.value.kind == kind
     assert words in str(caught.value)
     assert isinstance(caught.value, ValueError)
+
+
+@pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf, 1e39])
+def test_numbers_of_fields_are_finite(number):
+    field, one = dp.worley(), dp.constant(1.0)
+    for make in [
+        lambda: dp.constant(number),
+        lambda: field + number,
+        lambda: number * field,
+        lambda: field.maximum(number),
+        lambda: field.mix(number, 0.5),
+        lambda: field.remap((0, number)),
+        lambda: field.remap((0, 1), (number, 1)),
+        lambda: field.clamp(-number, number),
+        lambda: dp.worley(range=(0, number)),
+        lambda: dp.wavelet_noise(period=8, weights=[number]),
+    ]:
+        with pytest.raises(dp.DappleError):
+            make()
+    if number == 1e39:
+        return
+    for make in [
+        lambda: field / number,
+        lambda: field.frequency(number),
+        lambda: field.offset((0, number)),
+        lambda: field.rotate(number),
+        lambda: field.warp(one, one, number),
+        lambda: field.fbm(2, gain=number),
+        lambda: field.fbm(2, lacunarity=number),
+        lambda: dp.worley(dims=3).slice(number),
+        lambda: dp.worley(octaves={"gain": number}),
+        lambda: dp.gradient_noise(octaves=2, gain=number),
+        lambda: dp.gradient_noise(octaves=2, lacunarity=number),
+        lambda: dp.pups([[0.5, 0.5], [0.2, 0.1], [0.7, 0.3]], [0.0, number, 1.0], domain=dp.Domain(1)),
+    ]:
+        with pytest.raises(dp.DappleError):
+            make()
+
+
+def test_arithmetic_with_numbers():
+    field = FIELDS["gradient"]
+    pixels = field.render(16, extent=4)
+    assert np.array_equal((field / 4).render(16, extent=4), pixels / 4)
+    assert np.array_equal((np.float64(2.0) * field - np.int64(1)).render(16, extent=4), 2 * pixels - 1)
+    assert +field == field and type(+dp.worley()) is dp.Worley
+    assert sum([field, field], start=dp.constant(0.0)).render(16, extent=4).any()
+    with pytest.raises(dp.DappleError, match="divided by 0"):
+        field / 0
+    for wrong in (None, "1", [1.0], np.array([1.0, 2.0]), object()):
+        for act in [
+            lambda: field + wrong, lambda: wrong + field, lambda: field - wrong, lambda: wrong - field,
+            lambda: field * wrong, lambda: field / wrong, lambda: wrong / field,
+        ]:
+            with pytest.raises(TypeError, match="support|can't multiply|concatenate"):
+                act()
+        with pytest.raises(TypeError, match="a field or a number is needed"):
+            field.maximum(wrong)
+    with pytest.raises(TypeError, match="unsupported"):
+        1 / field
+    with pytest.raises(TypeError, match="unsupported"):
+        field / field
 
 
 def test_seeds_are_whole_numbers_of_64_bits():

@@ -29,6 +29,48 @@ def test_fields_are_pickled_as_their_description(name):
     assert field != FIELDS["number"] + 1
 
 
+def test_deep_fields_are_pickled_or_refused():
+    """What is made can be sent; what is too deep is refused where it is made, without a crash."""
+    chains = [
+        lambda field: field + 1,
+        lambda field: 1 - field,
+        abs,
+        lambda field: field.rotate(0.1),
+        lambda field: dp.worley().warp(dp.constant(0.0), field, 0.1),
+        lambda field: dp.worley().mix(0.5, field),
+        lambda field: field.fbm(1),
+    ]
+    points = dp.poisson_disk(dp.Domain(1), distance=0.2)
+    leaves = [
+        dp.worley(scatter={"poisson": {"density": 3}}, octaves={"count": 2}),
+        dp.noise(dp.Domain(1), spacing=0.3, seed=1),
+        dp.pups(points, np.ones(len(points)), orientations="random"),
+        dp.Recipe.builtin("flagstone").plan().field(),
+    ]
+    for chain in chains:
+        for field in leaves:
+            with pytest.raises(dp.DappleError) as caught:
+                for _ in range(4000):
+                    last, field = field, chain(field)
+            assert caught.value.kind == "depth" and "60 times" in str(caught.value)
+            copy = pickle.loads(pickle.dumps(last))
+            assert copy == last and copy.__dask_tokenize__() == last.__dask_tokenize__()
+    field = dp.worley()
+    with pytest.raises(dp.DappleError) as caught:
+        for _ in range(50):
+            field = field + field
+    assert caught.value.kind == "too_large"
+
+
+def test_a_description_that_is_too_deep_is_refused():
+    from dapple_textures._native import _field_from_description
+
+    for depth, kind in [(61, "depth"), (120, "depth"), (4000, "description")]:
+        with pytest.raises(dp.DappleError) as caught:
+            _field_from_description('{"absolute":' * depth + '{"constant":1.0}' + "}" * depth)
+        assert caught.value.kind == kind
+
+
 def test_recipes_and_plans_are_pickled():
     recipe = dp.Recipe.builtin("rock")
     assert pickle.loads(pickle.dumps(recipe)) == recipe

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -84,6 +86,26 @@ def test_images_are_arrays():
         dp.Recipe(data).plan(images={"photo.png": colors}).field("photo")
 
 
+def test_images_are_no_codes_and_are_named_by_the_recipe():
+    nodes = {"photo": {"image": {"file": "photo.png"}}}
+    recipe = dp.Recipe(changed(nodes=nodes, material={"albedo": "photo"}))
+    colors = np.full((4, 4, 3), 0.25, np.float32)
+    for dtype in (np.uint8, np.uint16, np.int64, np.complex64):
+        with pytest.raises(dp.DappleError, match="`photo.png` is an array of") as caught:
+            recipe.plan(images={"photo.png": colors.astype(dtype)})
+        assert caught.value.kind == "type"
+    assert recipe.plan(images={"photo.png": colors.tolist()}) == recipe.plan(images={"photo.png": colors})
+    for axes in [(4,), (4, 4, 2), (4, 4, 4), (4, 4, 3, 1)]:
+        with pytest.raises(dp.DappleError, match="`photo.png` has"):
+            recipe.plan(images={"photo.png": np.zeros(axes)})
+    with pytest.raises(dp.DappleError, match="did you mean `photo.png`") as caught:
+        recipe.plan(images={"photo.png": colors, "foto.png": colors})
+    assert (caught.value.kind, caught.value.hint) == ("unknown_image", "photo.png")
+    with pytest.raises(dp.DappleError, match="no images") as caught:
+        dp.Recipe(DATA).plan(images={"photo.png": colors})
+    assert caught.value.hint is None
+
+
 def test_time_goes_round():
     nodes = {"a": {"worley": {"motion": {"cells": 2}}}}
     recipe = dp.Recipe(changed(nodes=nodes, material={"height": "a"}))
@@ -156,6 +178,43 @@ def test_a_bake_is_refused_before_it_begins():
     assert caught.value.kind == "global" and "image" in caught.value.hint
 
 
+def test_maps_are_a_word_or_several_once():
+    plan = dp.Recipe(DATA).plan()
+    assert list(plan.bake(16)) == list(plan.bake(16, "height")) == ["height"]
+    assert list(plan.bake(16, (name for name in ["orm", "ao"]))) == ["orm", "ao"]
+    for maps, words in [([], "at least one"), (["ao", "height", "ao"], "`ao` is asked for twice")]:
+        for as_xarray in (False, True):
+            with pytest.raises(dp.DappleError, match=words) as caught:
+                plan.bake(16, maps, as_xarray=as_xarray)
+            assert caught.value.kind == "maps"
+    for maps in (7, [7]):
+        with pytest.raises(TypeError):
+            plan.bake(16, maps)
+
+
+def test_maps_are_written_as_what_they_are(tmp_path):
+    plan = dp.Recipe(DATA).plan()
+    maps = plan.bake(32, dp.map_names())
+    paths = dp.write_maps(tmp_path / "a" / "b", maps, name="stones", depth=16)
+    assert [path.name for path in paths] == [f"stones_{name}.png" for name in maps]
+    assert [path.name for path in dp.write_maps(tmp_path, maps, format="npy")] == [f"{name}.npy" for name in maps]
+    for path, (name, values) in zip(paths, maps.items(), strict=True):
+        content = plan.map_info[name].content
+        read = dp.read_image(path, content=content)
+        assert read.shape == values.shape
+        # Codes of 16 bits; colors are sRGB, whose steps are at most 2.3 times as long in linear light.
+        assert np.abs(read - np.clip(values, -1 if name == "normal" else 0, 1)).max() < 4e-5
+        again = dp.encode_image(values, content=content, depth=16)
+        assert path.read_bytes() == again
+    assert (maps["normal"][..., :2] < 0).any()
+    for name in ("../stones", "a/b"):
+        with pytest.raises(dp.DappleError, match="no name of a file"):
+            dp.write_maps(tmp_path / "c", maps, name=name)
+    assert not (tmp_path / "c").exists()
+    with pytest.raises(dp.DappleError, match="gif"):
+        dp.write_maps(tmp_path, maps, format="gif")
+
+
 def test_shards_cover_every_pixel_once():
     shards = dp.shards((100, 70), (32, 64))
     assert shards.grid == (4, 2) and len(shards) == 8
@@ -163,6 +222,9 @@ def test_shards_cover_every_pixel_once():
     for (row, column), (rows, columns) in shards:
         covered[row : row + rows, column : column + columns] += 1
     assert (covered == 1).all()
+    copy = pickle.loads(pickle.dumps(shards))
+    assert copy == shards and hash(copy) == hash(shards) and list(copy) == list(shards)
+    assert shards != dp.shards((100, 70), (32, 32))
     assert shards[-1] == shards[7] == ((96, 64), (4, 6))
     for index in (8, -9):
         with pytest.raises(IndexError):

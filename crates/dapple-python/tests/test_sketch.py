@@ -65,10 +65,10 @@ def test_the_whole_package(tmp_path):
         },
         "material": {"height": "stones", "relief": 0.3},
     })
-    plan = recipe.plan(images={"photo.png": photo}, time=0.0)
+    plan = recipe.plan(time=0.0)
     maps = plan.bake(128, ["height", "normal", "orm"])
     assert [values.shape for values in maps.values()] == [(128, 128), (128, 128, 3), (128, 128, 3)]
-    assert plan.is_local and plan.map_info["normal"] == (3, "non-color")
+    assert plan.is_local and plan.map_info["normal"] == (3, "non-color", "normal")
 
 
 def test_larger_than_a_machine(tmp_path):

@@ -77,6 +77,7 @@ from ._native import (
     white_noise,
     worley,
     write_image,
+    write_maps,
     yao,
 )
 from ._meshes import MeshFile
@@ -192,5 +193,6 @@ __all__ = [
     "white_noise",
     "worley",
     "write_image",
+    "write_maps",
     "yao",
 ]

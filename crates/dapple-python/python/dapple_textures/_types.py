@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,7 @@ from ._native import DappleError
 class Features(NamedTuple):
     """The nearest feature points of positions or of pixels; what was not asked for is None."""
 
-    #: Distances, in cells.
+    #: Distances, in cells as the metric measures them: those of "manhattan" are sums along the axes.
     distance: npt.NDArray[np.float32] | None
     #: The ways from the feature points to the positions, in cells.
     vector: npt.NDArray[np.float64 | np.float32] | None
@@ -72,6 +72,8 @@ class MapInfo(NamedTuple):
     channels: int
     #: "linear", for colors with the primaries of sRGB, or "non-color".
     color_space: str
+    #: With which `content` `write_image` writes it.
+    content: Literal["gray", "color", "normal", "data"]
 
 
 def refusal(kind: str, message: str, hint: str | None = None) -> DappleError:

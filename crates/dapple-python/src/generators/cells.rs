@@ -1,26 +1,26 @@
 //! Worley's cells, in two to four dimensions.
 
+mod features;
+mod texture;
+
 use super::{array, periods, unknown_axes};
 use crate::arrays::{self, Positions};
 use crate::data;
 use crate::error::{Error, Result};
 use crate::field::Field;
-use crate::function::{Function, Made, Volume};
+use crate::function::{Function, Made};
 use crate::grid::{Grid, GridArguments};
 use crate::seed::SeedArgument;
 use crate::threads;
 use dapple::hash::Seed;
-use dapple::raster::glam::DVec2;
-use dapple::raster::{Field as _, Raster, RasterError, RasterViewMut, Window};
 use dapple::recipe::WorleyValue;
-use dapple::worley::{
-    Axes, Cellular, EdgeDistances, Feature, FeatureView, Fractal, LIMIT, Metric, Octaves, Plane,
-    Scatter, Space, Vector, Worley as Basis,
-};
+use dapple::worley::{Axes, Metric, Octaves, Scatter, Space, Worley as Basis};
+use features::{cell_points, check_count, draw, find, gradients};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use texture::{Cells, Texture};
 
 /// How a field of cells was made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,26 +45,6 @@ enum CellsRange {
     Normalized,
     /// This one.
     Given([f32; 2]),
-}
-
-/// What is drawn of cells.
-enum Texture<const N: usize>
-where
-    Axes: Space<N>,
-{
-    Cellular(Cellular<N>),
-    Fractal(Fractal<N>),
-    Edges(EdgeDistances<N>),
-    CellValues(Basis<N>),
-}
-
-/// A texture of more axes at a plane.
-struct Section<const N: usize>
-where
-    Axes: Space<N>,
-{
-    texture: Arc<Texture<N>>,
-    plane: Plane<N>,
 }
 
 impl CellsMade {
@@ -157,138 +137,6 @@ impl CellsMade {
     }
 }
 
-impl<const N: usize> Texture<N>
-where
-    Axes: Space<N>,
-{
-    fn value(&self, position: Vector<N>) -> f32 {
-        match self {
-            Self::Cellular(cellular) => cellular.value(position),
-            Self::Fractal(fractal) => fractal.value(position),
-            Self::Edges(edges) => edges.value(position),
-            Self::CellValues(basis) => {
-                let [nearest] = basis.sample(position);
-                if nearest.distance.is_nan() {
-                    f32::NAN
-                } else {
-                    nearest.cell_value()
-                }
-            }
-        }
-    }
-}
-
-/// A texture of three or four axes.
-struct Cells<const N: usize>
-where
-    Axes: Space<N>,
-{
-    texture: Arc<Texture<N>>,
-    period: Vec<Option<f64>>,
-}
-
-/// The plane along the first two axes at the further coordinates.
-fn plane<const N: usize>(rest: &[f64]) -> Plane<N>
-where
-    Axes: Space<N>,
-{
-    let mut origin = [0.0; N];
-    origin[2..].copy_from_slice(rest);
-    Plane::slice(origin.into())
-}
-
-impl<const N: usize> Volume for Cells<N>
-where
-    Axes: Space<N>,
-{
-    fn period(&self) -> Vec<Option<f64>> {
-        self.period.clone()
-    }
-
-    fn sample(&self, position: &[f64]) -> f32 {
-        let position: [f64; N] = core::array::from_fn(|axis| position[axis]);
-        self.texture.value(position.into())
-    }
-
-    fn slice(&self, rest: &[f64]) -> Arc<dyn dapple::raster::Field> {
-        Arc::new(Section {
-            texture: Arc::clone(&self.texture),
-            plane: plane::<N>(rest),
-        })
-    }
-
-    fn render(
-        &self,
-        window: &Window,
-        planes: &[Vec<f64>],
-        values: &mut [f32],
-    ) -> core::result::Result<(), RasterError> {
-        let views = values
-            .chunks_mut(window.n_pixels())
-            .map(|values| RasterViewMut::new(values, window.size[0] as usize, window.size));
-        let slices = planes
-            .iter()
-            .zip(views)
-            .map(|(rest, view)| Ok((plane::<N>(rest), view?)));
-        let slices: Vec<_> = slices.collect::<core::result::Result<_, RasterError>>()?;
-        match self.texture.as_ref() {
-            Texture::Cellular(cellular) => cellular.render_slices(window, slices),
-            Texture::Fractal(fractal) => fractal.render_slices(window, slices),
-            _ => {
-                for (plane, view) in slices {
-                    let section = Section {
-                        texture: Arc::clone(&self.texture),
-                        plane,
-                    };
-                    section.render(window, view)?;
-                }
-                Ok(())
-            }
-        }
-    }
-}
-
-impl<const N: usize> dapple::raster::Field for Section<N>
-where
-    Axes: Space<N>,
-{
-    fn sample(&self, position: DVec2) -> f32 {
-        self.texture.value(self.plane.position(position))
-    }
-
-    fn render(
-        &self,
-        window: &Window,
-        mut out: RasterViewMut<'_, f32>,
-    ) -> core::result::Result<(), RasterError> {
-        match self.texture.as_ref() {
-            Texture::Cellular(cellular) => cellular.render_plane(&self.plane, window, out),
-            Texture::Fractal(fractal) => fractal.render_plane(&self.plane, window, out),
-            Texture::Edges(edges) => edges.render_plane(&self.plane, window, out),
-            Texture::CellValues(basis) => {
-                window.check_size(out.size())?;
-                let mut ids = Raster::filled(window.size, 0_u64)?;
-                let nearest = FeatureView {
-                    id: Some(ids.view_mut()),
-                    ..FeatureView::default()
-                };
-                basis.render_features(&self.plane, window, [nearest])?;
-                for (row, values) in (0..).zip(out.rows_mut()) {
-                    for (value, &id) in values.iter_mut().zip(ids.row(row)) {
-                        *value = Feature {
-                            distance: 0.0,
-                            vector: (),
-                            id,
-                        }
-                        .cell_value();
-                    }
-                }
-                Ok(())
-            }
-        }
-    }
-}
-
 /// Worley's cells: a field whose value is made of the distances to the nearest of scattered feature points.
 ///
 /// It has all that a `Field` has, and the feature points themselves.
@@ -323,7 +171,7 @@ impl Worley {
 /// value : "f1" to "f4" (distance to the nearest, second, … feature point), a difference such as "f2_minus_f1",
 ///     "cell_value" (a random number from 0 to 1 for each cell), "edge_distance" (to the nearest border of a cell), or
 ///     the four coefficients of F1 to F4.
-/// metric : "euclidean", "squared", "manhattan", "chebyshev", or {"minkowski": 3}.
+/// metric : "euclidean", "manhattan", "chebyshev", or {"minkowski": 3}.
 /// scatter : {"poisson": {"density": 3}}, the paper's; {"unclamped": {"density": 3}}; {"jittered": {"jitter": 1}}, one
 ///     point in each cell.
 /// period : cells after which it repeats exactly: one number, or one for each axis, x first; None where it does not.
@@ -406,7 +254,7 @@ impl Worley {
     /// The nearest feature points of positions, nearest first.
     ///
     /// `positions` has the shape (…, dims), x first, in cells; `count` is from 1 to 4. The result has `distance` (…, count),
-    /// float32; `vector` (…, count, dims), float64, from the feature point to the position; `id` (…, count), uint64, what
+    /// float32, in cells as the metric measures them; `vector` (…, count, dims), float64, from the feature point to the position; `id` (…, count), uint64, what
     /// a point is known by.
     #[pyo3(signature = (positions, *, count = 1))]
     fn features<'py>(
@@ -550,126 +398,3 @@ impl Worley {
 
 /// The planes that `render_features` can make.
 const OUTPUTS: [&str; 3] = ["distance", "vector", "id"];
-
-fn check_count(count: usize) -> Result<()> {
-    if (1..=LIMIT).contains(&count) {
-        return Ok(());
-    }
-    Err(Error::new(
-        "count",
-        format!("the number of feature points is {count}, but it must be from 1 to {LIMIT}"),
-    ))
-}
-
-/// The nearest feature points of many positions.
-struct Found {
-    distance: Vec<f32>,
-    vector: Vec<f64>,
-    id: Vec<u64>,
-}
-
-fn find<const N: usize, const K: usize>(made: &CellsMade, positions: &[f64]) -> Result<Found>
-where
-    Axes: Space<N>,
-{
-    let basis = made.basis::<N>()?;
-    let features = dapple::raster::parallel::map_at_least(256, positions.len() / N, |index| {
-        let position: [f64; N] = core::array::from_fn(|axis| positions[index * N + axis]);
-        basis.sample::<K>(position)
-    });
-    let features = features.as_flattened();
-    Ok(Found {
-        distance: features.iter().map(|feature| feature.distance).collect(),
-        vector: features
-            .iter()
-            .flat_map(|feature| feature.vector.into())
-            .collect(),
-        id: features.iter().map(|feature| feature.id).collect(),
-    })
-}
-
-/// The planes of the nearest feature points, those of the nearest first.
-struct Drawn {
-    distance: Option<Vec<f32>>,
-    vector: Option<Vec<f32>>,
-    id: Option<Vec<u64>>,
-}
-
-fn draw<const N: usize, const K: usize>(
-    made: &CellsMade,
-    window: &Window,
-    rest: &[f64],
-    wanted: [bool; 3],
-    n_values: usize,
-) -> Result<Drawn>
-where
-    Axes: Space<N>,
-{
-    let basis = made.basis::<N>()?;
-    let mut distance = wanted[0].then(|| vec![0.0_f32; K * n_values]);
-    let mut vector = wanted[1].then(|| vec![[0.0_f32; N]; K * n_values]);
-    let mut id = wanted[2].then(|| vec![0_u64; K * n_values]);
-    let mut views: [FeatureView<'_, N>; K] = core::array::from_fn(|_| FeatureView::default());
-    let stride = window.size[0] as usize;
-    if let Some(values) = &mut distance {
-        for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
-            view.distance = Some(RasterViewMut::new(values, stride, window.size)?);
-        }
-    }
-    if let Some(values) = &mut vector {
-        for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
-            view.vector = Some(RasterViewMut::new(values, stride, window.size)?);
-        }
-    }
-    if let Some(values) = &mut id {
-        for (view, values) in views.iter_mut().zip(values.chunks_mut(n_values)) {
-            view.id = Some(RasterViewMut::new(values, stride, window.size)?);
-        }
-    }
-    basis.render_features(&plane::<N>(rest), window, views)?;
-    Ok(Drawn {
-        distance,
-        vector: vector.map(Vec::into_flattened),
-        id,
-    })
-}
-
-fn gradients<const N: usize>(made: &CellsMade, positions: &[f64]) -> Result<Vec<f64>>
-where
-    Axes: Space<N>,
-{
-    let texture = made.texture::<N>()?;
-    let gradient: &(dyn Fn(Vector<N>) -> Vector<N> + Sync) = match &texture {
-        Texture::Cellular(cellular) => &|position| cellular.gradient(position),
-        Texture::Fractal(fractal) => &|position| fractal.gradient(position),
-        Texture::Edges(_) | Texture::CellValues(_) => {
-            return Err(Error::new(
-                "conflict",
-                "`cell_value` and `edge_distance` have no gradient",
-            ));
-        }
-    };
-    let gradients = dapple::raster::parallel::map_at_least(256, positions.len() / N, |index| {
-        let position: [f64; N] = core::array::from_fn(|axis| positions[index * N + axis]);
-        let gradient: [f64; N] = gradient(position.into()).into();
-        gradient
-    });
-    Ok(gradients.into_flattened())
-}
-
-/// The positions and ids of the feature points of a cell.
-fn cell_points<const N: usize>(made: &CellsMade, cell: &[i64]) -> Result<(Vec<f64>, Vec<u64>)>
-where
-    Axes: Space<N>,
-{
-    let cell: [i64; N] = array(cell)?;
-    let points = made.basis::<N>()?.cell_points(cell);
-    let positions = points.iter().flat_map(|point| {
-        let offset: [f64; N] = point.offset.into();
-        core::array::from_fn::<f64, N, _>(|axis| cell[axis] as f64 + offset[axis])
-    });
-    Ok((
-        positions.collect(),
-        points.iter().map(|point| point.id).collect(),
-    ))
-}

@@ -4,6 +4,7 @@ use super::{array, unknown_axes};
 use crate::error::{Error, Result};
 use crate::field::Field;
 use crate::function::{Function, Made, Volume};
+use crate::grid::per_axis;
 use crate::seed::SeedArgument;
 use crate::shared::{Build, Shared};
 use dapple::hash::Seed;
@@ -121,20 +122,13 @@ pub(crate) fn wavelet_noise(
     }
     let period = match period {
         None => vec![64; dims],
-        Some(period) => period
-            .extract::<u32>()
-            .map(|cells| vec![cells; dims])
-            .or_else(|_| period.extract::<Vec<u32>>())?,
+        Some(period) => per_axis(period, dims).ok_or_else(|| {
+            let message = format!(
+                "the period is {period:?}, but it must be a whole number of cells, or {dims} numbers, x first"
+            );
+            Error::new("period", message)
+        })?,
     };
-    if period.len() != dims {
-        return Err(Error::new(
-            "count",
-            format!(
-                "the period has {} numbers, but {dims} are needed, x first",
-                period.len()
-            ),
-        ));
-    }
     Field::new(Made::WaveletNoise(Shared::new(WaveletMade {
         seed: seed.0,
         period,

@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Points in a domain, in an order that stays: an array of the shape (n, 2) that knows after which distances it repeats.
 ///
 /// NumPy takes it for its array, as in `np.asarray(points)` or `scipy.spatial.KDTree(points)`; `np.array(points)` is a copy
-/// that can be written.
+/// that can be written. Sets are equal where all of their points and domains are; like arrays they cannot be keys.
 ///
 /// Parameters
 /// ----------

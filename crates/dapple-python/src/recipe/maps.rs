@@ -1,0 +1,68 @@
+//! The maps of a material: their names, and what their numbers are.
+
+use crate::error::{Error, Result};
+use crate::pictures::{Content, Kind};
+use dapple::recipe::MapKind;
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+
+/// What the numbers of a map are, and how many a pixel has.
+pub(super) fn kind_of(map: MapKind) -> Kind {
+    let (content, n_channels) = match map {
+        MapKind::Albedo => (Content::Color, 3),
+        MapKind::Normal => (Content::Normal, 3),
+        MapKind::Orm => (Content::Data, 3),
+        _ => (Content::Gray, 1),
+    };
+    Kind {
+        content,
+        n_channels,
+    }
+}
+
+/// What the numbers of a picture of this name are, where its channels alone would make them colors.
+pub(crate) fn content_of(name: &str) -> Option<Content> {
+    let kind = kind_of(MapKind::from_name(name)?);
+    (kind.n_channels > 1 && kind.content != Content::Color).then_some(kind.content)
+}
+
+/// The maps that a name or several stand for, each of them once.
+pub(super) fn maps(names: &Bound<'_, PyAny>) -> Result<Vec<MapKind>> {
+    let names: Vec<String> = match names.cast::<PyString>() {
+        Ok(name) => vec![name.to_str()?.to_owned()],
+        Err(_) => names
+            .try_iter()?
+            .map(|name| name?.extract())
+            .collect::<PyResult<_>>()?,
+    };
+    let mut maps = Vec::new();
+    for name in &names {
+        let map = map(name)?;
+        if maps.contains(&map) {
+            let message = format!("the map `{name}` is asked for twice");
+            return Err(Error::new("maps", message));
+        }
+        maps.push(map);
+    }
+    if maps.is_empty() {
+        return Err(Error::new("maps", "at least one map is needed"));
+    }
+    Ok(maps)
+}
+
+/// The map of a name.
+fn map(name: &str) -> Result<MapKind> {
+    MapKind::from_name(name).ok_or_else(|| {
+        let names = MapKind::ALL.map(MapKind::name).join(", ");
+        Error::new(
+            "name",
+            format!("the map is `{name}`, but it must be one of {names}"),
+        )
+    })
+}
+
+/// The names of all maps of a material.
+#[pyfunction]
+pub(crate) fn map_names() -> Vec<&'static str> {
+    MapKind::ALL.map(MapKind::name).to_vec()
+}

@@ -1,0 +1,322 @@
+//! Recipes that are ready to be baked.
+
+use super::maps::{kind_of, maps};
+use super::{NodeMade, Recipe, sha256};
+use crate::arrays;
+use crate::error::{Error, Result};
+use crate::field::Field;
+use crate::function::Made;
+use crate::grid::{Grid, GridArguments, size as size_of};
+use crate::pictures::{Content, Kind};
+use crate::shared::Shared;
+use crate::threads;
+use dapple::color::{LinearRgb, Normal};
+use dapple::recipe::{
+    Bake, BakeMemory, BakeOptions, Images, MapKind, MapRows, Picture, Plan as RustPlan,
+    Recipe as RustRecipe, Region,
+};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// A recipe that is ready to be baked.
+#[pyclass(frozen, module = "dapple_textures")]
+pub(crate) struct Plan {
+    recipe: RustRecipe,
+    images: Images,
+    time: f64,
+    plan: RustPlan,
+}
+
+impl Plan {
+    pub(super) fn new(
+        py: Python<'_>,
+        recipe: RustRecipe,
+        images: Images,
+        time: f64,
+    ) -> Result<Self> {
+        let plan = threads::run(py, || RustPlan::new(&recipe, &images, time))??;
+        Ok(Self {
+            recipe,
+            images,
+            time,
+            plan,
+        })
+    }
+}
+
+/// The text of a recipe, its images, and the time.
+type PlanParts<'py> = (String, Bound<'py, PyDict>, f64);
+
+/// The numbers of a map, gathered band by band.
+struct Gathered {
+    map: MapKind,
+    values: Vec<f32>,
+}
+
+impl Gathered {
+    fn push(&mut self, rows: MapRows) {
+        let rows = match rows {
+            MapRows::Gray(raster) => raster.into_pixels(),
+            MapRows::Color(raster) => flat(raster.into_pixels(), LinearRgb::to_array),
+            MapRows::Normal(raster) => flat(raster.into_pixels(), Normal::to_array),
+            MapRows::Packed(raster) => raster.into_pixels().into_flattened(),
+        };
+        if self.values.capacity() == 0 {
+            self.values = rows;
+        } else {
+            self.values.extend_from_slice(&rows);
+        }
+    }
+}
+
+/// The most pixels that come in one band.
+const BAND_PIXELS: usize = 1 << 20;
+
+/// The numbers of pixels, in the memory of the pixels.
+fn flat<T>(pixels: Vec<T>, numbers: impl Fn(T) -> [f32; 3]) -> Vec<f32> {
+    pixels
+        .into_iter()
+        .map(numbers)
+        .collect::<Vec<_>>()
+        .into_flattened()
+}
+
+/// The numbers of all bands of maps, as a dictionary of arrays.
+fn gather<'py>(
+    py: Python<'py>,
+    mut bake: Bake<'_>,
+    maps: &[MapKind],
+) -> Result<Bound<'py, PyDict>> {
+    let [columns, rows] = bake.size().map(|side| side as usize);
+    let mut gathered = Vec::new();
+    for &map in maps {
+        let mut values = Vec::new();
+        // A map of a single band is taken as it is.
+        if columns * rows > BAND_PIXELS {
+            arrays::reserve(&mut values, columns * rows * kind_of(map).n_channels)?;
+        }
+        gathered.push(Gathered { map, values });
+    }
+    loop {
+        let is_more = threads::run(py, || {
+            let Some(band) = bake.next() else {
+                return Ok(false);
+            };
+            for (gathered, (map, rows)) in gathered.iter_mut().zip(band?.maps) {
+                debug_assert_eq!(
+                    gathered.map, map,
+                    "maps come in the order in which they were asked for"
+                );
+                gathered.push(rows);
+            }
+            Ok::<_, Error>(true)
+        })??;
+        if !is_more {
+            break;
+        }
+        py.check_signals()?;
+    }
+    let dictionary = PyDict::new(py);
+    for Gathered { map, values } in gathered {
+        let shape = [rows, columns, kind_of(map).n_channels];
+        let n_axes = if shape[2] > 1 { 3 } else { 2 };
+        dictionary.set_item(map.name(), arrays::array(py, values, &shape[..n_axes])?)?;
+    }
+    Ok(dictionary)
+}
+
+/// The columns and rows of a window of a picture, which must lie within it.
+fn region(size: &Bound<'_, PyAny>, window: &Bound<'_, PyAny>) -> Result<Region> {
+    let arguments = GridArguments {
+        size,
+        extent: None,
+        origin: None,
+        window: Some(window),
+    };
+    let window = Grid::new(&arguments, &[None, None])?.plane();
+    let inside = |first: i64| {
+        u32::try_from(first)
+            .map_err(|_| Error::new("window", "the window begins before the picture"))
+    };
+    Ok(Region {
+        first: [inside(window.first[0])?, inside(window.first[1])?],
+        size: window.size,
+    })
+}
+
+#[pymethods]
+impl Plan {
+    /// The maps of the material, each a float32 array: (rows, columns) for `height`, `ao`, `curvature`, `roughness` and
+    /// `metallic`, (rows, columns, 3) for `normal`, `albedo` (linear) and `orm`.
+    ///
+    /// Parameters
+    /// ----------
+    /// size : (rows, columns) of the whole tile, or a number for both. It may be far larger than memory.
+    /// maps : the name of a map, or the names of several, each once: see `map_names`.
+    /// window : the part to make, as `np.s_[100:150, 33:94]`: bit for bit the crop of the whole. It must lie inside.
+    /// as_xarray : gives an `xarray.Dataset` with coordinates in units of the plane instead of a dictionary.
+    #[pyo3(signature = (size, maps = None, *, window = None, as_xarray = false),
+        text_signature = "(self, size, maps='height', *, window=None, as_xarray=False)")]
+    fn bake<'py>(
+        &self,
+        py: Python<'py>,
+        size: &Bound<'py, PyAny>,
+        maps: Option<&Bound<'py, PyAny>>,
+        window: Option<&Bound<'py, PyAny>>,
+        as_xarray: bool,
+    ) -> Result<Bound<'py, PyAny>> {
+        let options = BakeOptions {
+            size: size_of(size)?,
+            region: window.map(|window| region(size, window)).transpose()?,
+            maps: maps.map_or(Ok(vec![MapKind::Height]), self::maps)?,
+            memory: BakeMemory::Whole,
+        };
+        let bake = threads::run(py, || Bake::new(&self.plan, &options))??;
+        let maps = gather(py, bake, &options.maps)?;
+        if !as_xarray {
+            return Ok(maps.into_any());
+        }
+        let first = options.region.map_or([0; 2], |region| region.first);
+        let [[width, height], [x, y]] = [options.size, first].map(|sides| sides.map(f64::from));
+        let extent = self.plan.extent();
+        let pixel = (extent.x / width, extent.y / height);
+        let dataset = py.import("dapple_textures._xarray")?.getattr("dataset")?;
+        Ok(dataset.call1((maps, pixel, (x, y)))?)
+    }
+
+    /// The recipe that it was made from.
+    #[getter]
+    fn recipe(&self) -> Recipe {
+        Recipe {
+            recipe: self.recipe.clone(),
+        }
+    }
+
+    /// The part of a loop that has passed.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Whether every map can be made in parts: no node sees the whole tile.
+    #[getter]
+    fn is_local(&self) -> bool {
+        self.plan.check_local().is_ok()
+    }
+
+    /// Refuses a plan with a node that sees the whole tile.
+    fn check_local(&self) -> Result<()> {
+        Ok(self.plan.check_local()?)
+    }
+
+    /// The maps by their names: how many channels they have, whether they are colors ("linear") or data ("non-color"), and
+    /// the `content` with which `write_image` writes them.
+    #[getter]
+    fn map_info<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>> {
+        let info = py.import("dapple_textures._types")?.getattr("MapInfo")?;
+        let all = PyDict::new(py);
+        for map in MapKind::ALL {
+            let Kind {
+                content,
+                n_channels,
+            } = kind_of(map);
+            let space = match content {
+                Content::Color => "linear",
+                _ => "non-color",
+            };
+            all.set_item(
+                map.name(),
+                info.call1((n_channels, space, content.to_string()))?,
+            )?;
+        }
+        Ok(all)
+    }
+
+    /// The numbers of a node as a field, by its name: those of the height of the material by default.
+    #[pyo3(signature = (node = None))]
+    fn field(&self, node: Option<String>) -> Result<Field> {
+        if !self.images.is_empty() {
+            return Err(Error::new(
+                "conflict",
+                "fields are made again from their description, which holds no images: bake the maps of this plan instead",
+            ));
+        }
+        Field::new(Made::Node(Shared::new(NodeMade {
+            recipe: self.recipe.to_json()?,
+            node,
+            time: self.time,
+        })))
+    }
+
+    /// The SHA-256 of all that the plan is made of, its images too: the same on every machine.
+    #[getter]
+    fn hash(&self) -> Result<String> {
+        let text = self.recipe.to_json()?;
+        let mut parts = vec![text.into_bytes(), self.time.to_le_bytes().to_vec()];
+        for (name, picture) in &self.images {
+            let (size, values): (_, Vec<f32>) = match picture {
+                Picture::Numbers(raster) => (raster.size(), raster.pixels().to_vec()),
+                Picture::Colors(raster) => (
+                    raster.size(),
+                    flat(raster.pixels().to_vec(), LinearRgb::to_array),
+                ),
+            };
+            parts.push(name.clone().into_bytes());
+            parts.push(size.iter().flat_map(|side| side.to_le_bytes()).collect());
+            parts.push(
+                values
+                    .iter()
+                    .flat_map(|value| value.to_le_bytes())
+                    .collect(),
+            );
+        }
+        Ok(sha256(&parts.iter().map(Vec::as_slice).collect::<Vec<_>>()))
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> Result<bool> {
+        match other.cast::<Self>() {
+            Ok(other) => Ok(other.get().hash()? == self.hash()?),
+            Err(_) => Ok(false),
+        }
+    }
+
+    fn __hash__(&self) -> Result<u64> {
+        Ok(u64::from_str_radix(&self.hash()?[..16], 16).unwrap_or(0))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> Result<(Py<PyAny>, PlanParts<'py>)> {
+        let images = PyDict::new(py);
+        for (name, picture) in &self.images {
+            let array = match picture {
+                Picture::Numbers(raster) => arrays::numbers(py, raster.as_ref().clone()),
+                Picture::Colors(raster) => {
+                    arrays::channels(py, raster.map(|color| color.to_array()))
+                }
+            }?;
+            images.set_item(name, array)?;
+        }
+        let make = py
+            .import("dapple_textures._native")?
+            .getattr("_plan_from_parts")?;
+        Ok((make.unbind(), (self.recipe.to_json()?, images, self.time)))
+    }
+
+    fn __dask_tokenize__(&self) -> Result<String> {
+        self.hash()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Plan of {:?} at time {}>", self.recipe.name, self.time)
+    }
+}
+
+/// The plan of a recipe in JSON, with its images.
+#[pyfunction]
+pub(crate) fn _plan_from_parts(
+    py: Python<'_>,
+    recipe: &str,
+    images: &Bound<'_, PyDict>,
+    time: f64,
+) -> Result<Plan> {
+    Recipe::from_json(recipe)?.plan(py, Some(images), time)
+}

@@ -1,0 +1,85 @@
+//! The parts of a picture that machines make on their own.
+
+use crate::error::Result;
+use crate::grid::size as size_of;
+use dapple::recipe::{Region, Shards};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// The windows of the shards of a picture, as pairs of (first row, first column) and (rows, columns), row by row.
+///
+/// A shard is a part that a machine makes on its own; the last ones of a row and of a column are cut off at the border.
+/// They are those of `dapple shards`.
+#[pyfunction]
+pub(crate) fn shards(size: &Bound<'_, PyAny>, shard: &Bound<'_, PyAny>) -> Result<ShardList> {
+    ShardList::new(size_of(size)?, size_of(shard)?)
+}
+
+/// The shards of a picture: a sequence that takes no memory, however long it is.
+#[pyclass(frozen, module = "dapple_textures")]
+pub(crate) struct ShardList {
+    shards: Shards,
+    size: [u32; 2],
+    shard: [u32; 2],
+}
+
+impl ShardList {
+    fn new(size: [u32; 2], shard: [u32; 2]) -> Result<Self> {
+        let shards = Shards::new(size, shard)?;
+        Ok(Self {
+            shards,
+            size,
+            shard,
+        })
+    }
+}
+
+/// Rows and columns.
+type Sides = (u32, u32);
+
+#[pymethods]
+impl ShardList {
+    /// How many shards there are below one another and side by side.
+    #[getter]
+    fn grid(&self) -> Sides {
+        let [columns, rows] = self.shards.grid();
+        (rows, columns)
+    }
+
+    fn __len__(&self) -> usize {
+        usize::try_from(self.shards.len()).unwrap_or(usize::MAX)
+    }
+
+    fn __getitem__(&self, index: i64) -> Result<(Sides, Sides)> {
+        let index = if index < 0 {
+            self.shards.len().checked_add_signed(index)
+        } else {
+            u64::try_from(index).ok()
+        };
+        let region = index.and_then(|index| self.shards.get(index));
+        let Region {
+            first: [column, row],
+            size: [columns, rows],
+        } = region.ok_or_else(|| PyIndexError::new_err("there are fewer shards"))?;
+        Ok(((row, column), (rows, columns)))
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other
+            .cast::<Self>()
+            .is_ok_and(|other| other.get().shards == self.shards)
+    }
+
+    fn __hash__(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        (self.size, self.shard).hash(&mut hasher);
+        hasher.finish()
+    }
+
+    fn __reduce__(&self, py: Python<'_>) -> Result<(Py<PyAny>, (Sides, Sides))> {
+        let make = py.import("dapple_textures._native")?.getattr("shards")?;
+        let sides = [self.size, self.shard].map(|[columns, rows]| (rows, columns));
+        Ok((make.unbind(), sides.into()))
+    }
+}
