@@ -86,15 +86,21 @@ class DAPPLE_OT_bake(bpy.types.Operator):
         from dapple_textures import blender
 
         settings = context.scene.dapple
-        before = _material_of(context)
+        made = _material_of(context)
         try:
-            made = blender.material(
-                _plan(settings),
-                int(settings.size),
-                name=before.name if before is not None else None,
-                displacement=settings.displacement,
-                scale=settings.scale,
-            )
+            plan = _plan(settings)
+            is_new = made is None
+            if is_new:
+                # Another object may have the same recipe with another seed.
+                made = bpy.data.materials.new(plan.recipe.name or "dapple")
+            try:
+                blender.bake_into(
+                    made, plan, int(settings.size), displacement=settings.displacement, scale=settings.scale
+                )
+            except Exception:
+                if is_new:
+                    bpy.data.materials.remove(made)
+                raise
         except (ValueError, OSError) as error:
             # The last good material stays.
             self.report({"ERROR"}, str(error))
