@@ -233,21 +233,3 @@ def test_objects_in_the_panel_have_materials_of_their_own(panel):
         made.append(bpy.context.object.active_material)
     assert [blender.baked_from(material).seed for material in made] == [1, 2]
     assert len(bpy.data.materials) == 2 and len(bpy.data.images) == 6
-
-
-def test_the_extension_holds_its_wheels(tmp_path):
-    import runpy
-    import tomllib
-    import zipfile
-    from pathlib import Path
-
-    build = runpy.run_path(str(Path(__file__).parents[1] / "blender/build.py"))["build"]
-    wheel = tmp_path / "dapple_textures-0.1.0-cp311-abi3-manylinux_2_17_x86_64.whl"
-    wheel.write_bytes(b"a wheel")
-    build([wheel], tmp_path / "panel.zip")
-    with zipfile.ZipFile(tmp_path / "panel.zip") as extension:
-        manifest = tomllib.loads(extension.read("blender_manifest.toml").decode())
-        assert manifest["wheels"] == [f"./wheels/{wheel.name}"] and manifest["platforms"] == ["linux-x64"]
-        assert extension.read(f"wheels/{wheel.name}") == b"a wheel"
-    with pytest.raises(SystemExit, match="no wheel"):
-        build([], tmp_path / "none.zip")
