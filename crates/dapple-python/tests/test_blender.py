@@ -179,6 +179,27 @@ def test_a_synthesized_model_arrives_with_its_texture(tmp_path):
         image = node_of(mesh.materials[0], "Base Color").image
         assert image.packed_file is not None and image.colorspace_settings.name == "sRGB"
 
+def test_a_synthesized_model_arrives_with_all_its_maps():
+    trimesh = pytest.importorskip("trimesh")
+    maps = dp.Recipe.builtin("rock").plan().bake(24, ["albedo", "normal", "orm"])
+    model = dp.synthesize_on(trimesh.creation.torus(1.0, 0.4), maps, texels=512, sites=400, seed=1)
+    [thing] = [thing for thing in blender.import_model(model) if thing.type == "MESH"]
+    material = thing.data.materials[0]
+    separate = node_of(material, "Roughness")
+    assert separate == node_of(material, "Metallic")
+    images = {
+        "albedo": node_of(material, "Base Color").image,
+        "orm": separate.inputs[0].links[0].from_node.image,
+        "normal": node_of(material, "Normal").inputs["Color"].links[0].from_node.image,
+    }
+    for name, content, space in [("albedo", "color", "sRGB"), ("orm", "data", "Non-Color"), ("normal", "normal", "Non-Color")]:
+        image = images[name]
+        assert image.packed_file is not None and image.colorspace_settings.name == space, name
+        codes = dp.decode_image(dp.encode_image(model.maps[name], content=content, depth=8), content="data")
+        # What is in no chart of the atlas, where the exporter may write what it likes, is not looked at; half a code is.
+        shown = pixels(image)[..., :3]
+        assert shown.shape == codes.shape and np.abs(shown - codes).mean() < 0.5 / 255, name
+
 
 @pytest.fixture
 def panel():
