@@ -76,8 +76,11 @@ def peak(pid):
 
 
 def cluster(workers):
+    from dask import config
     from distributed import LocalCluster
 
+    # A local cluster closes a worker that is away when this time after an earlier death is over.
+    config.set({"distributed.deploy.lost-worker-timeout": "1h"})
     return LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None)
 
 

@@ -56,16 +56,11 @@ def _plan(settings):
     """The plan that the panel asks for."""
     import dapple_textures as dp
 
-    if settings.recipe != "FILE":
-        recipe, folder = dp.Recipe.builtin(settings.recipe), Path()
-    else:
-        path = Path(bpy.path.abspath(settings.path))
-        text = path.read_text(encoding="utf-8")
-        recipe = dp.Recipe.from_json(text) if path.suffix == ".json" else dp.Recipe.from_toml(text)
-        folder = path.parent
+    name = bpy.path.abspath(settings.path) if settings.recipe == "FILE" else settings.recipe
+    recipe = dp.read_recipe(name)
     if settings.seed.strip():
         recipe = recipe.with_seed(int(settings.seed))
-    return recipe.plan(images={name: dp.read_image(folder / name) for name in recipe.image_files})
+    return recipe.plan(images=dp.read_recipe_images(recipe, Path(name).parent))
 
 
 def _material_of(context):
@@ -91,15 +86,21 @@ class DAPPLE_OT_bake(bpy.types.Operator):
         from dapple_textures import blender
 
         settings = context.scene.dapple
-        before = _material_of(context)
+        made = _material_of(context)
         try:
-            made = blender.material(
-                _plan(settings),
-                int(settings.size),
-                name=before.name if before is not None else None,
-                displacement=settings.displacement,
-                scale=settings.scale,
-            )
+            plan = _plan(settings)
+            is_new = made is None
+            if is_new:
+                # Another object may have the same recipe with another seed.
+                made = bpy.data.materials.new(plan.recipe.name or "dapple")
+            try:
+                blender.bake_into(
+                    made, plan, int(settings.size), displacement=settings.displacement, scale=settings.scale
+                )
+            except Exception:
+                if is_new:
+                    bpy.data.materials.remove(made)
+                raise
         except (ValueError, OSError) as error:
             # The last good material stays.
             self.report({"ERROR"}, str(error))

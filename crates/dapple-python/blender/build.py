@@ -3,27 +3,37 @@
 from __future__ import annotations
 
 import argparse
+import re
 import zipfile
 from pathlib import Path
 
 HERE = Path(__file__).parent
 
-#: Blender's names of platforms, by what a wheel's name ends with.
+#: Blender's names of platforms, by the part of a wheel's name that says for which one it is.
 PLATFORMS = {
-    "manylinux": "linux-x64",
-    "linux_x86_64": "linux-x64",
-    "macosx_11_0_arm64": "macos-arm64",
-    "macosx_10_12_x86_64": "macos-x64",
-    "win_amd64": "windows-x64",
-    "win_arm64": "windows-arm64",
+    r"manylinux\w*_x86_64(\.|$)": "linux-x64",
+    r"linux_x86_64$": "linux-x64",
+    r"macosx_\d+_\d+_arm64$": "macos-arm64",
+    r"macosx_\d+_\d+_x86_64$": "macos-x64",
+    r"win_amd64$": "windows-x64",
+    r"win_arm64$": "windows-arm64",
 }
+
+
+def platform_of(wheel: Path) -> str:
+    """Blender's name of the platform that a wheel is for."""
+    tag = wheel.stem.rsplit("-", 1)[-1]
+    for pattern, platform in PLATFORMS.items():
+        if re.match(pattern, tag):
+            return platform
+    raise SystemExit(f"{wheel.name} is a wheel of no platform that Blender has: {', '.join(sorted(set(PLATFORMS.values())))}")
 
 
 def build(wheels: list[Path], output: Path) -> None:
     """Writes the extension with these wheels."""
-    platforms = sorted({place for wheel in wheels for part, place in PLATFORMS.items() if part in wheel.name})
-    if not wheels or not platforms:
-        raise SystemExit(f"no wheel of a platform that Blender has: {', '.join(PLATFORMS)}")
+    if not wheels:
+        raise SystemExit("no wheel is given")
+    platforms = sorted({platform_of(wheel) for wheel in wheels})
     manifest = (HERE / "blender_manifest.toml").read_text(encoding="utf-8")
     listed = "".join(f'    "./wheels/{wheel.name}",\n' for wheel in wheels)
     manifest = manifest.replace(

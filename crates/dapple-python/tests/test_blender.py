@@ -86,6 +86,52 @@ def test_a_material_is_baked_again_in_its_place():
     assert blender.baked_from(bpy.data.materials.new("other")) is None
 
 
+def test_what_others_made_stays():
+    own, image = bpy.data.materials.new("rock"), bpy.data.images.new("rock_normal", 4, 4)
+    own.use_nodes = True
+    own.node_tree.nodes.new("ShaderNodeValue")
+    before = pixels(image).copy(), len(own.node_tree.nodes)
+    made = [blender.material(dp.Recipe.builtin("rock"), size) for size in (16, np.int64(32), (16, np.int32(24)))]
+    assert made[0] == made[1] == made[2] != own and "dapple_textures" not in own
+    assert np.array_equal(pixels(image), before[0]) and len(own.node_tree.nodes) == before[1]
+    assert len(bpy.data.materials) == 2 and len(bpy.data.images) == 4
+
+
+def test_a_copy_keeps_its_maps():
+    made = blender.material(dp.Recipe.builtin("rock"), 16)
+    copy = made.copy()
+    before = pixels(node_of(copy, "Base Color").image).copy()
+    blender.bake_into(made, dp.Recipe.builtin("rock").with_seed(5), 16)
+    assert np.array_equal(pixels(node_of(copy, "Base Color").image), before)
+    assert not np.array_equal(pixels(node_of(made, "Base Color").image), before)
+
+
+def test_long_names_are_found_again():
+    for seed in range(3):
+        made = blender.material(dp.Recipe.builtin("rock").with_seed(seed), 16, name="ä" * 60)
+    assert len(bpy.data.materials) == 1 and len(bpy.data.images) == 3
+    assert made.name == "ä" * 31 and node_of(made, "Base Color").image.name == "ä" * 24 + "_albedo"
+
+
+def test_heights_outside_of_0_to_1_move_the_surface_as_far_as_they_say():
+    nodes = {"far": {"distance": {"center": [0.5, 0.5]}}, "dome": {"levels": {"input": "far", "to": [-2.0, 3.0]}}}
+    recipe = dp.Recipe({"dapple": 1, "nodes": nodes, "material": {"height": "dome", "relief": 0.3}})
+    height = recipe.plan().bake(32, ["height"])["height"]
+    assert height.min() < -0.5 and height.max() > 1.2
+    moved = node_of(blender.material(recipe, 32, displacement=True), "Displacement", "ShaderNodeOutputMaterial")
+    shown = pixels(moved.inputs["Height"].links[0].from_node.image)[..., 0]
+    moves = (shown - moved.inputs["Midlevel"].default_value) * moved.inputs["Scale"].default_value
+    # A code of 16 bits is a step of the range.
+    np.testing.assert_allclose(moves, 0.3 * (height - 0.5), atol=0.3 * 5 / 65535)
+
+
+def test_the_console_stays_quiet(capfd):
+    for size in (16, 32):
+        blender.material(dp.Recipe.builtin("rock"), size, displacement=True)
+    printed = capfd.readouterr()
+    assert "rror" not in printed.out + printed.err
+
+
 def lit(made, angle=0.9):
     """A plane with the material, seen from above, lit from the top of the picture."""
     bpy.ops.mesh.primitive_plane_add(size=2)
@@ -133,6 +179,27 @@ def test_a_synthesized_model_arrives_with_its_texture(tmp_path):
         image = node_of(mesh.materials[0], "Base Color").image
         assert image.packed_file is not None and image.colorspace_settings.name == "sRGB"
 
+def test_a_synthesized_model_arrives_with_all_its_maps():
+    trimesh = pytest.importorskip("trimesh")
+    maps = dp.Recipe.builtin("rock").plan().bake(24, ["albedo", "normal", "orm"])
+    model = dp.synthesize_on(trimesh.creation.torus(1.0, 0.4), maps, texels=512, sites=400, seed=1)
+    [thing] = [thing for thing in blender.import_model(model) if thing.type == "MESH"]
+    material = thing.data.materials[0]
+    separate = node_of(material, "Roughness")
+    assert separate == node_of(material, "Metallic")
+    images = {
+        "albedo": node_of(material, "Base Color").image,
+        "orm": separate.inputs[0].links[0].from_node.image,
+        "normal": node_of(material, "Normal").inputs["Color"].links[0].from_node.image,
+    }
+    for name, content, space in [("albedo", "color", "sRGB"), ("orm", "data", "Non-Color"), ("normal", "normal", "Non-Color")]:
+        image = images[name]
+        assert image.packed_file is not None and image.colorspace_settings.name == space, name
+        codes = dp.decode_image(dp.encode_image(model.maps[name], content=content, depth=8), content="data")
+        # What is in no chart of the atlas, where the exporter may write what it likes, is not looked at; half a code is.
+        shown = pixels(image)[..., :3]
+        assert shown.shape == codes.shape and np.abs(shown - codes).mean() < 0.5 / 255, name
+
 
 @pytest.fixture
 def panel():
@@ -175,19 +242,15 @@ def test_the_panel_bakes_and_follows(panel, tmp_path):
     assert blender.baked_from(bpy.context.object.active_material).image_files == ["a.png"]
 
 
-def test_the_extension_holds_its_wheels(tmp_path):
-    import runpy
-    import tomllib
-    import zipfile
-    from pathlib import Path
-
-    build = runpy.run_path(str(Path(__file__).parents[1] / "blender/build.py"))["build"]
-    wheel = tmp_path / "dapple_textures-0.1.0-cp311-abi3-manylinux_2_17_x86_64.whl"
-    wheel.write_bytes(b"a wheel")
-    build([wheel], tmp_path / "panel.zip")
-    with zipfile.ZipFile(tmp_path / "panel.zip") as extension:
-        manifest = tomllib.loads(extension.read("blender_manifest.toml").decode())
-        assert manifest["wheels"] == [f"./wheels/{wheel.name}"] and manifest["platforms"] == ["linux-x64"]
-        assert extension.read(f"wheels/{wheel.name}") == b"a wheel"
-    with pytest.raises(SystemExit, match="no wheel"):
-        build([], tmp_path / "none.zip")
+def test_objects_in_the_panel_have_materials_of_their_own(panel):
+    settings = bpy.context.scene.dapple
+    settings.follow = False
+    settings.recipe, settings.size = "marble", "256"
+    made = []
+    for seed in ("1", "2"):
+        bpy.ops.mesh.primitive_plane_add()
+        settings.seed = seed
+        assert bpy.ops.dapple.bake() == {"FINISHED"}
+        made.append(bpy.context.object.active_material)
+    assert [blender.baked_from(material).seed for material in made] == [1, 2]
+    assert len(bpy.data.materials) == 2 and len(bpy.data.images) == 6

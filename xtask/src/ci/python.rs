@@ -1,10 +1,11 @@
 //! The step `python`: the package of `crates/dapple-python`, built as a wheel, installed and tested.
 //!
-//! It needs Python 3.11 or newer, and the Python index for what the tests use. Where one is missing, the step says so and is
-//! skipped. Blender's module `bpy` wants an older NumPy than others, so its tests have an environment of their own, and are
-//! skipped where no index has it for this Python. All of it lies in `target/python`.
+//! It needs Python 3.11 or newer, and the Python index for what the tests use. Where one is missing, the step says so, with
+//! pip's own words, and is skipped; with `DAPPLE_NO_SKIP=1` it fails, as do tests that skip what they need not. Blender's
+//! module `bpy` wants an older NumPy than others, so its tests and its page have an environment of their own, and are skipped
+//! where no index has it for this Python. All of it lies in `target/python`.
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use std::path::{Path, PathBuf};
 use xshell::{Cmd, Shell, cmd};
 
@@ -17,16 +18,19 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
     );
     let is_new = "import sys, venv; sys.exit(sys.version_info < (3, 11))";
     if !works(cmd!(shell, "python3 -c {is_new}")) {
-        crate::say("skipped: there is no Python 3.11 with venv");
-        return Ok(());
+        return skip("there is no Python 3.11 with venv");
     }
-    let Some(main) = environment(shell, &folder.join("main"), &["maturin"]) else {
-        crate::say("skipped: the Python index cannot be reached");
-        return Ok(());
+    let main = match environment(shell, &folder.join("main"), &["maturin"]) {
+        Ok(main) => main,
+        Err(error) => return skip(&format!("there is no environment: {error:#}")),
     };
     let _package = shell.push_dir(&package);
     cmd!(shell, "cargo fmt --check").run()?;
-    cmd!(shell, "cargo clippy --quiet --release -- -D warnings").run()?;
+    cmd!(
+        shell,
+        "cargo clippy --quiet --release --locked -- -D warnings"
+    )
+    .run()?;
     let wheel = wheel(shell, &main, &folder.join("wheels"))?;
     let wheel = wheel.display().to_string();
     let with_extras = format!("{wheel}[test,docs]");
@@ -46,9 +50,13 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
     )
     .run()?;
     let wants = ["bpy==4.5.*", "pytest", "trimesh", "pillow"];
-    let Some(blender) = environment(shell, &folder.join("blender"), &wants) else {
-        crate::say("the tests in Blender are skipped: there is no bpy 4.5 for this Python");
-        return Ok(());
+    let blender = match environment(shell, &folder.join("blender"), &wants) {
+        Ok(blender) => blender,
+        // Blender is there for one Python only, which others need not have.
+        Err(error) => {
+            crate::say(&format!("skipped: the tests in Blender: {error:#}"));
+            return Ok(());
+        }
     };
     let (pip, python) = (blender.join("pip"), blender.join("python"));
     cmd!(
@@ -56,26 +64,53 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
         "{pip} install --quiet --force-reinstall --no-deps {wheel}"
     )
     .run()?;
-    Ok(cmd!(shell, "{python} -m pytest -q -rs tests/test_blender.py").run()?)
+    let files = ["tests/test_blender.py", "tests/test_docs.py"];
+    Ok(cmd!(shell, "{python} -m pytest -q -rs -k blender {files...}").run()?)
 }
 
-/// The folder of the programs of an environment with some packages, if they can be had.
-fn environment(shell: &Shell, folder: &Path, packages: &[&str]) -> Option<PathBuf> {
+/// Says what is skipped, or fails where nothing may be.
+fn skip(reason: &str) -> anyhow::Result<()> {
+    if std::env::var_os("DAPPLE_NO_SKIP").is_some_and(|value| value == "1") {
+        bail!("{reason}; DAPPLE_NO_SKIP=1 lets nothing be skipped");
+    }
+    crate::say(&format!("skipped: {reason}"));
+    Ok(())
+}
+
+/// The folder of the programs of an environment with some packages.
+///
+/// # Errors
+///
+/// What Python or pip says, if they cannot be had.
+fn environment(shell: &Shell, folder: &Path, packages: &[&str]) -> anyhow::Result<PathBuf> {
     let bin = folder.join(if cfg!(windows) { "Scripts" } else { "bin" });
     let pip = bin.join("pip");
-    let is_there = works(cmd!(shell, "python3 -m venv {folder}"))
-        && works(cmd!(
-            shell,
-            "{pip} install --quiet --only-binary :all: {packages...}"
-        ));
-    is_there.then_some(bin)
+    run(cmd!(shell, "python3 -m venv {folder}"))?;
+    run(cmd!(
+        shell,
+        "{pip} install --quiet --only-binary :all: {packages...}"
+    ))?;
+    Ok(bin)
+}
+
+/// Runs a command whose words on standard error are those of its error.
+fn run(command: Cmd<'_>) -> anyhow::Result<()> {
+    let done = command.quiet().ignore_status().output()?;
+    if !done.status.success() {
+        bail!("{}", String::from_utf8_lossy(&done.stderr).trim());
+    }
+    Ok(())
 }
 
 /// Builds the wheel, the only file of its folder.
 fn wheel(shell: &Shell, bin: &Path, folder: &Path) -> anyhow::Result<PathBuf> {
     shell.remove_path(folder)?;
     let maturin = bin.join("maturin");
-    cmd!(shell, "{maturin} build --release --quiet --out {folder}").run()?;
+    cmd!(
+        shell,
+        "{maturin} build --release --locked --quiet --out {folder}"
+    )
+    .run()?;
     let files = shell.read_dir(folder)?;
     files.into_iter().next().context("maturin made no wheel")
 }

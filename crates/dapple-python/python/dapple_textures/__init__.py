@@ -82,6 +82,7 @@ from ._native import (
 )
 from ._meshes import MeshFile
 from ._pictures import Bands, SeamReport
+from ._recipes import read_recipe, read_recipe_images
 from ._textures import (
     cells,
     cellular_noise,
@@ -171,6 +172,8 @@ __all__ = [
     "rank_equalize",
     "read_image",
     "read_model",
+    "read_recipe",
+    "read_recipe_images",
     "reference_labels",
     "reference_texture",
     "repeat",

@@ -11,8 +11,11 @@ import json
 import os
 import tempfile
 from collections.abc import Sequence
+from operator import index
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
+
+import numpy as np
 
 from ._native import Plan, Recipe, _plan_from_parts, encode_image
 from ._types import refusal
@@ -45,7 +48,8 @@ def material(
 ) -> Any:
     """A material whose maps are baked from a recipe: albedo, roughness, metallic, occlusion, normals.
 
-    Where a material of this name is, it is baked again, and all objects that have it show the new maps.
+    Where a material was made under this name before, it is baked again, and all objects that have it show the new maps.
+    Materials and images of others stay as they are, and Blender numbers the new ones beside them.
 
     Parameters
     ----------
@@ -58,24 +62,60 @@ def material(
     """
     import bpy
 
+    name = name or (what if isinstance(what, Recipe) else what.recipe).name or "dapple"
+    made = next((found for found in bpy.data.materials if _data_of(found).get("name") == name), None)
+    if made is not None:
+        bake_into(made, what, size, displacement=displacement, scale=scale)
+        return made
+    made = bpy.data.materials.new(name)
+    try:
+        bake_into(made, what, size, displacement=displacement, scale=scale)
+    except Exception:
+        bpy.data.materials.remove(made)
+        raise
+    made[_PROPERTY] = json.dumps({**_data_of(made), "name": name})
+    return made
+
+
+def bake_into(
+    made: Any,
+    what: Plan | Recipe,
+    size: int | tuple[int, int] = 1024,
+    *,
+    displacement: bool = False,
+    scale: float = 1.0,
+) -> None:
+    """Bakes a recipe into a material, whatever it was before: all of its nodes are made anew. See `material`."""
+    import bpy
+
     plan = _opengl(what.plan() if isinstance(what, Recipe) else what)
-    name = name or plan.recipe.name or "dapple"
+    sides = [index(side) for side in size] if isinstance(size, Sequence) else index(size)
     maps = ["albedo", "orm", "normal", *(["height"] if displacement else [])]
     baked = plan.bake(size, maps)
-    images = {kind: _image(bpy, f"{name}_{kind}", values, *_IMAGES[kind]) for kind, values in baked.items()}
-    made = bpy.data.materials.get(name) or bpy.data.materials.new(name)
+    low, high = 0.0, 1.0
+    if displacement:
+        # A file holds heights from 0 to 1; the displacement undoes it.
+        low, high = min(low, float(baked["height"].min())), max(high, float(baked["height"].max()))
+        baked["height"] = (baked["height"] - np.float32(low)) / np.float32(high - low)
+    before = _images_of(made)
+    images = {kind: _image(bpy, kind, values, *_IMAGES[kind]) for kind, values in baked.items()}
     relief = float(plan.recipe.to_dict()["material"].get("relief", 0.1))
-    _shader(bpy, made, images, relief, scale)
-    made[_PROPERTY] = json.dumps(
-        {"recipe": plan.recipe.to_dict(), "size": size, "time": plan.time, "hash": plan.hash}
-    )
-    return made
+    _shader(bpy, made, images, relief * (high - low), (0.5 - low) / (high - low), scale)
+    # Copies of the material keep what they show.
+    for image in before:
+        if image.users == 0:
+            bpy.data.images.remove(image)
+    for kind, image in images.items():
+        image.name = f"{_shortened(made.name)}_{kind}"
+        image.filepath_raw = f"//{image.name}.png"
+    data = {"recipe": plan.recipe.to_dict(), "size": sides, "time": plan.time, "hash": plan.hash}
+    made[_PROPERTY] = json.dumps({**_data_of(made), **data})
 
 
 def baked_from(made: Any) -> Recipe | None:
     """The recipe that a material was baked from; None of other materials."""
-    text = made.get(_PROPERTY)
-    return None if text is None else Recipe(json.loads(text)["recipe"])
+    data = _data_of(made)
+    return Recipe(data["recipe"]) if data else None
 
 
 def import_model(model: Any) -> list[Any]:
@@ -105,25 +145,43 @@ def _opengl(plan: Plan) -> Plan:
     return _plan_from_parts(json.dumps(data), images, time)
 
 
-def _image(bpy: Any, name: str, values: Any, depth: _Depth, content: _Content, space: str) -> Any:
-    """An image of Blender's, packed as PNG; the one of this name with new pixels where there is one."""
+def _data_of(made: Any) -> dict[str, Any]:
+    """What a material was baked from; nothing for other materials."""
+    data = json.loads(made.get(_PROPERTY, "{}"))
+    assert isinstance(data, dict)
+    return data
+
+
+def _images_of(made: Any) -> set[Any]:
+    """The images of a material that were baked here."""
+    nodes = made.node_tree.nodes if made.node_tree else []
+    images = {node.image for node in nodes if node.bl_idname == "ShaderNodeTexImage"}
+    return {image for image in images if image is not None and _PROPERTY in image}
+
+
+def _shortened(name: str) -> str:
+    """The beginning of a name, so that the kind of an image has room behind it: Blender's names have 63 bytes."""
+    return name.encode()[:48].decode(errors="ignore")
+
+
+def _image(bpy: Any, kind: str, values: Any, depth: _Depth, content: _Content, space: str) -> Any:
+    """A new image of Blender's, packed as PNG."""
     data = encode_image(values, "png", content=content, depth=depth)
-    image = bpy.data.images.get(name)
-    if image is None:
-        image = bpy.data.images.new(name, values.shape[1], values.shape[0], is_data=space != "sRGB")
-    # Pixels that are made in Blender are lost when the file is saved; a packed file is not.
-    image.pack(data=data, data_len=len(data))
-    image.filepath_raw = f"//{name}.png"
+    image = bpy.data.images.new(kind, values.shape[1], values.shape[0], is_data=space != "sRGB")
+    image[_PROPERTY] = kind
+    # Blender looks for the file of an image that has none packed, so its source comes first, and the pixels after it. Pixels
+    # that are made in Blender are lost when the file is saved; a packed file is not.
+    image.filepath_raw = f"//{kind}.png"
     image.source = "FILE"
+    image.pack(data=data, data_len=len(data))
     image.colorspace_settings.name = space
     image.alpha_mode = "NONE"
-    image.reload()
     if tuple(image.size) != (values.shape[1], values.shape[0]):
-        raise refusal("blender", f"Blender read {name} with {tuple(image.size)} pixels")
+        raise refusal("blender", f"Blender read {kind} with {tuple(image.size)} pixels")
     return image
 
 
-def _shader(bpy: Any, made: Any, images: dict[str, Any], relief: float, scale: float) -> None:
+def _shader(bpy: Any, made: Any, images: dict[str, Any], relief: float, middle: float, scale: float) -> None:
     """The nodes of a material, all of them anew."""
     made.use_nodes = True
     tree = made.node_tree
@@ -166,7 +224,7 @@ def _shader(bpy: Any, made: Any, images: dict[str, Any], relief: float, scale: f
     link(bump.outputs["Normal"], shader.inputs["Normal"])
     if "height" in images:
         moved = node("ShaderNodeDisplacement", 100, -300)
-        moved.inputs["Midlevel"].default_value = 0.5
+        moved.inputs["Midlevel"].default_value = middle
         moved.inputs["Scale"].default_value = relief
         link(texture("height", -600).outputs["Color"], moved.inputs["Height"])
         link(moved.outputs["Displacement"], output.inputs["Displacement"])

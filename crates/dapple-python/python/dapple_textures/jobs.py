@@ -32,6 +32,7 @@ from zarr.storage import LocalStore, MemoryStore, StorePath, ZipStore
 
 from . import _sources
 from ._native import ColorField, Field, Plan, Recipe, __version__
+from ._recipes import read_recipe, read_recipe_images
 from ._types import refusal
 
 #: The attribute of the store that holds the job.
@@ -399,25 +400,10 @@ def _create(options: argparse.Namespace) -> Job:
     size = (int(rows or columns), int(columns))
     shape = size if options.frames is None else (options.frames, *size)
     recipe = read_recipe(options.recipe)
-    plan = recipe.plan(images=read_images(recipe, Path(options.recipe).parent))
+    plan = recipe.plan(images=read_recipe_images(recipe, Path(options.recipe).parent))
     return create(
         plan, shape, options.maps.split(","), options.store, shard=options.shard, chunk=options.chunk
     )
-
-
-def read_recipe(name: str) -> Recipe:
-    """The recipe of a file in TOML or JSON, or the built-in one of this name."""
-    if name in Recipe.builtin_names():
-        return Recipe.builtin(name)
-    text = Path(name).read_text(encoding="utf-8")
-    return Recipe.from_json(text) if name.endswith(".json") else Recipe.from_toml(text)
-
-
-def read_images(recipe: Recipe, folder: Path) -> dict[str, Any]:
-    """The images that a recipe names, from files of a folder."""
-    from . import read_image
-
-    return {name: read_image(folder / name) for name in recipe.image_files}
 
 
 if __name__ == "__main__":

@@ -1,0 +1,91 @@
+"""Recipes and their images from files."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._native import Recipe, read_image
+from ._types import refusal
+
+_Path = str | os.PathLike[str]
+
+
+def read_recipe(path_or_name: _Path) -> Recipe:
+    """The recipe of a file, or the built-in one of this name.
+
+    Parameters
+    ----------
+    path_or_name : a file in TOML, or in JSON where its name ends with `.json`; or, where there is no such file, a name of
+        `Recipe.builtin_names()`. A recipe without a name gets that of its file.
+
+    Examples
+    --------
+    >>> import os, tempfile, dapple_textures as dp
+    >>> path = os.path.join(tempfile.mkdtemp(), "mine.toml")
+    >>> with open(path, "w") as file:
+    ...     _ = file.write(dp.read_recipe("rock").with_seed(9).to_toml())
+    >>> dp.read_recipe(path).seed
+    9
+    """
+    path = Path(path_or_name)
+    name = os.fspath(path_or_name).replace("_", "-")
+    is_path = path.suffix != "" or len(path.parts) > 1
+    if not path.is_file() and (name in Recipe.builtin_names() or not is_path):
+        # What is in no list is refused with what was perhaps meant.
+        return Recipe.builtin(name)
+    text = path.read_text(encoding="utf-8")
+    recipe = Recipe.from_json(text) if path.suffix.lower() == ".json" else Recipe.from_toml(text)
+    return recipe if recipe.name else Recipe({**recipe.to_dict(), "name": path.stem})
+
+
+def read_recipe_images(recipe: Recipe, folder: _Path) -> dict[str, npt.NDArray[np.float32]]:
+    """The images that a recipe names, from files of a folder, as `Recipe.plan` takes them.
+
+    Where a node says what becomes of the alpha of its image, that is done; an image that is partly transparent is refused
+    otherwise, as the command does it.
+
+    Examples
+    --------
+    >>> import dapple_textures as dp, numpy as np, tempfile
+    >>> folder = tempfile.mkdtemp()
+    >>> dp.write_image(folder + "/moss.png", np.full((8, 8, 4), 0.5, np.float32))
+    >>> recipe = dp.Recipe({"dapple": 1, "nodes": {"moss": {"image": {"file": "moss.png", "alpha": "drop"}}},
+    ...                     "material": {"albedo": "moss"}})
+    >>> {name: image.shape for name, image in dp.read_recipe_images(recipe, folder).items()}
+    {'moss.png': (8, 8, 3)}
+    """
+    return {file: _image(Path(folder) / file, _alpha(recipe, file)) for file in recipe.image_files}
+
+
+def _alpha(recipe: Recipe, file: str) -> str | None:
+    """What the nodes of a recipe say of the alpha of a file."""
+    said = {entry.get("alpha") for entry in _entries(recipe.to_dict()["nodes"]) if entry.get("file") == file}
+    if len(said) > 1:
+        raise refusal("conflict", f"nodes that name the image {file} say different things of its `alpha`")
+    return next(iter(said), None)
+
+
+def _entries(data: Any) -> Iterator[dict[str, Any]]:
+    """All dictionaries in some data."""
+    if isinstance(data, dict):
+        yield data
+        for value in data.values():
+            yield from _entries(value)
+
+
+def _image(path: Path, alpha: str | None) -> npt.NDArray[np.float32]:
+    image = read_image(path, alpha=alpha)
+    if image.ndim == 3 and image.shape[2] == 4:
+        hint = 'give its node alpha = "drop" or alpha = "over:#rrggbb"'
+        raise refusal("alpha", f"{path} is partly transparent, which is not possible here", hint)
+    if alpha == "drop" and image.ndim == 3:
+        # Gray numbers beside alpha stay numbers, without the curve of colors.
+        channels = read_image(path, content="data")
+        return channels[..., 0].copy() if channels.shape[2] == 2 else image
+    return image
