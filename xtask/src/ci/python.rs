@@ -36,6 +36,9 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
     let with_extras = format!("{wheel}[test,docs]");
     let (pip, python) = (main.join("pip"), main.join("python"));
     cmd!(shell, "{pip} install --quiet {with_extras}").run()?;
+    // An earlier wheel has the same version.
+    let again = ["--quiet", "--force-reinstall", "--no-deps"];
+    cmd!(shell, "{pip} install {again...} {wheel}").run()?;
     let tests = cmd!(shell, "{python} -m pytest -q -rs").env("PATH", with_first(&main)?);
     // The command that the tests of the workspace built: the package has its bits.
     let command = root.join("target/debug/dapple");
@@ -59,11 +62,7 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
         }
     };
     let (pip, python) = (blender.join("pip"), blender.join("python"));
-    cmd!(
-        shell,
-        "{pip} install --quiet --force-reinstall --no-deps {wheel}"
-    )
-    .run()?;
+    cmd!(shell, "{pip} install {again...} {wheel}").run()?;
     let files = ["tests/test_blender.py", "tests/test_docs.py"];
     Ok(cmd!(shell, "{python} -m pytest -q -rs -k blender {files...}").run()?)
 }
