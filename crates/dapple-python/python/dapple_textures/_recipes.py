@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ._native import Recipe, read_image
 from ._types import refusal
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _Path = str | os.PathLike[str]
 
@@ -33,6 +35,9 @@ def read_recipe(path_or_name: _Path) -> Recipe:
     >>> dp.read_recipe(path).seed
     9
     """
+    # Here, since it takes longer to import than all else of the package.
+    from pathlib import Path
+
     path = Path(path_or_name)
     name = os.fspath(path_or_name).replace("_", "-")
     is_path = path.suffix != "" or len(path.parts) > 1
@@ -60,6 +65,8 @@ def read_recipe_images(recipe: Recipe, folder: _Path) -> dict[str, npt.NDArray[n
     >>> {name: image.shape for name, image in dp.read_recipe_images(recipe, folder).items()}
     {'moss.png': (8, 8, 3)}
     """
+    from pathlib import Path
+
     return {file: _image(Path(folder) / file, _alpha(recipe, file)) for file in recipe.image_files}
 
 
