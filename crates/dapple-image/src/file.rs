@@ -32,7 +32,11 @@ pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
 /// Makes `bytes` the content of the file at `path`, which is new or the old one until all of it is written.
 ///
 /// A file that is there keeps its permissions, and one that a link leads to, the link.
-pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
+///
+/// # Errors
+///
+/// [`ImageErrorKind::Io`] with the path, if the folder is not there or the system refuses.
+pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
     write_and_rename(path, bytes)
         .map_err(|error| ImageError::new(ImageErrorKind::Io).because(error).at(path))
 }

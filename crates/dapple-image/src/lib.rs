@@ -68,6 +68,7 @@ pub use self::png::{
 pub use channels::Channels;
 pub use content::{Content, Depth, Encoding};
 pub use error::{ImageError, ImageErrorKind};
+pub use file::replace;
 pub use limits::Limits;
 pub use rows::RowWriter;
 

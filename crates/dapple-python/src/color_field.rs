@@ -3,13 +3,12 @@
 use crate::arrays::{self, Positions};
 use crate::error::Result;
 use crate::field::Field;
-use crate::function::{Made, position};
+use crate::function::{Made, Reduced, position};
 use crate::grid::{Grid, GridArguments};
 use crate::pups::{Values, Vectors};
 use crate::threads;
 use dapple::raster::parallel;
 use pyo3::prelude::*;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 /// A function of the plane with several numbers at every position, such as a color (linear RGB).
@@ -110,16 +109,11 @@ impl ColorField {
     }
 
     fn __hash__(&self) -> Result<u64> {
-        let mut hasher = DefaultHasher::new();
-        self.made.description()?.hash(&mut hasher);
-        Ok(hasher.finish())
+        self.made.hash()
     }
 
-    fn __reduce__(&self, py: Python<'_>) -> Result<(Py<PyAny>, (String,))> {
-        let make = py
-            .import("dapple_textures._native")?
-            .getattr("_field_from_description")?;
-        Ok((make.unbind(), (self.made.description()?,)))
+    fn __reduce__(&self, py: Python<'_>) -> Result<Reduced> {
+        self.made.reduced(py)
     }
 
     /// The name by which Dask knows what is computed from the field: the same in all processes.

@@ -3,15 +3,15 @@
 use crate::arrays::{self, Positions};
 use crate::color_field;
 use crate::error::{Error, Result};
-use crate::function::{Function, Made, position};
+use crate::function::{Function, Made, Reduced, position};
 use crate::generators::Worley;
 use crate::grid::{Grid, GridArguments, pair};
 use crate::shared::Shared;
 use crate::threads;
-use dapple::raster::{Field as _, FractalShape, PairOperation, RasterViewMut};
+use dapple::raster::{Field as _, FractalShape, PairOperation, RasterViewMut, parallel};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Arc;
 
 /// A function with a value at every position: of the plane, of space, or of space and time.
 ///
@@ -36,14 +36,8 @@ impl Field {
     }
 
     /// The function of the plane that it is.
-    pub(crate) fn plane(&self) -> Result<std::sync::Arc<dyn dapple::raster::Field>> {
-        match &self.function {
-            Function::Plane(field) => Ok(field.clone()),
-            Function::Space(_) => Err(Error::new(
-                "axes",
-                "a field of the plane is needed: take `slice(…)` first",
-            )),
-        }
+    pub(crate) fn plane(&self) -> Result<Arc<dyn dapple::raster::Field>> {
+        self.made.plane()
     }
 
     /// The periods along all axes.
@@ -103,10 +97,6 @@ impl Field {
             lacunarity,
             shape,
         })
-    }
-
-    fn description(&self) -> Result<String> {
-        self.made.made().description()
     }
 }
 
@@ -201,15 +191,12 @@ impl Field {
     ) -> Result<Bound<'py, PyAny>> {
         let n_axes = self.ndim();
         let positions = Positions::read(positions, n_axes)?;
-        let values = threads::run(py, || -> Result<Vec<f32>> {
-            let mut values = vec![0.0; positions.numbers.len() / n_axes];
-            dapple::raster::parallel::for_each_chunk(&mut values, CHUNK, |chunk, values| {
-                let first = chunk * CHUNK * n_axes;
-                let numbers = &positions.numbers[first..first + values.len() * n_axes];
-                let places = numbers.chunks_exact(n_axes);
+        arrays::filled(py, &positions.shape, None, |values| {
+            parallel::for_each_chunk(values, CHUNK, |chunk, values| {
+                let places = positions.numbers[chunk * CHUNK * n_axes..].chunks_exact(n_axes);
                 match &self.function {
                     Function::Plane(field) => {
-                        let places: Vec<_> = places.map(position).collect();
+                        let places: Vec<_> = places.take(values.len()).map(position).collect();
                         // The lengths are equal, and there is no other error.
                         let _ = field.sample_many(&places, values);
                     }
@@ -220,9 +207,8 @@ impl Field {
                     }
                 }
             });
-            Ok(values)
-        })??;
-        arrays::array(py, values, &positions.shape)
+            Ok(())
+        })
     }
 
     /// The plane of the first two axes at the further coordinates: `slice(z)` of three axes, `slice(z, w)` of four.
@@ -385,16 +371,11 @@ impl Field {
     }
 
     fn __hash__(&self) -> Result<u64> {
-        let mut hasher = DefaultHasher::new();
-        self.description()?.hash(&mut hasher);
-        Ok(hasher.finish())
+        self.made.made().hash()
     }
 
-    fn __reduce__(&self, py: Python<'_>) -> Result<(Py<PyAny>, (String,))> {
-        let make = py
-            .import("dapple_textures._native")?
-            .getattr("_field_from_description")?;
-        Ok((make.unbind(), (self.description()?,)))
+    fn __reduce__(&self, py: Python<'_>) -> Result<Reduced> {
+        self.made.made().reduced(py)
     }
 
     /// The name by which Dask knows what is computed from the field: the same in all processes.

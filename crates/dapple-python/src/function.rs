@@ -11,8 +11,10 @@ use dapple::raster::glam::DVec2;
 use dapple::raster::{
     Field, FieldExt, Fractal, FractalShape, PairOperation, RasterError, RasterViewMut, Window,
 };
+use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 /// A function of the plane, or of more axes.
@@ -124,6 +126,9 @@ pub(crate) enum Made {
     },
 }
 
+/// A function of Python's, and its arguments.
+pub(crate) type Reduced = (Py<PyAny>, (String,));
+
 /// A function, and how much it is composed of.
 #[derive(Clone)]
 pub(crate) struct Built {
@@ -172,12 +177,12 @@ impl Build for Made {
 
 impl Shared<Made> {
     /// The function of the plane that this describes.
-    fn plane(&self) -> Result<Arc<dyn Field>> {
+    pub(crate) fn plane(&self) -> Result<Arc<dyn Field>> {
         match self.get()?.function {
             Function::Plane(field) => Ok(field),
             Function::Space(_) => Err(Error::new(
                 "axes",
-                "fields of three and four axes are composed by their slices: take `slice(…)` first",
+                "a field of the plane is needed: of one with three or four axes, take `slice(…)` first",
             )),
         }
     }
@@ -311,11 +316,29 @@ impl Made {
         })
     }
 
+    /// The hash of the description, for Python's dictionaries.
+    pub(crate) fn hash(&self) -> Result<u64> {
+        let mut hasher = DefaultHasher::new();
+        self.description()?.hash(&mut hasher);
+        Ok(hasher.finish())
+    }
+
+    /// How Python makes the field again in another process: a function, and what it is called with.
+    pub(crate) fn reduced(&self, py: Python<'_>) -> Result<Reduced> {
+        let module = py.import("dapple_textures._native")?;
+        let make = module.getattr("_field_from_description")?;
+        Ok((make.unbind(), (self.description()?,)))
+    }
+
     /// What stands for the description: the same in all processes, and another one for each description.
     pub(crate) fn token(&self) -> Result<String> {
-        let hash = Sha256::digest(self.description()?);
-        Ok(hash.iter().map(|byte| format!("{byte:02x}")).collect())
+        Ok(hex(&Sha256::digest(self.description()?)))
     }
+}
+
+/// Bytes in hexadecimal.
+pub(crate) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// A field whose values stay between two bounds.

@@ -12,8 +12,8 @@ use dapple::recipe::ImageAlpha;
 use dapple::tile::Map;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyMapping};
-use std::fs::{self, File};
-use std::io::{self, Cursor, Write};
+use std::fs;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 /// How an image is read: what its numbers are, and where its alpha goes.
@@ -259,13 +259,7 @@ pub(crate) fn write_image(
 ) -> Result<()> {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
     let bytes = encoded(py, image, &ending.to_lowercase(), content, depth)?;
-    py.detach(|| replace(&path, &bytes))
-        .map_err(|error| unwritten(&path, &error))
-}
-
-fn unwritten(path: &Path, error: &io::Error) -> Error {
-    let message = format!("{} cannot be written: {error}", path.display());
-    Error::new("io", message)
+    Ok(py.detach(|| image::replace(&path, &bytes))?)
 }
 
 /// Writes the maps of a material as image files into a folder, which is made where there is none, and gives their paths.
@@ -316,7 +310,10 @@ pub(crate) fn write_maps(
         Err(Error::new("name", message))
     });
     let files = files.collect::<Result<Vec<_>>>()?;
-    fs::create_dir_all(&folder).map_err(|error| unwritten(&folder, &error))?;
+    fs::create_dir_all(&folder).map_err(|error| {
+        let message = format!("{} cannot be made: {error}", folder.display());
+        Error::new("io", message)
+    })?;
     for (file, (map, image)) in files.iter().zip(&maps) {
         let content = content_of(map).map(|content| content.to_string());
         write_image(py, file.clone(), image, content.as_deref(), depth)?;
@@ -448,26 +445,3 @@ pub(crate) fn encode(
 
 /// How many rows are turned into colors at a time.
 const BAND: usize = 256;
-
-/// Makes `bytes` the content of the file at `path`, which is new or the old one until all of it is written.
-///
-/// A file that is there keeps its permissions, and one that a link leads to, the link.
-#[expect(
-    clippy::disallowed_methods,
-    reason = "the encodings that no writer of the library has for paths end here"
-)]
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let folder = path.parent().unwrap_or(Path::new(""));
-    // Made here, so that its permissions are those of any new file.
-    let create = |path: &Path| File::options().write(true).create_new(true).open(path);
-    let mut file = tempfile::Builder::new()
-        .prefix(".dapple-")
-        .make_in(folder, create)?;
-    file.as_file_mut().write_all(bytes)?;
-    if let Ok(found) = fs::metadata(&path) {
-        file.as_file().set_permissions(found.permissions())?;
-    }
-    file.persist(path)?;
-    Ok(())
-}

@@ -70,7 +70,7 @@ mod _native {
         random_orientations, random_values, reference_labels,
     };
     #[pymodule_export]
-    use crate::recipe::{_plan_from_parts, Plan, Recipe, ShardList, map_names, shards};
+    use crate::recipe::{_map_info, _plan_from_parts, Plan, Recipe, ShardList, map_names, shards};
     #[pymodule_export]
     use crate::synthesis::synthesize;
     #[pymodule_export]

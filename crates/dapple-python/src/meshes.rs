@@ -167,7 +167,7 @@ pub(crate) fn read_model(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAn
     Ok(file.call1(fields)?)
 }
 
-/// What is wrong with a mesh, counted: a dictionary.
+/// The faults of a mesh and its elements, counted: a dictionary.
 ///
 /// Parameters
 /// ----------

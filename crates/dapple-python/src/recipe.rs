@@ -5,13 +5,14 @@ mod node;
 mod plan;
 mod shard_list;
 
-pub(crate) use maps::{content_of, map_names};
+pub(crate) use maps::{_map_info, content_of, map_names};
 pub(crate) use node::NodeMade;
 pub(crate) use plan::{_plan_from_parts, Plan};
 pub(crate) use shard_list::{ShardList, shards};
 
 use crate::data;
 use crate::error::{Error, Result};
+use crate::function::hex;
 use crate::pictures::Pixels;
 use crate::seed::SeedArgument;
 use dapple::color::LinearRgb;
@@ -52,10 +53,7 @@ fn sha256(parts: &[&[u8]]) -> String {
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part);
     }
-    hash.finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    hex(&hash.finalize())
 }
 
 /// The recipe that data holds. Errors name the entry, and not a place in a text that nobody wrote.
@@ -179,6 +177,14 @@ impl Recipe {
             .into_iter()
             .map(str::to_owned)
             .collect()
+    }
+
+    /// What its nodes say of the alpha of an image, as `read_image` takes it; None where they say nothing.
+    fn _image_alpha(&self, file: &str) -> Result<Option<String>> {
+        let alpha = self.recipe.image_alpha(file)?.map(serde_json::to_value);
+        let alpha = alpha.transpose();
+        let alpha = alpha.map_err(|error| Error::new("alpha", error.to_string()))?;
+        Ok(alpha.and_then(|alpha| alpha.as_str().map(str::to_owned)))
     }
 
     /// The SHA-256 of its text: the same for the same recipe on every machine.

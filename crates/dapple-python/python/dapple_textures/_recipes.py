@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -67,23 +66,7 @@ def read_recipe_images(recipe: Recipe, folder: _Path) -> dict[str, npt.NDArray[n
     """
     from pathlib import Path
 
-    return {file: _image(Path(folder) / file, _alpha(recipe, file)) for file in recipe.image_files}
-
-
-def _alpha(recipe: Recipe, file: str) -> str | None:
-    """What the nodes of a recipe say of the alpha of a file."""
-    said = {entry.get("alpha") for entry in _entries(recipe.to_dict()["nodes"]) if entry.get("file") == file}
-    if len(said) > 1:
-        raise refusal("conflict", f"nodes that name the image {file} say different things of its `alpha`")
-    return next(iter(said), None)
-
-
-def _entries(data: Any) -> Iterator[dict[str, Any]]:
-    """All dictionaries in some data."""
-    if isinstance(data, dict):
-        yield data
-        for value in data.values():
-            yield from _entries(value)
+    return {file: _image(Path(folder) / file, recipe._image_alpha(file)) for file in recipe.image_files}
 
 
 def _image(path: Path, alpha: str | None) -> npt.NDArray[np.float32]:

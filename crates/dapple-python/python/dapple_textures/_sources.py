@@ -20,6 +20,7 @@ from ._native import (
     Plan,
     Recipe,
     _field_from_description,
+    _map_info,
     _plan_from_parts,
 )
 from ._types import refusal
@@ -30,12 +31,12 @@ Image = npt.NDArray[np.float32]
 _READY = 4
 
 
+#: Images as names, shapes and bytes, which have a hash.
+Packed = tuple[tuple[str, tuple[int, ...], bytes], ...]
+
+
 class Source(Protocol):
     """Something that has planes of numbers at the pixels of an array of any size."""
-
-    @property
-    def planes(self) -> tuple[str, ...]:
-        """The names of what it can give."""
 
     def channels(self, plane: str) -> int:
         """How many numbers a pixel of a plane has."""
@@ -60,22 +61,17 @@ class RecipeSource:
     """The maps of a recipe, and of all pictures of a loop in time where the array has a first axis for it."""
 
     recipe: str
-    images: tuple[tuple[str, tuple[int, ...], bytes], ...]
+    images: Packed
     time: float
 
     @classmethod
     def of(cls, plan: Plan) -> RecipeSource:
         plan.check_local()
         _, (recipe, images, time) = plan.__reduce__()
-        packed = tuple((name, image.shape, image.tobytes()) for name, image in sorted(images.items()))
-        return cls(recipe, packed, time)
-
-    @property
-    def planes(self) -> tuple[str, ...]:
-        return tuple(self.plan(self.time).map_info)
+        return cls(recipe, _packed(images), time)
 
     def channels(self, plane: str) -> int:
-        info = self.plan(self.time).map_info
+        info = _map_info()
         if plane not in info:
             raise _unknown("map", plane, info)
         return int(info[plane].channels)
@@ -122,11 +118,9 @@ class FieldSource:
     extent: tuple[float, ...]
     origin: tuple[float, ...]
 
-    planes = ("value",)
-
     def channels(self, plane: str) -> int:
         if plane != "value":
-            raise _unknown("plane of a field", plane, self.planes)
+            raise _unknown("plane of a field", plane, ["value"])
         field = _field(self.description)
         return field.channels if isinstance(field, ColorField) else 1
 
@@ -182,7 +176,11 @@ def from_data(data: dict[str, Any], images: dict[str, Image]) -> RecipeSource | 
     if "field" in data:
         return FieldSource(data["field"], tuple(data["extent"]), tuple(data["origin"]))
     named = {image["name"]: images[image["hash"]] for image in data["images"]}
-    return RecipeSource.of(_plan_from_parts(json.dumps(data["recipe"]), named, data["time"]))
+    return RecipeSource(json.dumps(data["recipe"]), _packed(named), data["time"])
+
+
+def _packed(images: dict[str, Image]) -> Packed:
+    return tuple((name, image.shape, image.tobytes()) for name, image in sorted(images.items()))
 
 
 def sides(value: Any) -> tuple[int, ...]:
@@ -223,7 +221,9 @@ def _plan(source: RecipeSource, time: float) -> Plan:
     images = {
         name: np.frombuffer(data, np.float32).reshape(shape) for name, shape, data in source.images
     }
-    return _plan_from_parts(source.recipe, images, time)
+    plan = _plan_from_parts(source.recipe, images, time)
+    plan.check_local()
+    return plan
 
 
 @lru_cache(maxsize=_READY)

@@ -60,8 +60,10 @@ def bake(
     source.check(shape)
     channels = source.channels(plane)
     last = (channels,) if channels > 1 else ()
-    if isinstance(chunks, str) or not isinstance(chunks, Sequence):
-        chunks = (chunks,) * len(shape) if isinstance(chunks, str) else jobs.shard_sides(chunks, shape)
+    if isinstance(chunks, str):
+        chunks = (chunks,) * len(shape)
+    elif not isinstance(chunks, Sequence):
+        chunks = jobs.shard_sides(chunks, shape)
     sides = da.core.normalize_chunks((*chunks, *last), shape=(*shape, *last), dtype=np.float32)
     return da.map_blocks(
         _workers.block,

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::pictures::{Content, Kind};
 use dapple::recipe::MapKind;
 use pyo3::prelude::*;
-use pyo3::types::PyString;
+use pyo3::types::{PyDict, PyString};
 
 /// What the numbers of a map are, and how many a pixel has.
 pub(super) fn kind_of(map: MapKind) -> Kind {
@@ -59,6 +59,26 @@ fn map(name: &str) -> Result<MapKind> {
             format!("the map is `{name}`, but it must be one of {names}"),
         )
     })
+}
+
+/// All maps by their names, as `MapInfo`.
+#[pyfunction]
+pub(crate) fn _map_info(py: Python<'_>) -> Result<Bound<'_, PyDict>> {
+    let info = py.import("dapple_textures._types")?.getattr("MapInfo")?;
+    let all = PyDict::new(py);
+    for map in MapKind::ALL {
+        let Kind {
+            content,
+            n_channels,
+        } = kind_of(map);
+        let space = match content {
+            Content::Color => "linear",
+            _ => "non-color",
+        };
+        let entry = info.call1((n_channels, space, content.to_string()))?;
+        all.set_item(map.name(), entry)?;
+    }
+    Ok(all)
 }
 
 /// The names of all maps of a material.

@@ -1,13 +1,12 @@
 //! Recipes that are ready to be baked.
 
-use super::maps::{kind_of, maps};
+use super::maps::{_map_info, kind_of, maps};
 use super::{NodeMade, Recipe, sha256};
 use crate::arrays;
 use crate::error::{Error, Result};
 use crate::field::Field;
 use crate::function::Made;
 use crate::grid::{Grid, GridArguments, size as size_of};
-use crate::pictures::{Content, Kind};
 use crate::shared::Shared;
 use crate::threads;
 use dapple::color::{LinearRgb, Normal};
@@ -54,23 +53,25 @@ struct Gathered {
 }
 
 impl Gathered {
-    fn push(&mut self, rows: MapRows) {
+    /// Adds rows of a map that has `n_values` numbers in all. A map that comes in one piece is taken as it is.
+    fn push(&mut self, rows: MapRows, n_values: usize) -> Result<()> {
         let rows = match rows {
             MapRows::Gray(raster) => raster.into_pixels(),
             MapRows::Color(raster) => flat(raster.into_pixels(), LinearRgb::to_array),
             MapRows::Normal(raster) => flat(raster.into_pixels(), Normal::to_array),
             MapRows::Packed(raster) => raster.into_pixels().into_flattened(),
         };
-        if self.values.capacity() == 0 {
+        if rows.len() == n_values {
             self.values = rows;
-        } else {
-            self.values.extend_from_slice(&rows);
+            return Ok(());
         }
+        if self.values.is_empty() {
+            arrays::reserve(&mut self.values, n_values)?;
+        }
+        self.values.extend_from_slice(&rows);
+        Ok(())
     }
 }
-
-/// The most pixels that come in one band.
-const BAND_PIXELS: usize = 1 << 20;
 
 /// The numbers of pixels, in the memory of the pixels.
 fn flat<T>(pixels: Vec<T>, numbers: impl Fn(T) -> [f32; 3]) -> Vec<f32> {
@@ -88,15 +89,12 @@ fn gather<'py>(
     maps: &[MapKind],
 ) -> Result<Bound<'py, PyDict>> {
     let [columns, rows] = bake.size().map(|side| side as usize);
-    let mut gathered = Vec::new();
-    for &map in maps {
-        let mut values = Vec::new();
-        // A map of a single band is taken as it is.
-        if columns * rows > BAND_PIXELS {
-            arrays::reserve(&mut values, columns * rows * kind_of(map).n_channels)?;
-        }
-        gathered.push(Gathered { map, values });
-    }
+    let n_values = |map| columns * rows * kind_of(map).n_channels;
+    let empty = |&map| Gathered {
+        map,
+        values: Vec::new(),
+    };
+    let mut gathered: Vec<_> = maps.iter().map(empty).collect();
     loop {
         let is_more = threads::run(py, || {
             let Some(band) = bake.next() else {
@@ -107,7 +105,7 @@ fn gather<'py>(
                     gathered.map, map,
                     "maps come in the order in which they were asked for"
                 );
-                gathered.push(rows);
+                gathered.push(rows, n_values(map))?;
             }
             Ok::<_, Error>(true)
         })??;
@@ -213,23 +211,7 @@ impl Plan {
     /// the `content` with which `write_image` writes them.
     #[getter]
     fn map_info<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyDict>> {
-        let info = py.import("dapple_textures._types")?.getattr("MapInfo")?;
-        let all = PyDict::new(py);
-        for map in MapKind::ALL {
-            let Kind {
-                content,
-                n_channels,
-            } = kind_of(map);
-            let space = match content {
-                Content::Color => "linear",
-                _ => "non-color",
-            };
-            all.set_item(
-                map.name(),
-                info.call1((n_channels, space, content.to_string()))?,
-            )?;
-        }
-        Ok(all)
+        _map_info(py)
     }
 
     /// The numbers of a node as a field, by its name: those of the height of the material by default.

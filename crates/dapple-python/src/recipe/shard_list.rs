@@ -13,26 +13,14 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// They are those of `dapple shards`.
 #[pyfunction]
 pub(crate) fn shards(size: &Bound<'_, PyAny>, shard: &Bound<'_, PyAny>) -> Result<ShardList> {
-    ShardList::new(size_of(size)?, size_of(shard)?)
+    let shards = Shards::new(size_of(size)?, size_of(shard)?)?;
+    Ok(ShardList { shards })
 }
 
 /// The shards of a picture: a sequence that takes no memory, however long it is.
 #[pyclass(frozen, module = "dapple_textures")]
 pub(crate) struct ShardList {
     shards: Shards,
-    size: [u32; 2],
-    shard: [u32; 2],
-}
-
-impl ShardList {
-    fn new(size: [u32; 2], shard: [u32; 2]) -> Result<Self> {
-        let shards = Shards::new(size, shard)?;
-        Ok(Self {
-            shards,
-            size,
-            shard,
-        })
-    }
 }
 
 /// Rows and columns.
@@ -73,13 +61,14 @@ impl ShardList {
 
     fn __hash__(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
-        (self.size, self.shard).hash(&mut hasher);
+        self.shards.hash(&mut hasher);
         hasher.finish()
     }
 
     fn __reduce__(&self, py: Python<'_>) -> Result<(Py<PyAny>, (Sides, Sides))> {
         let make = py.import("dapple_textures._native")?.getattr("shards")?;
-        let sides = [self.size, self.shard].map(|[columns, rows]| (rows, columns));
+        let sides =
+            [self.shards.size(), self.shards.shard()].map(|[columns, rows]| (rows, columns));
         Ok((make.unbind(), sides.into()))
     }
 }

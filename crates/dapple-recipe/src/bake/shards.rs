@@ -20,7 +20,7 @@ use crate::{RecipeError, Region};
 /// assert_eq!(shards.iter().count(), 9604);
 /// # Ok::<(), dapple_recipe::RecipeError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Shards {
     size: [u32; 2],
     shard: [u32; 2],
@@ -43,6 +43,18 @@ impl Shards {
             }
         }
         Ok(Self { size, shard })
+    }
+
+    /// Columns and rows of the picture.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Columns and rows of a shard.
+    #[must_use]
+    pub fn shard(&self) -> [u32; 2] {
+        self.shard
     }
 
     /// How many shards there are side by side, and one below the other.

@@ -1,4 +1,4 @@
-//! What is made of a recipe: the options that a bake and a list of shards share.
+//! Options of the material that `bake` and `shards` share: size, maps, seed, relief, direction of normals.
 
 use super::maps::Maps;
 use crate::args::{Size, seed};

@@ -91,10 +91,10 @@ const FULL_SIZE: u32 = 1024;
 const POINTS: usize = 262_144;
 const LEVELS: usize = 3;
 
-/// What is to be done, with which figures.
+/// A command line that was read: a task, and the figures that it is for.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Command {
-    /// What is to be done.
+    /// What the gallery does.
     pub(crate) task: Task,
     /// Parts of the names of figures; without any, all figures.
     pub(crate) filter: Vec<String>,

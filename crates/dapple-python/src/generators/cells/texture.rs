@@ -1,4 +1,4 @@
-//! What is drawn of cells: of the plane, and of planes through more axes.
+//! Textures of cells: distances, their sums at several scales, borders and cell values, in the plane and in planes through more axes.
 
 use crate::function::Volume;
 use dapple::raster::glam::DVec2;
@@ -8,7 +8,7 @@ use dapple::worley::{
 };
 use std::sync::Arc;
 
-/// What is drawn of cells.
+/// A texture of cells, by the value that a position has.
 pub(super) enum Texture<const N: usize>
 where
     Axes: Space<N>,
