@@ -99,12 +99,13 @@ impl Recipe {
     ///
     /// [`Conflict`](RecipeErrorKind::Conflict), if two nodes say different things of one file.
     pub fn image_alpha(&self, file: &str) -> Result<Option<ImageAlpha>, RecipeError> {
-        let of_file = |node: &&Node| node.image_file() == Some(file);
-        let mut alphas = self.nodes.values().filter(of_file).map(Node::image_alpha);
-        let first = alphas.next().flatten();
-        if alphas.any(|alpha| alpha != first) {
+        let of_file = |(_, node): &(&String, &Node)| node.image_file() == Some(file);
+        let alphas = self.nodes.iter().filter(of_file);
+        let mut alphas = alphas.map(|(name, node)| (name, node.image_alpha()));
+        let first = alphas.next().and_then(|(_, alpha)| alpha);
+        if let Some((name, _)) = alphas.find(|(_, alpha)| *alpha != first) {
             let rule = "nodes that name one image say the same of its `alpha`";
-            return Err(RecipeError::new(RecipeErrorKind::Conflict { rule }));
+            return Err(RecipeError::new(RecipeErrorKind::Conflict { rule }).within(name));
         }
         Ok(first)
     }

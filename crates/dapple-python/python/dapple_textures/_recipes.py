@@ -6,12 +6,12 @@ import os
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from ._native import Recipe, read_image
 from ._types import refusal
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
     from pathlib import Path
 
 _Path = str | os.PathLike[str]

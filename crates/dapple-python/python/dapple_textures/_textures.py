@@ -6,12 +6,14 @@ The options and their defaults are those of the textures in recipes; a test comp
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, Literal, TypeAlias, cast
 
 import numpy as np
-import numpy.typing as npt
 
 from ._native import ColorField, Domain, Field, _texture
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 __all__ = [
     "cells",

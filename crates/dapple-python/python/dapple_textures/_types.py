@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ._native import DappleError
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 
 class Features(NamedTuple):

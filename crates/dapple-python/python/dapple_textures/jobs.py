@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 import zarr
 from zarr.core.sync import sync
-from zarr.errors import ContainsArrayError
+from zarr.errors import ContainsArrayError, ContainsGroupError
 from zarr.storage import LocalStore, MemoryStore, StorePath, ZipStore
 
 from . import _sources
@@ -258,17 +258,15 @@ def create(
         "layout": {"chunk": list(chunk), "compressors": repr(compressors)},
     }
     store = place_of(store)
-    # Others may do the same at this moment: whatever is there already is what they would make, too.
-    group = zarr.open_group(store, mode="a", zarr_format=3)
-    before = group.attrs.get(_ATTRIBUTE)
     # As it is read again.
     data = json.loads(json.dumps(data))
-    if before is not None and before != data:
+    group = _group(store, data)
+    before = group.attrs.get(_ATTRIBUTE)
+    if before is None:
+        raise refusal("store", f"{store} holds something else", "choose another place, or remove what is there")
+    if before != data:
         message = f"{store} holds another job"
         raise refusal("store", message, "choose another place, or remove what is there")
-    if before is None and list(group.keys()):
-        raise refusal("store", f"{store} is not empty", "choose another place")
-    group.attrs[_ATTRIBUTE] = data
     for hashed, image in source.images_by_hash().items():
         if f"{_IMAGES}/{hashed}" not in group:
             group.create_array(f"{_IMAGES}/{hashed}", data=image, overwrite=True)
@@ -290,6 +288,21 @@ def create(
         except ContainsArrayError:
             pass
     return Job(store)
+
+
+def _group(store: Any, data: dict[str, Any]) -> zarr.Group:
+    """The group of a store, made with the description of a job where there is none.
+
+    Others may make it at this moment. Its description goes with it in one file, so that whoever is last writes the same.
+    """
+    try:
+        return zarr.open_group(store, mode="r+")
+    except FileNotFoundError:
+        pass
+    try:
+        return zarr.create_group(store, attributes={_ATTRIBUTE: data}, zarr_format=3)
+    except ContainsGroupError:
+        return zarr.open_group(store, mode="r+")
 
 
 def place_of(store: Any) -> Any:
