@@ -21,7 +21,7 @@ use glam::DVec2;
 const LANES: usize = 32;
 
 /// The most corners of a cell that differ in other axes than the first.
-const MOST_CORNERS: usize = 8;
+pub(crate) const MOST_CORNERS: usize = 8;
 
 /// Perlin's improved noise: at every corner of a lattice of unit cells a gradient, and values that are 0 there, with that
 /// slope, and smooth in between.

@@ -4,13 +4,18 @@
 //! once for the row; then each pixel lies between two columns. Every corner is hashed once for a band of rows.
 
 use crate::GradientNoise;
-use crate::gradient::{Column, Place, corner, corners, fade};
-use dapple_raster::{RasterError, RasterViewMut, Window, simd};
+use crate::gradient::{Column, MOST_CORNERS, Place, corner, corners, fade};
+use dapple_raster::simd::{self, dispatch};
+use dapple_raster::{RasterError, RasterViewMut, Window};
+use fearless_simd::prelude::*;
 use std::mem;
 use std::ops::Range;
 
 /// How many rows of pixels a thread takes at once.
 const ROWS: u32 = 32;
+
+/// The mean length in pixels from which on runs are worth registers of more than four values.
+const LONG: usize = 24;
 
 /// A plane through the noise, with what the columns of a window share.
 pub(crate) struct Lines<'a, const N: usize, const REST: usize> {
@@ -57,7 +62,7 @@ impl<'a, const N: usize, const REST: usize> Lines<'a, N, REST> {
     pub(crate) fn new(noise: &'a GradientNoise<N>, window: &'a Window, rest: [f64; REST]) -> Self {
         let mut columns = Vec::new();
         let mut runs: Vec<Run> = Vec::new();
-        let mut offsets = Vec::new();
+        let mut offsets = Vec::with_capacity(window.size[0] as usize);
         for column in 0..window.size[0] {
             let place = Place::of(window.column_x(column));
             match runs.last_mut() {
@@ -105,16 +110,27 @@ impl<'a, const N: usize, const REST: usize> Lines<'a, N, REST> {
         }
         corners.move_to(places.map(|place| place.cell), &self.columns, self.noise);
         corners.blend(&places.map(|place| place.offset), self.columns.len());
+        if values.len() >= LONG * self.runs.len() {
+            dispatch!(simd::level(), _simd => self.fill_runs(values, &corners.columns));
+        } else {
+            self.fill_runs(values, &corners.columns);
+        }
+    }
+
+    /// The values of a row of pixels, between the blended columns of corners.
+    #[inline(always)]
+    fn fill_runs(&self, values: &mut [f32], columns: &[Column]) {
         for run in &self.runs {
             let pixels = run.pixels.clone();
-            let sides = run.sides.map(|side| corners.columns[side]);
+            let sides = run.sides.map(|side| columns[side]);
             let (offsets, fades) = (&self.offsets[pixels.clone()], &self.fades[pixels.clone()]);
+            let values = &mut values[pixels];
             if !run.is_finite {
-                values[pixels].fill(f32::NAN);
-            } else {
-                for ((value, &t), &by) in values[pixels].iter_mut().zip(offsets).zip(fades) {
-                    *value = Column::between(sides, t, by);
-                }
+                values.fill(f32::NAN);
+                continue;
+            }
+            for ((value, &t), &by) in values.iter_mut().zip(offsets).zip(fades) {
+                *value = Column::between(sides, t, by);
             }
         }
     }
@@ -174,10 +190,29 @@ impl<const N: usize> Corners<N> {
 
     /// Blends the columns for a row of pixels, whose offsets in the cells these are; the first says nothing.
     fn blend(&mut self, offsets: &[f32; N], count: usize) {
-        self.columns.clear();
-        self.columns.extend(
-            (0..count)
-                .map(|column| Column::blend(|line| self.lines[line].gradients[column], offsets)),
-        );
+        let mut lines: [&[[f32; N]]; MOST_CORNERS] = [&[]; MOST_CORNERS];
+        for (line, known) in lines.iter_mut().zip(&self.lines) {
+            *line = &known.gradients[..count];
+        }
+        self.columns.resize(count, Column::default());
+        let columns = &mut self.columns[..count];
+        dispatch!(simd::level(), simd => blend(simd, &lines, offsets, columns));
+    }
+}
+
+/// Blends the gradients along the lines of corners, whose lengths are those of `columns`.
+#[inline(always)]
+fn blend<S: Simd, const N: usize>(
+    _simd: S,
+    lines: &[&[[f32; N]]; MOST_CORNERS],
+    offsets: &[f32; N],
+    columns: &mut [Column],
+) {
+    let mut sliced = *lines;
+    for line in sliced.iter_mut().take(corners(N)) {
+        *line = &line[..columns.len()];
+    }
+    for index in 0..columns.len() {
+        columns[index] = Column::blend(|line| sliced[line][index], offsets);
     }
 }

@@ -4,7 +4,7 @@
 //! and Modeling: A Procedural Approach", 3rd edition, 2003.
 
 use super::common_period;
-use super::values::join;
+use super::values::{by_bands, zip_rows};
 use crate::{Field, Frequency, RasterError, RasterViewMut, Window};
 use glam::DVec2;
 
@@ -130,15 +130,18 @@ impl<F: Field> Field for Fractal<F> {
         Ok(())
     }
 
-    fn render(&self, window: &Window, mut out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
+    fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), RasterError> {
         window.check_size(out.size())?;
-        out.fill(0.0);
-        for (octave, weight) in self.octaves() {
-            join(octave, window, out.reborrow(), |value, other| {
-                *value += weight * self.shape.of(other);
-            })?;
-        }
-        Ok(())
+        by_bands(window, out, |part, mut band, memory| {
+            band.fill(0.0);
+            for (octave, weight) in self.octaves() {
+                octave.render(part, memory.reborrow())?;
+                zip_rows(&mut band, memory, |value, other| {
+                    *value += weight * self.shape.of(other);
+                });
+            }
+            Ok(())
+        })
     }
 
     fn period(&self) -> [Option<f64>; 2] {

@@ -1,12 +1,12 @@
 //! Fields that change or join the values of others.
 
 use super::common_period;
-use crate::{Field, RasterError, RasterViewMut, Window};
+use crate::{Field, RasterError, RasterViewMut, Window, parallel};
 use core::fmt;
 use glam::DVec2;
 
-/// How many values of a second field are worked out at a time.
-const BAND: usize = 1 << 16;
+/// How many values of a field are worked out at a time: with as many others they stay in a core's cache.
+const BAND: usize = 1 << 17;
 
 /// A field whose values go through a function: see [`FieldExt::map`](super::FieldExt::map).
 #[derive(Clone, Copy)]
@@ -175,28 +175,54 @@ fn unit(value: f32) -> f32 {
 }
 
 /// Renders a field band by band and gives each of its values to `change` with the one that is there.
-pub(super) fn join(
+fn join(
     field: &impl Field,
     window: &Window,
     out: RasterViewMut<'_, f32>,
-    change: impl Fn(&mut f32, f32),
+    change: impl Fn(&mut f32, f32) + Sync,
 ) -> Result<(), RasterError> {
-    let width = window.size[0];
-    let height = (BAND / width as usize).clamp(1, window.size[1] as usize) as u32;
-    let mut memory = vec![0.0; width as usize * height as usize];
-    for (band, mut values) in (0_i64..).zip(out.bands(height)) {
+    by_bands(window, out, |part, mut band, memory| {
+        field.render(part, memory.reborrow())?;
+        zip_rows(&mut band, memory, &change);
+        Ok(())
+    })
+}
+
+/// Fills bands that fit a core's cache, on all cores where the feature `rayon` is on: `fill` is given the part of the window,
+/// its pixels, and memory for as many.
+pub(super) fn by_bands(
+    window: &Window,
+    out: RasterViewMut<'_, f32>,
+    fill: impl Fn(
+        &Window,
+        RasterViewMut<'_, f32>,
+        &mut RasterViewMut<'_, f32>,
+    ) -> Result<(), RasterError>
+    + Sync,
+) -> Result<(), RasterError> {
+    let width = window.size[0] as usize;
+    let height = (BAND / width).clamp(1, window.size[1] as usize) as u32;
+    let mut bands: Vec<_> = out.bands(height).collect();
+    let done = parallel::map_mut_at_least(1, &mut bands, |band, values| {
         let size = values.size();
-        let part = window.crop([0, band * i64::from(height)], size)?;
-        field.render(
-            &part,
-            RasterViewMut::new(&mut memory, width as usize, size)?,
-        )?;
-        // One loop for each row: a flat one would not become vector instructions.
-        for (values, others) in values.rows_mut().zip(memory.chunks_exact(width as usize)) {
-            for (value, &other) in values.iter_mut().zip(others) {
-                change(value, other);
-            }
+        let part = window.crop([0, band as i64 * i64::from(height)], size)?;
+        let mut memory = vec![0.0; width * size[1] as usize];
+        let mut memory = RasterViewMut::new(&mut memory, width, size)?;
+        fill(&part, values.reborrow(), &mut memory)
+    });
+    done.into_iter().collect()
+}
+
+/// Changes values by others of the same places.
+pub(super) fn zip_rows(
+    values: &mut RasterViewMut<'_, f32>,
+    others: &mut RasterViewMut<'_, f32>,
+    change: impl Fn(&mut f32, f32),
+) {
+    // One loop for each row: a flat one would not become vector instructions.
+    for (values, others) in values.rows_mut().zip(others.rows_mut()) {
+        for (value, &mut other) in values.iter_mut().zip(others) {
+            change(value, other);
         }
     }
-    Ok(())
 }
