@@ -1,6 +1,7 @@
 //! Every figure, small: it equals its line in figures.lock, for any number of threads.
 
 use crate::with_threads;
+use dapple::recipe::Recipe;
 use dapple_gallery::{LOCK_SIZE, Lock, figures, select};
 use std::collections::BTreeSet;
 
@@ -74,5 +75,16 @@ fn figures_keep_their_shape_at_another_size() {
                 figure.name()
             );
         }
+    }
+}
+
+#[test]
+fn recipes_of_figures_are_built_in() {
+    let parameters = figures().flat_map(|figure| figure.parameters);
+    let recipes = parameters.filter(|(name, _)| *name == "recipe");
+    let names: Vec<&str> = recipes.map(|(_, recipe)| *recipe).collect();
+    assert!(!names.is_empty());
+    for name in names {
+        assert!(Recipe::builtin_names().any(|known| known == name), "{name}");
     }
 }

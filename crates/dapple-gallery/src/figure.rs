@@ -11,7 +11,8 @@ use anyhow::{Context, ensure};
 pub struct Figure {
     /// The number of the figure in the paper, such as `"3a"`; `"extra"` if the paper has none like it.
     pub number: &'static str,
-    /// What the picture was made with, as the page shows it: pairs of a name and a value.
+    /// What the picture was made with, as the page shows it: pairs of a name and a value. A `recipe` is a built-in one like
+    /// the figure, which the page says how to open.
     pub parameters: &'static [(&'static str, &'static str)],
     /// The file that the figure is in: always `source!()`.
     pub source: Source,

@@ -132,18 +132,29 @@ fn parameter((name, value): (&str, &str)) -> String {
     )
 }
 
-/// The command that renders the figure, and its source.
+/// The commands that render the figure and open the recipes that are like it, and its source.
 fn code(figure: &Figure, root: &str) -> String {
-    let command = escape(&format!("cargo xtask gallery {}", figure.name()));
+    let recipes = figure.parameters.iter().filter(|(name, _)| *name == RECIPE);
+    let studio = recipes.map(|(_, recipe)| command(&format!("dapple studio {recipe}")));
+    let gallery = command(&format!("cargo xtask gallery {}", figure.name()));
+    let commands = gallery + &studio.collect::<String>();
     let path = escape(&figure.source.path.replace('\\', "/"));
     let file = escape(root) + &path;
     let text = escape(figure.source.text);
     format!(
-        "<div class=\"code\"><pre class=\"command\">{command}</pre>{COPY}</div>\
+        "{commands}\
          <details><summary>Source</summary><a href=\"{file}\">{path}</a>\
          <div class=\"code\"><pre>{text}</pre>{COPY}</div></details>"
     )
 }
+
+fn command(line: &str) -> String {
+    let line = escape(line);
+    format!("<div class=\"code\"><pre class=\"command\">{line}</pre>{COPY}</div>")
+}
+
+/// The name of a parameter that is a built-in recipe.
+const RECIPE: &str = "recipe";
 
 /// The button that copies the text before it.
 const COPY: &str = "<button class=\"scripted\" data-copy>Copy</button>";

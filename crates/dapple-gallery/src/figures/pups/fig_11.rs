@@ -16,6 +16,7 @@ pub(super) const FIGURE: Figure = Figure {
     parameters: &[
         ("minimum distance", "0.1"),
         ("labels", "random, black or white"),
+        ("recipe", "cow"),
     ],
     source: source!(),
     render,

@@ -14,6 +14,7 @@ pub(super) const FIGURE: Figure = Figure {
     parameters: &[
         ("minimum distance of centers", "0.2"),
         ("pairs of points around a center", "10 to 20"),
+        ("recipe", "giraffe"),
     ],
     source: source!(),
     render,

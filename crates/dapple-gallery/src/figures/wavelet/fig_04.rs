@@ -28,6 +28,7 @@ pub(super) const FIGURE: Figure = Figure {
         ("margin of the cut", "32 pixels"),
         ("grass", "35 % of the area"),
         ("gain of the mask", "8"),
+        ("recipe", "stone-and-grass"),
     ],
     source: source!(),
     render,

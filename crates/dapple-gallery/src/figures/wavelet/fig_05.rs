@@ -18,6 +18,9 @@ pub(super) const FIGURE: Figure = Figure {
     parameters: &[
         ("tile, map", "128 × 128, 512 × 512"),
         ("noise", "Perlin, five octaves"),
+        ("recipe", "marble"),
+        ("recipe", "wood-grain"),
+        ("recipe", "clouds"),
     ],
     source: source!(),
     render,

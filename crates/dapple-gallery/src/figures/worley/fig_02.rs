@@ -24,6 +24,7 @@ pub(super) const FIGURE: Figure = Figure {
             "5 octaves of noise, another place for each stone",
         ),
         ("grain", "fractal F1"),
+        ("recipe", "flagstone"),
     ],
     source: source!(),
     render,

@@ -23,6 +23,7 @@ pub(super) const FIGURE: Figure = Figure {
             "depths of the steps",
             "0.035, 0.03, 0.025, 0.02; a cell is 0.42 wide",
         ),
+        ("recipe", "spaceship-hull"),
     ],
     source: source!(),
     render,

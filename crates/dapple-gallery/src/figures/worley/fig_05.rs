@@ -22,6 +22,7 @@ pub(super) const FIGURE: Figure = Figure {
         ),
         ("gradient", "from belly to back"),
         ("tongue", "5 octaves of noise"),
+        ("recipe", "crusty-skin"),
     ],
     source: source!(),
     render,

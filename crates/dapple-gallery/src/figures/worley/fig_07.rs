@@ -19,6 +19,7 @@ pub(super) const FIGURE: Figure = Figure {
     parameters: &[
         ("waves", "Σ 2^−i F1(2^i x), i from 0 to 4"),
         ("mirror", "Fresnel, 0.02 seen straight"),
+        ("recipe", "sea-water"),
     ],
     source: source!(),
     render,

@@ -20,6 +20,7 @@ pub(super) const FIGURE: Figure = Figure {
         ("metric", "Chebyshev"),
         ("cells around", "48"),
         ("cells from pole to pole", "24"),
+        ("recipe", "radial-hull"),
     ],
     source: source!(),
     render,
