@@ -2,12 +2,13 @@
 
 mod exchange;
 mod fuzz;
+mod page;
 mod python;
 
 use crate::tidy;
 use crate::tidy::workspace::{Member, Workspace};
-use anyhow::Context;
-use xshell::{Shell, cmd};
+use anyhow::{Context, bail};
+use xshell::{Cmd, Shell, cmd};
 
 /// A step of CI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +29,8 @@ pub(crate) enum Step {
     Package,
     /// Materials for other programs, given to those that are there.
     Exchange,
+    /// The page of the studio, where Node is.
+    Page,
     /// The Python package, where Python is.
     Python,
     /// Each fuzz target for some seconds, where nightly Rust and cargo-fuzz are.
@@ -36,7 +39,7 @@ pub(crate) enum Step {
 
 impl Step {
     /// The steps, in the order in which CI runs them.
-    pub(crate) const ALL: [Self; 10] = [
+    pub(crate) const ALL: [Self; 11] = [
         Self::Test,
         Self::Fmt,
         Self::Clippy,
@@ -45,6 +48,7 @@ impl Step {
         Self::Features,
         Self::Package,
         Self::Exchange,
+        Self::Page,
         Self::Python,
         Self::Fuzz,
     ];
@@ -60,6 +64,7 @@ impl Step {
             Self::Features => "features",
             Self::Package => "package",
             Self::Exchange => "exchange",
+            Self::Page => "page",
             Self::Python => "python",
             Self::Fuzz => "fuzz",
         }
@@ -95,6 +100,7 @@ fn run(shell: &Shell, step: Step) -> anyhow::Result<()> {
         Step::Features => return features(shell),
         Step::Package => return package(shell),
         Step::Exchange => return exchange::exchange(shell),
+        Step::Page => return page::page(shell),
         Step::Python => return python::python(shell),
         Step::Fuzz => return fuzz::fuzz(shell),
     };
@@ -148,4 +154,18 @@ fn feature_sets(member: &Member) -> Vec<String> {
         sets.push(own.cloned().collect::<Vec<_>>().join(","));
     }
     sets
+}
+
+/// Says what is skipped, or fails where nothing may be.
+fn skip(reason: &str) -> anyhow::Result<()> {
+    if std::env::var_os("DAPPLE_NO_SKIP").is_some_and(|value| value == "1") {
+        bail!("{reason}; DAPPLE_NO_SKIP=1 lets nothing be skipped");
+    }
+    crate::say(&format!("skipped: {reason}"));
+    Ok(())
+}
+
+/// Whether a command succeeds.
+fn works(command: Cmd<'_>) -> bool {
+    command.quiet().ignore_stderr().run().is_ok()
 }

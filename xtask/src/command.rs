@@ -25,7 +25,7 @@ Usage: cargo xtask <command>
   golden [--bless]      compare the golden images of tests/golden/, or rewrite them
   tidy                  check the house rules: layers, lints, headers, lengths, figures.lock
   ci [step...]          what CI runs, or some of its steps: test fmt clippy doc tidy
-                      features package exchange python fuzz";
+                      features package exchange page python fuzz";
 
 /// What is to be done.
 #[derive(Debug, PartialEq)]

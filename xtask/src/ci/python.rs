@@ -5,6 +5,7 @@
 //! module `bpy` wants an older NumPy than others, so its tests and its page have an environment of their own, and are skipped
 //! where no index has it for this Python. All of it lies in `target/python`.
 
+use super::{skip, works};
 use anyhow::{Context, bail};
 use std::path::{Path, PathBuf};
 use xshell::{Cmd, Shell, cmd};
@@ -67,15 +68,6 @@ pub(super) fn python(shell: &Shell) -> anyhow::Result<()> {
     Ok(cmd!(shell, "{python} -m pytest -q -rs -k blender {files...}").run()?)
 }
 
-/// Says what is skipped, or fails where nothing may be.
-fn skip(reason: &str) -> anyhow::Result<()> {
-    if std::env::var_os("DAPPLE_NO_SKIP").is_some_and(|value| value == "1") {
-        bail!("{reason}; DAPPLE_NO_SKIP=1 lets nothing be skipped");
-    }
-    crate::say(&format!("skipped: {reason}"));
-    Ok(())
-}
-
 /// The folder of the programs of an environment with some packages.
 ///
 /// # Errors
@@ -112,10 +104,6 @@ fn wheel(shell: &Shell, bin: &Path, folder: &Path) -> anyhow::Result<PathBuf> {
     .run()?;
     let files = shell.read_dir(folder)?;
     files.into_iter().next().context("maturin made no wheel")
-}
-
-fn works(command: Cmd<'_>) -> bool {
-    command.quiet().ignore_stderr().run().is_ok()
 }
 
 /// The search path with a folder in front.
