@@ -62,9 +62,9 @@ pub use options::{Orientation, PupsOptions};
 pub use pups::Pups;
 pub use range::Range;
 pub use recipes::{
-    Cells, CellsOptions, CellularNoiseOptions, ColorNoiseOptions, ControlPoint, ControlPoints,
+    Cells, CellsOptions, CellularNoiseOptions, ColorNoiseOptions, ControlNet, ControlPoint, ControlPoints,
     CowOptions, CowProgressionOptions, Folding, GiraffeProgressionOptions, IteratedOptions,
-    IterationPoints, LabelRampOptions, LabelTexture, Layers, NetOptions, NoiseOptions, Octave,
+    IterationPoints, LabelRampOptions, LabelTexture, Layers, NetField, NetOptions, NetValues, NoiseOptions, Octave,
     OctaveSource, OctavesOptions, ProgressionOptions, PupsField, PupsRecipe, ReferenceOptions,
     SpaceGiraffeOptions, Spacing, Spots, TurbulenceOptions, VectorLabelTexture, cells,
     cellular_noise, color_noise, control_points, cow, cow_progression, giraffe_progression,

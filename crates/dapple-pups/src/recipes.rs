@@ -19,6 +19,7 @@ mod spacing;
 mod cells;
 mod cellular_noise;
 mod color_noise;
+mod control_net;
 mod control_points;
 mod cow;
 mod iterated;
@@ -32,6 +33,7 @@ mod space_giraffe;
 pub use cells::{CellsOptions, cells};
 pub use cellular_noise::{CellularNoiseOptions, cellular_noise};
 pub use color_noise::{ColorNoiseOptions, color_noise};
+pub use control_net::{ControlNet, NetField, NetValues};
 pub use control_points::{Cells, ControlPoint, ControlPoints, control_points};
 pub use cow::{CowOptions, cow};
 pub use iterated::{IteratedOptions, IterationPoints, iterated_reference};
@@ -52,7 +54,6 @@ pub use spacing::Spacing;
 use crate::{PupsError, VectorTexture};
 use dapple_hash::Seed;
 use dapple_points::Domain;
-use dapple_raster::Field;
 use std::sync::Arc;
 
 /// The options of a texture, as far as all textures are alike. `Image` is what a texture follows: nothing, or a
@@ -81,13 +82,13 @@ pub trait PupsRecipe<Image = ()>: Clone + Default {
 #[derive(Clone)]
 pub enum PupsField {
     /// A number at each position.
-    Numbers(Arc<dyn Field>),
+    Numbers(Arc<dyn NetField>),
     /// A color at each position.
     Colors(Box<VectorTexture<3>>),
 }
 
 impl PupsField {
-    fn numbers(field: impl Field + 'static) -> Self {
+    fn numbers(field: impl NetField + 'static) -> Self {
         Self::Numbers(Arc::new(field))
     }
 }

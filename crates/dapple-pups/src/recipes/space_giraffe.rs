@@ -137,7 +137,7 @@ impl SpaceGiraffeOptions {
             }
         }
         let reach = spots.iter().map(|spot| spot.radius).fold(0.0, f64::max);
-        let domain = grown(self.domain, reach);
+        let domain = self.domain.grown(DVec2::splat(reach));
         Ok((PointSet::new(domain, positions)?, labels))
     }
 
@@ -180,16 +180,6 @@ fn radius(graph: &Graph, center: PointIdx) -> Result<f64, PupsError> {
             needed: 2,
         }),
     )
-}
-
-/// The domain with a margin along the axes that do not wrap.
-fn grown(domain: Domain, margin: f64) -> Domain {
-    let margin = DVec2::from(domain.wrap.map(|wrap| if wrap { 0.0 } else { margin }));
-    Domain {
-        origin: domain.origin - margin,
-        size: domain.size + margin * 2.0,
-        ..domain
-    }
 }
 
 impl PupsRecipe for SpaceGiraffeOptions {

@@ -1,10 +1,10 @@
 //! The textures of `dapple-pups` over the tile of a recipe.
 
 use super::{ImageAlpha, NodeKind};
-use crate::plan::{Builder, Picture, Step, Work};
-use crate::{RecipeError, RecipeErrorKind};
+use crate::plan::{Builder, Images, Picture, PlanLimits, Step, TIME, Work};
+use crate::{Node, Recipe, RecipeError, RecipeErrorKind};
 use dapple_points::Domain;
-use dapple_pups::{PupsField, PupsRecipe, ReferenceImage};
+use dapple_pups::{ControlNet, ControlPoints, PupsField, PupsRecipe, ReferenceImage};
 use serde::{Deserialize, Serialize};
 
 /// A texture after an image, which covers the tile. Of a color image the luminance counts.
@@ -152,6 +152,61 @@ impl PupsNode {
     #[must_use]
     pub fn image_file(&self) -> Option<&str> {
         Some(self.texture().image()?.0)
+    }
+}
+
+/// The control points of a `pups` node.
+#[derive(Clone, Debug)]
+pub struct ControlNets {
+    /// The points of each layer, the coarsest first; a single one where the texture has no layers.
+    pub nets: Vec<ControlNet>,
+    /// The options of [`PupsNode::Points`] that make the same texture, bit for bit, where a node of points can.
+    pub points: Option<ControlPoints>,
+}
+
+impl Recipe {
+    /// The control points of the `pups` node of this name; nothing if there is none.
+    ///
+    /// A texture of one layer of numbers can be had as a node of points: all but `octaves`, `turbulence` and
+    /// `cellular_noise`, which have layers, and `color_noise`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Plan::new_within`](crate::Plan::new_within) that the node has by itself.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_recipe::{Images, Node, PlanLimits, PupsNode, Recipe};
+    ///
+    /// let text = "dapple = 1\n[nodes.hide.pups.cow]\nspacing = 0.2\n[material]\nheight = \"hide\"\n";
+    /// let mut recipe = Recipe::from_toml(text)?;
+    /// let nets = recipe.control_nets("hide", &Images::new(), 0.0, &PlanLimits::default())?;
+    /// let mut points = nets.and_then(|nets| nets.points).expect("a cow is one net of numbers");
+    /// points.points[0].x += 0.05;
+    /// recipe.nodes["hide"] = Node::Pups(PupsNode::Points(points));
+    /// # Ok::<(), dapple_recipe::RecipeError>(())
+    /// ```
+    pub fn control_nets(
+        &self,
+        node: &str,
+        images: &Images,
+        time: f64,
+        limits: &PlanLimits,
+    ) -> Result<Option<ControlNets>, RecipeError> {
+        RecipeError::check_in(TIME, "time", time)?;
+        let Some((name, node @ Node::Pups(pups))) = self.nodes.get_key_value(node) else {
+            return Ok(None);
+        };
+        let mut builder = Builder::new(self, images, time, limits);
+        let field = builder
+            .enter(name, node)
+            .and_then(|()| pups.texture().build(&builder))
+            .map_err(|error| error.within(name))?;
+        Ok(Some(ControlNets {
+            nets: field.nets(),
+            points: field.to_points(builder.domain()),
+        }))
     }
 }
 
