@@ -21,6 +21,7 @@ mod weight;
 
 mod net;
 mod pups;
+mod support;
 mod texture;
 
 mod profile;
@@ -62,13 +63,14 @@ pub use options::{Orientation, PupsOptions};
 pub use pups::Pups;
 pub use range::Range;
 pub use recipes::{
-    Cells, CellsOptions, CellularNoiseOptions, ColorNoiseOptions, ControlNet, ControlPoint, ControlPoints,
-    CowOptions, CowProgressionOptions, Folding, GiraffeProgressionOptions, IteratedOptions,
-    IterationPoints, LabelRampOptions, LabelTexture, Layers, NetField, NetOptions, NetValues, NoiseOptions, Octave,
-    OctaveSource, OctavesOptions, ProgressionOptions, PupsField, PupsRecipe, ReferenceOptions,
-    SpaceGiraffeOptions, Spacing, Spots, TurbulenceOptions, VectorLabelTexture, cells,
-    cellular_noise, color_noise, control_points, cow, cow_progression, giraffe_progression,
-    iterated_reference, label_ramp, noise, octaves, reference_texture, space_giraffe, turbulence,
+    Cells, CellsOptions, CellularNoiseOptions, ColorNoiseOptions, ControlNet, ControlPoint,
+    ControlPoints, CowOptions, CowProgressionOptions, Folding, GiraffeProgressionOptions,
+    IteratedOptions, IterationPoints, LabelRampOptions, LabelTexture, Layers, NetField, NetOptions,
+    NetValues, NoiseOptions, Octave, OctaveSource, OctavesOptions, Orbits, ProgressionOptions,
+    PupsField, PupsRecipe, ReferenceOptions, SpaceGiraffeOptions, Spacing, Spots,
+    TurbulenceOptions, VectorLabelTexture, cells, cellular_noise, color_noise, control_points, cow,
+    cow_progression, giraffe_progression, iterated_reference, label_ramp, noise, octaves,
+    reference_texture, space_giraffe, turbulence,
 };
 pub use texture::{Texture, VectorTexture};
 pub use weight::AxialWeight;

@@ -11,6 +11,7 @@
 //! the domain is an [`Instance`]; positions are brought into the domain first, so that a texture repeats exactly.
 
 use crate::bins::Bins;
+use crate::support::{fading, has_gap, support_box};
 use crate::{PupsError, PupsErrorKind, PupsOptions};
 use dapple_graph::{Axis, Graph, delaunay};
 use dapple_points::{Domain, PointIdx, PointSet};
@@ -53,6 +54,9 @@ impl AxisBlock {
     }
 }
 
+/// What the axial weights of a block are raised to: below 1 for axes that fade, which a block has first or not at all.
+pub(crate) type Exponents = [f32; BLOCK];
+
 /// A control point, or one of its periodic images; one cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
@@ -85,8 +89,10 @@ pub(crate) struct Net {
     pub(crate) options: PupsOptions,
     /// Control points and their images, in the order in which weights are summed: by point, then by image.
     pub(crate) instances: Vec<Instance>,
-    /// The axes of all points, point by point.
+    /// The axes of all points, point by point: first those that do not fade, then, in blocks of their own, those that do.
     blocks: Vec<AxisBlock>,
+    /// The exponents of the axial weights of each block; empty where no axis fades.
+    exponents: Vec<Exponents>,
     /// ε times the orientation in the plane, for each point; empty without orientations.
     pub(crate) shifts: Vec<[f32; 2]>,
     /// For single positions; made when the first is asked for.
@@ -117,6 +123,7 @@ impl Net {
             domain: *points.domain(),
             instances: Vec::with_capacity(points.len() + points.len() / 4 + 16),
             blocks: Vec::with_capacity(points.len() + points.len() / 16),
+            exponents: Vec::new(),
             shifts: options
                 .orientation
                 .iter()
@@ -152,6 +159,15 @@ impl Net {
         &self.blocks[instance.first_block as usize..][..instance.n_blocks as usize]
     }
 
+    /// The exponents of the blocks of a control point; none where no axis of the net fades.
+    #[inline(always)]
+    pub(crate) fn exponents(&self, instance: &Instance) -> &[Exponents] {
+        if self.exponents.is_empty() {
+            return &[];
+        }
+        &self.exponents[instance.first_block as usize..][..instance.n_blocks as usize]
+    }
+
     /// A coordinate along `axis` as the evaluation takes it: in the domain where it wraps, and not too far out where it
     /// does not. What is not finite stays so.
     #[inline]
@@ -168,6 +184,34 @@ impl Net {
 
     /// Adds the axes of the next point, scaled.
     fn push_axes(&mut self, point: PointIdx, axes: &[Axis]) -> Result<(), PupsError> {
+        if self.options.fade == 0.0 {
+            return self.push_blocks(point, axes);
+        }
+        let exponents = fading(axes, self.options.fade);
+        let of = |is_fading: bool| {
+            let all = axes.iter().zip(&exponents);
+            all.filter(move |&(_, &exponent)| (exponent < 1.0) == is_fading)
+        };
+        let (full, fading): (Vec<Axis>, Vec<Axis>) = (
+            of(false).map(|(&axis, _)| axis).collect(),
+            of(true).map(|(&axis, _)| axis).collect(),
+        );
+        self.push_blocks(point, &full)?;
+        self.exponents.resize(self.blocks.len(), [1.0; BLOCK]);
+        if !fading.is_empty() {
+            self.push_blocks(point, &fading)?;
+        }
+        let exponents: Vec<f32> = of(true).map(|(_, &exponent)| exponent).collect();
+        for chunk in exponents.chunks(BLOCK) {
+            let mut block = [1.0; BLOCK];
+            block[..chunk.len()].copy_from_slice(chunk);
+            self.exponents.push(block);
+        }
+        Ok(())
+    }
+
+    /// Adds blocks of axes of the next point, scaled; one without axes if there are none.
+    fn push_blocks(&mut self, point: PointIdx, axes: &[Axis]) -> Result<(), PupsError> {
         // With this limit, no product of an axis and a position leaves the range of single precision.
         let limit = self.domain.size.max_element() * 1e-9;
         for chunk in axes.chunks(BLOCK) {
@@ -247,16 +291,6 @@ impl Net {
     }
 }
 
-/// Whether two neighboring axes, in their order around the point, are half a turn or more apart.
-fn has_gap(axes: &[Axis]) -> bool {
-    let next = axes.iter().cycle().skip(1);
-    axes.len() < 3
-        || axes
-            .iter()
-            .zip(next)
-            .any(|(axis, next)| axis.vector.perp_dot(next.vector) <= 0.0)
-}
-
 /// Adds the Delaunay axes of a point whose own axes leave its support open.
 ///
 /// On the hull of points that do not wrap, the Delaunay axes leave it open too; there it stays so, and the point rules
@@ -277,82 +311,6 @@ fn close_gap(
         }
     }
     Ok(())
-}
-
-/// The box around the support of a point, seen from the point: the polygon of all `d` with `d·v < s |v|²` for every
-/// axis `v`. A side is infinite where the polygon is not bounded.
-fn support_box(axes: &[Axis], scale: f64) -> (DVec2, DVec2) {
-    walk_support(axes, scale).unwrap_or_else(|| clip_support(axes, scale))
-}
-
-/// The box when every axis contributes an edge, as Delaunay axes do: its corners are where the borders of neighboring
-/// axes meet. Nothing if an axis has no edge or the polygon is open.
-fn walk_support(axes: &[Axis], scale: f64) -> Option<(DVec2, DVec2)> {
-    if has_gap(axes) {
-        return None;
-    }
-    let corner = |a: DVec2, b: DVec2| {
-        (b.perp() * a.length_squared() - a.perp() * b.length_squared()) * (-scale / a.perp_dot(b))
-    };
-    let vector = |index: usize| axes[index % axes.len()].vector;
-    let mut before = corner(vector(axes.len() - 1), vector(0));
-    let (mut min, mut max) = (before, before);
-    for index in 0..axes.len() {
-        let after = corner(vector(index), vector(index + 1));
-        if vector(index).perp_dot(after - before) < 0.0 {
-            return None;
-        }
-        (min, max) = (min.min(after), max.max(after));
-        before = after;
-    }
-    Some((min, max))
-}
-
-/// The box of any support, by clipping a very large square.
-fn clip_support(axes: &[Axis], scale: f64) -> (DVec2, DVec2) {
-    let longest = axes
-        .iter()
-        .map(|axis| axis.vector.length())
-        .fold(0.0, f64::max);
-    let far = (longest * scale).max(f64::MIN_POSITIVE) * 1e12;
-    let mut polygon = vec![
-        DVec2::new(far, far),
-        DVec2::new(-far, far),
-        DVec2::new(-far, -far),
-        DVec2::new(far, -far),
-    ];
-    for axis in axes {
-        let inside = |corner: DVec2| scale * axis.vector.length_squared() - corner.dot(axis.vector);
-        let mut clipped = Vec::with_capacity(polygon.len() + 1);
-        for (index, &corner) in polygon.iter().enumerate() {
-            let next = polygon[(index + 1) % polygon.len()];
-            let [here, there] = [inside(corner), inside(next)];
-            if here >= 0.0 {
-                clipped.push(corner);
-            }
-            if (here < 0.0) != (there < 0.0) {
-                clipped.push(corner + (next - corner) * (here / (here - there)));
-            }
-        }
-        polygon = clipped;
-    }
-    let min = polygon.iter().copied().fold(DVec2::INFINITY, DVec2::min);
-    let max = polygon
-        .iter()
-        .copied()
-        .fold(DVec2::NEG_INFINITY, DVec2::max);
-    // What reaches far beyond every axis is cut by the square, not by an axis; a long wedge may as well be open.
-    let open = |side: f64| {
-        if side.abs() < far * 1e-3 {
-            side
-        } else {
-            f64::INFINITY.copysign(side)
-        }
-    };
-    (
-        DVec2::new(open(min.x), open(min.y)),
-        DVec2::new(open(max.x), open(max.y)),
-    )
 }
 
 #[cfg(test)]

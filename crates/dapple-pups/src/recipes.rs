@@ -26,6 +26,7 @@ mod iterated;
 mod noise;
 mod octave;
 mod octaves;
+mod orbits;
 mod progression;
 mod reference;
 mod space_giraffe;
@@ -43,6 +44,7 @@ pub use net_options::NetOptions;
 pub use noise::{NoiseOptions, noise};
 pub use octave::{Folding, Octave};
 pub use octaves::{OctaveSource, OctavesOptions, TurbulenceOptions, octaves, turbulence};
+pub use orbits::Orbits;
 pub use progression::{
     CowProgressionOptions, GiraffeProgressionOptions, LabelRampOptions, ProgressionOptions,
     cow_progression, giraffe_progression, label_ramp,
@@ -65,6 +67,9 @@ pub trait PupsRecipe<Image = ()>: Clone + Default {
     /// Where the control points lie. A default that does not wrap along an axis is that of a texture that changes along
     /// it, and belongs on such domains.
     fn domain_mut(&mut self) -> &mut Domain;
+
+    /// How the control points are weighted, and how they move.
+    fn net_mut(&mut self) -> &mut NetOptions;
 
     /// About how many control points the texture has, rather too many than too few, without placing them. It may be
     /// infinite.

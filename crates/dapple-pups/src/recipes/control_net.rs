@@ -126,6 +126,8 @@ fn net_options(options: &PupsOptions) -> NetOptions {
             .orientation
             .as_ref()
             .map_or(usual.strength, |orientation| orientation.strength),
+        fade: options.fade,
+        ..usual
     }
 }
 
@@ -140,6 +142,7 @@ impl PupsField {
     }
 
     /// The texture as control points that are given one by one, on a domain that is `tile`: the same picture, bit for bit.
+    /// Points that move stay where they are.
     ///
     /// There are none for a texture of several layers (octaves, turbulence, cellular noise) and for colors, which
     /// [`control_points`](crate::control_points) does not make.

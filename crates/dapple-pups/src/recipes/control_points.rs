@@ -1,8 +1,8 @@
 //! Textures of control points that are given one by one.
 
 use crate::{
-    LabelTexture, NetOptions, Orientation, Orientations, Pups, PupsError, PupsErrorKind, PupsField,
-    PupsOptions, PupsRecipe, Range, own_labels, range,
+    LabelTexture, NetOptions, Orientation, Orientations, PupsError, PupsErrorKind, PupsField,
+    PupsRecipe, Range, own_labels, range,
 };
 use dapple_graph::delaunay;
 use dapple_hash::Seed;
@@ -98,13 +98,12 @@ pub struct ControlPoint {
     /// direction, as `[x, y, z]`. All points have one, or none has.
     #[cfg_attr(
         feature = "serde",
-        serde(
-            default,
-            skip_serializing_if = "Option::is_none",
-            with = "orientation"
-        )
+        serde(default, skip_serializing_if = "Option::is_none", with = "orientation")
     )]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<crate::schema::Direction>"))]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(with = "Option<crate::schema::Direction>")
+    )]
     pub orientation: Option<DVec3>,
 }
 
@@ -136,12 +135,9 @@ pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, 
     let net = &options.net;
     let pups = match options.orientations()? {
         Some(vectors) => {
-            let options = PupsOptions {
-                axis_scale: net.axis_scale,
-                weight: net.weight,
-                orientation: Some(Orientation::new(vectors).with_strength(net.strength)),
-            };
-            Pups::new(&points, &delaunay(&points)?, options)?
+            let orientation = Orientation::new(vectors).with_strength(net.strength);
+            let graph = delaunay(&points)?;
+            net.oriented(&points, &graph, Some(orientation), seed)?
         }
         None => net.pups(&points, seed)?,
     };
@@ -225,6 +221,10 @@ mod orientation {
 impl PupsRecipe for ControlPoints {
     fn domain_mut(&mut self) -> &mut Domain {
         &mut self.domain
+    }
+
+    fn net_mut(&mut self) -> &mut NetOptions {
+        &mut self.net
     }
 
     fn expected_points(&self) -> f64 {

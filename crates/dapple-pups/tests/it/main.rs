@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod bits;
+mod fading;
 mod gradient;
 mod oracle;
 mod properties;

@@ -52,12 +52,12 @@ impl<T: PupsRecipe> Texture for T {
     }
 
     fn expected_points(&self, tile: Domain) -> f64 {
-        placed(self, tile).expected_points()
+        placed(self, tile, 0.0).expected_points()
     }
 
     fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError> {
         check_domain(self)?;
-        Ok(placed(self, plan.domain()).build(&(), plan.seed(None))?)
+        Ok(placed(self, plan.domain(), plan.time()).build(&(), plan.seed(None))?)
     }
 }
 
@@ -71,7 +71,7 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
     }
 
     fn expected_points(&self, tile: Domain) -> f64 {
-        placed(&self.options, tile).expected_points()
+        placed(&self.options, tile, 0.0).expected_points()
     }
 
     fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError> {
@@ -80,18 +80,19 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
             Picture::Colors(raster) => raster.map(|color| color.luminance()),
         })?;
         check_domain(&self.options)?;
-        Ok(placed(&self.options, plan.domain()).build(&image, plan.seed(None))?)
+        Ok(placed(&self.options, plan.domain(), plan.time()).build(&image, plan.seed(None))?)
     }
 }
 
-/// The options with the tile as their domain, which wraps along no axis along which the texture changes.
-fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain) -> T {
+/// The options at a time, with the tile as their domain, which wraps along no axis along which the texture changes.
+fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain, time: f64) -> T {
     let usual = T::default().domain_mut().wrap;
     let mut options = options.clone();
     *options.domain_mut() = Domain {
         wrap: [0, 1].map(|axis| tile.wrap[axis] && usual[axis]),
         ..tile
     };
+    options.net_mut().time = time;
     options
 }
 
@@ -203,9 +204,14 @@ impl Recipe {
             .enter(name, node)
             .and_then(|()| pups.texture().build(&builder))
             .map_err(|error| error.within(name))?;
+        let points = field.to_points(builder.domain());
         Ok(Some(ControlNets {
             nets: field.nets(),
-            points: field.to_points(builder.domain()),
+            points: points.map(|points| ControlPoints {
+                // In a recipe it is the tile, and is not to be given.
+                domain: ControlPoints::default().domain,
+                ..points
+            }),
         }))
     }
 }

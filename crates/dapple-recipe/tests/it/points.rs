@@ -30,7 +30,11 @@ fn bits(recipe: &Recipe) -> Vec<u32> {
     let plan = Plan::new(recipe, &images(), 0.0).unwrap();
     let window = plan.window([48, 32]).unwrap();
     let heights = plan.height().unwrap().to_raster(&window).unwrap();
-    heights.pixels().iter().map(|value| value.to_bits()).collect()
+    heights
+        .pixels()
+        .iter()
+        .map(|value| value.to_bits())
+        .collect()
 }
 
 const ONE_NET: [&str; 11] = [
@@ -55,9 +59,12 @@ fn textures_of_one_net_are_textures_of_points_bit_for_bit() {
                 continue;
             }
             let recipe = recipe(pups, wrap);
-            let points = nets(&recipe).points.unwrap_or_else(|| panic!("{pups}, {wrap:?}"));
+            let points = nets(&recipe)
+                .points
+                .unwrap_or_else(|| panic!("{pups}, {wrap:?}"));
             let mut edited = recipe.clone();
             edited.nodes["t"] = Node::Pups(PupsNode::Points(points));
+            assert!(bits(&edited) == bits(&recipe), "{pups}, {wrap:?}");
             // As text, since that is where an editor keeps them.
             let edited = Recipe::from_toml(&edited.to_toml().unwrap()).unwrap();
             assert!(bits(&edited) == bits(&recipe), "{pups}, {wrap:?}");
@@ -69,7 +76,10 @@ fn textures_of_one_net_are_textures_of_points_bit_for_bit() {
 fn textures_of_layers_and_colors_have_nets_but_no_points() {
     for (pups, n_nets) in [
         ("octaves = { spacing = 0.5, octaves = 3 }", 3),
-        ("octaves = { spacing = 0.5, octaves = 3, source = \"rescaled\" }", 1),
+        (
+            "octaves = { spacing = 0.5, octaves = 3, source = \"rescaled\" }",
+            1,
+        ),
         ("turbulence = { spacing = 0.5, octaves = 1 }", 1),
         ("cellular_noise = { spacing = 0.5, layers = 2 }", 2),
         ("color_noise = { spacing = 0.5 }", 1),
@@ -98,7 +108,9 @@ fn edges_of_a_net_join_its_points() {
 fn other_nodes_have_no_nets_and_too_many_points_are_refused() {
     let mut recipe = recipe("noise = { spacing = 1e-5 }", [true; 2]);
     let limits = PlanLimits::default();
-    let error = recipe.control_nets("t", &images(), 0.0, &limits).unwrap_err();
+    let error = recipe
+        .control_nets("t", &images(), 0.0, &limits)
+        .unwrap_err();
     assert!(
         matches!(error.kind(), RecipeErrorKind::TooMuch { .. }),
         "{error}"
@@ -109,4 +121,28 @@ fn other_nodes_have_no_nets_and_too_many_points_are_refused() {
         let nets = recipe.control_nets(name, &images(), 0.0, &limits).unwrap();
         assert!(nets.is_none(), "{name}");
     }
+}
+
+#[test]
+fn a_loop_of_control_points_joins_moves_and_has_points_at_each_time() {
+    let moving =
+        "noise = { spacing = 0.3, net = { motion = { radius = 0.3 }, orientations = \"random\" } }";
+    let recipe = recipe(moving, [true; 2]);
+    let at = |time: f64| {
+        let plan = Plan::new(&recipe, &images(), time).unwrap();
+        let window = plan.window([48, 32]).unwrap();
+        plan.height().unwrap().to_raster(&window).unwrap()
+    };
+    assert!(at(0.0) == at(1.0), "the end is the beginning");
+    assert!(at(0.0) != at(0.5), "it moves");
+    let nets = recipe.control_nets("t", &images(), 0.5, &PlanLimits::default());
+    let points = nets.unwrap().and_then(|nets| nets.points).unwrap();
+    let mut edited = recipe.clone();
+    edited.nodes["t"] = Node::Pups(PupsNode::Points(points));
+    let half = at(0.5)
+        .pixels()
+        .iter()
+        .map(|value| value.to_bits())
+        .collect::<Vec<_>>();
+    assert!(bits(&edited) == half, "points stay where they are");
 }
