@@ -10,7 +10,8 @@
 //!
 //! The textures of the paper are recipes on top of that, such as [`noise`], [`octaves`], [`cells`] and [`cow`]: each is
 //! one call with options and a seed. For textures of your own, place points, give them attributes ([`random_values`],
-//! [`biased_labels`], [`grouped_labels`], [`random_orientations`] and others), and make a texture of them.
+//! [`biased_labels`], [`grouped_labels`], [`random_orientations`] and others), and make a texture of them. To change control
+//! points one by one, as an editor does, use [`EditablePups`].
 
 #![forbid(unsafe_code)]
 
@@ -45,6 +46,8 @@ mod sink;
 mod assign;
 mod recipes;
 
+mod editable;
+
 #[cfg(feature = "schema")]
 mod schema;
 
@@ -57,6 +60,7 @@ pub use dapple_graph as graph;
 pub use dapple_hash as hash;
 pub use dapple_points as points;
 pub use dapple_raster as raster;
+pub use editable::{Changed, EditablePups};
 pub use error::{PupsError, PupsErrorKind};
 pub use glam;
 pub use options::{Orientation, PupsOptions};

@@ -11,9 +11,9 @@
 //! the domain is an [`Instance`]; positions are brought into the domain first, so that a texture repeats exactly.
 
 use crate::bins::Bins;
-use crate::support::{fading, has_gap, support_box};
+use crate::support::{fading, has_gap, padded_box};
 use crate::{PupsError, PupsErrorKind, PupsOptions};
-use dapple_graph::{Axis, Graph, delaunay};
+use dapple_graph::{Graph, delaunay};
 use dapple_points::{Domain, PointIdx, PointSet};
 use fearless_simd::{f32x8, prelude::*};
 use glam::DVec2;
@@ -28,9 +28,6 @@ const FAR: f64 = 1_048_576.0;
 
 /// No support reaches further than this many periods.
 const IMAGES_LIMIT: f64 = 64.0;
-
-/// Supports are taken this much larger than they are, so that rounding cannot put a weight outside of its box.
-const SLACK: f64 = 1e-5;
 
 /// Eight axes side by side; unused ones are zero, which projects every position to 0 and so weighs 1.
 #[derive(Clone, Copy, Debug, Default)]
@@ -110,8 +107,28 @@ impl Net {
             return Err(PupsError::new(PupsErrorKind::NoPoints));
         }
         PupsError::check_count("points in the graph", graph.n_points(), points.len())?;
-        options.check(points.len())?;
-        let size = points.domain().size;
+        let mut net = Self::empty(*points.domain(), options, points.len())?;
+        let mut closing = None;
+        let mut axes = Vec::new();
+        for (point, center) in points.iter() {
+            axes.clear();
+            axes.extend(graph.axes(point).iter().map(|axis| axis.vector));
+            if kind == GraphKind::Any && has_gap(&axes) {
+                close_gap(point, &mut axes, points, &mut closing)?;
+            }
+            net.push(point, center, &axes)?;
+        }
+        Ok(net)
+    }
+
+    /// The net of `n_points` points, to which they are to be added in their order.
+    pub(crate) fn empty(
+        domain: Domain,
+        options: PupsOptions,
+        n_points: usize,
+    ) -> Result<Self, PupsError> {
+        options.check(n_points)?;
+        let size = domain.size;
         let holds = size.min_element() >= 1e-18 && size.max_element() <= 1e18;
         PupsError::check(
             holds,
@@ -119,32 +136,32 @@ impl Net {
             size.max_element(),
             "from 1e-18 to 1e18",
         )?;
-        let mut net = Self {
-            domain: *points.domain(),
-            instances: Vec::with_capacity(points.len() + points.len() / 4 + 16),
-            blocks: Vec::with_capacity(points.len() + points.len() / 16),
+        Ok(Self {
+            domain,
+            instances: Vec::with_capacity(n_points + n_points / 4 + 16),
+            blocks: Vec::with_capacity(n_points + n_points / 16),
             exponents: Vec::new(),
             shifts: options
                 .orientation
                 .iter()
-                .flat_map(|it| (0..points.len()).map(|index| it.shift(index)))
+                .flat_map(|it| (0..n_points).map(|index| it.shift(index)))
                 .collect(),
             options,
             bins: OnceLock::new(),
-        };
-        let mut closing = None;
-        let mut axes = Vec::new();
-        for (point, center) in points.iter() {
-            axes.clear();
-            axes.extend_from_slice(graph.axes(point));
-            if kind == GraphKind::Any && has_gap(&axes) {
-                close_gap(point, &mut axes, points, &mut closing)?;
-            }
-            let first_block = net.blocks.len();
-            net.push_axes(point, &axes)?;
-            net.push_instances(point, center, &axes, first_block);
-        }
-        Ok(net)
+        })
+    }
+
+    /// Adds the next point, given the vectors of its axes in their order.
+    pub(crate) fn push(
+        &mut self,
+        point: PointIdx,
+        center: DVec2,
+        axes: &[DVec2],
+    ) -> Result<(), PupsError> {
+        let first_block = self.blocks.len();
+        self.push_axes(point, axes)?;
+        self.push_instances(point, center, axes, first_block);
+        Ok(())
     }
 
     /// Which control points can have a weight where.
@@ -183,7 +200,7 @@ impl Net {
     }
 
     /// Adds the axes of the next point, scaled.
-    fn push_axes(&mut self, point: PointIdx, axes: &[Axis]) -> Result<(), PupsError> {
+    fn push_axes(&mut self, point: PointIdx, axes: &[DVec2]) -> Result<(), PupsError> {
         if self.options.fade == 0.0 {
             return self.push_blocks(point, axes);
         }
@@ -192,7 +209,7 @@ impl Net {
             let all = axes.iter().zip(&exponents);
             all.filter(move |&(_, &exponent)| (exponent < 1.0) == is_fading)
         };
-        let (full, fading): (Vec<Axis>, Vec<Axis>) = (
+        let (full, fading): (Vec<DVec2>, Vec<DVec2>) = (
             of(false).map(|(&axis, _)| axis).collect(),
             of(true).map(|(&axis, _)| axis).collect(),
         );
@@ -211,13 +228,13 @@ impl Net {
     }
 
     /// Adds blocks of axes of the next point, scaled; one without axes if there are none.
-    fn push_blocks(&mut self, point: PointIdx, axes: &[Axis]) -> Result<(), PupsError> {
+    fn push_blocks(&mut self, point: PointIdx, axes: &[DVec2]) -> Result<(), PupsError> {
         // With this limit, no product of an axis and a position leaves the range of single precision.
         let limit = self.domain.size.max_element() * 1e-9;
         for chunk in axes.chunks(BLOCK) {
             let mut block = AxisBlock::default();
             for (slot, axis) in chunk.iter().enumerate() {
-                let length_sq = axis.vector.length_squared();
+                let length_sq = axis.length_squared();
                 if length_sq < limit * limit {
                     let length = length_sq.sqrt();
                     return Err(PupsError::new(PupsErrorKind::ShortAxis {
@@ -226,7 +243,7 @@ impl Net {
                         limit,
                     }));
                 }
-                let scaled = axis.vector / (length_sq * self.options.axis_scale);
+                let scaled = *axis / (length_sq * self.options.axis_scale);
                 block.x[slot] = scaled.x as f32;
                 block.y[slot] = scaled.y as f32;
             }
@@ -244,15 +261,13 @@ impl Net {
         &mut self,
         point: PointIdx,
         center: DVec2,
-        axes: &[Axis],
+        axes: &[DVec2],
         first_block: usize,
     ) {
         // A graph whose axes do not fit into 2^32 blocks does not fit into memory.
         let n_blocks = (self.blocks.len() - first_block) as u32;
         let first_block = first_block as u32;
-        let (min, max) = support_box(axes, self.options.axis_scale);
-        let slack = (max - min) * SLACK;
-        let (min, max) = (min - slack, max + slack);
+        let (min, max) = padded_box(axes, self.options.axis_scale);
         let [columns, rows] =
             [0, 1].map(|axis| self.image_range(axis, center[axis], min[axis], max[axis]));
         for row in rows {
@@ -297,7 +312,7 @@ impl Net {
 /// as far as the plane goes.
 fn close_gap(
     point: PointIdx,
-    axes: &mut Vec<Axis>,
+    axes: &mut Vec<DVec2>,
     points: &PointSet,
     closing: &mut Option<Graph>,
 ) -> Result<(), PupsError> {
@@ -306,8 +321,8 @@ fn close_gap(
         None => closing.insert(delaunay(points)?),
     };
     for axis in graph.axes(point) {
-        if !axes.contains(axis) {
-            axes.push(*axis);
+        if !axes.contains(&axis.vector) {
+            axes.push(axis.vector);
         }
     }
     Ok(())

@@ -80,6 +80,14 @@ impl Pups {
         })
     }
 
+    /// The net that was made of `points`.
+    pub(crate) fn of_net(net: Net, points: PointSet) -> Self {
+        Self {
+            net: Arc::new(net),
+            points: Arc::new(points),
+        }
+    }
+
     /// The number of control points.
     #[must_use]
     pub fn n_points(&self) -> usize {

@@ -1,35 +1,45 @@
 //! The polygon in which a control point has a weight, and the borders that its axes leave on it.
 //!
-//! The support of a point is the set of all `d` (seen from the point) with `d·v < s |v|²` for every axis `v` and the axis
-//! scale `s`. With Delaunay axes it is the Voronoi cell of the point, scaled by `2 s`: at `s = ½` the border that an axis
+//! The support of a point is the set of all `d` (seen from the point) with `d·v < s |v|²` for the vector `v` of every axis and
+//! the axis scale `s`. With Delaunay axes it is the Voronoi cell of the point, scaled by `2 s`: at `s = ½` the border that an axis
 //! leaves is the dual of its edge, the side that two Voronoi cells share.
 
-use dapple_graph::Axis;
 use glam::DVec2;
 
 /// Whether two neighboring axes, in their order around the point, are half a turn or more apart.
-pub(crate) fn has_gap(axes: &[Axis]) -> bool {
+pub(crate) fn has_gap(axes: &[DVec2]) -> bool {
     let next = axes.iter().cycle().skip(1);
     axes.len() < 3
         || axes
             .iter()
             .zip(next)
-            .any(|(axis, next)| axis.vector.perp_dot(next.vector) <= 0.0)
+            .any(|(axis, next)| axis.perp_dot(*next) <= 0.0)
+}
+
+/// Supports are taken this much larger than they are, so that rounding cannot put a weight outside of its box.
+const SLACK: f64 = 1e-5;
+
+/// A box in which the support of a point lies, seen from the point, whatever rounding does. A side is infinite where the
+/// support may not be bounded.
+pub(crate) fn padded_box(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
+    let (min, max) = support_box(axes, scale);
+    let slack = (max - min) * SLACK;
+    (min - slack, max + slack)
 }
 
 /// The box around the support of a point, seen from the point: the polygon of all `d` with `d·v < s |v|²` for every
 /// axis `v`. A side is infinite where the polygon is not bounded.
-pub(crate) fn support_box(axes: &[Axis], scale: f64) -> (DVec2, DVec2) {
+fn support_box(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
     walk_support(axes, scale).unwrap_or_else(|| clip_support(axes, scale))
 }
 
 /// The box when every axis contributes an edge, as Delaunay axes do: its corners are where the borders of neighboring
 /// axes meet. Nothing if an axis has no edge or the polygon is open.
-fn walk_support(axes: &[Axis], scale: f64) -> Option<(DVec2, DVec2)> {
+fn walk_support(axes: &[DVec2], scale: f64) -> Option<(DVec2, DVec2)> {
     if has_gap(axes) {
         return None;
     }
-    let vector = |index: usize| axes[index % axes.len()].vector;
+    let vector = |index: usize| axes[index % axes.len()];
     let corner = |a: DVec2, b: DVec2| corner(a, b) * scale;
     let mut before = corner(vector(axes.len() - 1), vector(0));
     let (mut min, mut max) = (before, before);
@@ -45,11 +55,8 @@ fn walk_support(axes: &[Axis], scale: f64) -> Option<(DVec2, DVec2)> {
 }
 
 /// The box of any support, by clipping a very large square.
-fn clip_support(axes: &[Axis], scale: f64) -> (DVec2, DVec2) {
-    let longest = axes
-        .iter()
-        .map(|axis| axis.vector.length())
-        .fold(0.0, f64::max);
+fn clip_support(axes: &[DVec2], scale: f64) -> (DVec2, DVec2) {
+    let longest = axes.iter().map(|axis| axis.length()).fold(0.0, f64::max);
     let far = (longest * scale).max(f64::MIN_POSITIVE) * 1e12;
     let mut polygon = vec![
         DVec2::new(far, far),
@@ -58,7 +65,7 @@ fn clip_support(axes: &[Axis], scale: f64) -> (DVec2, DVec2) {
         DVec2::new(far, -far),
     ];
     for axis in axes {
-        let inside = |corner: DVec2| scale * axis.vector.length_squared() - corner.dot(axis.vector);
+        let inside = |corner: DVec2| scale * axis.length_squared() - corner.dot(*axis);
         let mut clipped = Vec::with_capacity(polygon.len() + 1);
         for (index, &corner) in polygon.iter().enumerate() {
             let next = polygon[(index + 1) % polygon.len()];
@@ -97,21 +104,21 @@ fn corner(a: DVec2, b: DVec2) -> DVec2 {
 }
 
 /// The exponents of axes that fade where their borders are shorter than `fade` times their edges: 1 for those that do not.
-pub(crate) fn fading(axes: &[Axis], fade: f64) -> Vec<f32> {
+pub(crate) fn fading(axes: &[DVec2], fade: f64) -> Vec<f32> {
     let borders = walk_borders(axes).unwrap_or_else(|| clip_borders(axes));
-    let exponent = |(axis, border): (&Axis, f64)| {
-        let exponent = border / (fade * axis.vector.length());
+    let exponent = |(axis, border): (&DVec2, f64)| {
+        let exponent = border / (fade * axis.length());
         exponent.clamp(0.0, 1.0) as f32
     };
     axes.iter().zip(borders).map(exponent).collect()
 }
 
 /// The lengths of the borders of a cell if every axis leaves one, as Delaunay axes do.
-fn walk_borders(axes: &[Axis]) -> Option<Vec<f64>> {
+fn walk_borders(axes: &[DVec2]) -> Option<Vec<f64>> {
     if has_gap(axes) {
         return None;
     }
-    let vector = |index: usize| axes[index % axes.len()].vector;
+    let vector = |index: usize| axes[index % axes.len()];
     let mut before = corner(vector(axes.len() - 1), vector(0));
     let border = |index: usize| {
         let after = corner(vector(index), vector(index + 1));
@@ -124,15 +131,12 @@ fn walk_borders(axes: &[Axis]) -> Option<Vec<f64>> {
 
 /// The lengths of the borders of any cell, each cut by all other axes: infinite where the cell is open, and zero where an axis
 /// leaves none.
-fn clip_borders(axes: &[Axis]) -> Vec<f64> {
-    let border = |(index, axis): (usize, &Axis)| {
-        let (normal, along) = (axis.vector, axis.vector.perp());
+fn clip_borders(axes: &[DVec2]) -> Vec<f64> {
+    let border = |(index, &axis): (usize, &DVec2)| {
+        let along = axis.perp();
         let [mut first, mut last] = [f64::NEG_INFINITY, f64::INFINITY];
-        for (other, cut) in axes.iter().enumerate() {
-            let (rate, room) = (
-                cut.vector.dot(along),
-                0.5 * cut.vector.dot(cut.vector - normal),
-            );
+        for (other, &cut) in axes.iter().enumerate() {
+            let (rate, room) = (cut.dot(along), 0.5 * cut.dot(cut - axis));
             if rate > 0.0 {
                 last = last.min(room / rate);
             } else if rate < 0.0 {

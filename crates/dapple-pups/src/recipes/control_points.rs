@@ -1,7 +1,7 @@
 //! Textures of control points that are given one by one.
 
 use crate::{
-    LabelTexture, NetOptions, Orientation, Orientations, PupsError, PupsErrorKind, PupsField,
+    LabelTexture, NetOptions, Orientation, Orientations, Pups, PupsError, PupsErrorKind, PupsField,
     PupsRecipe, Range, own_labels, range,
 };
 use dapple_graph::delaunay;
@@ -128,10 +128,7 @@ impl Default for ControlPoints {
 /// domain, [`Conflict`](PupsErrorKind::Conflict) if only some points have an orientation, or the options give
 /// orientations too, and what [`PupsOptions::check`] refuses.
 pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, PupsError> {
-    let given = options.points.iter();
-    let positions = given.map(|point| DVec2::new(point.x, point.y)).collect();
-    let points = PointSet::new(options.points_domain()?, positions)?;
-    let values: Vec<f32> = options.points.iter().map(|point| point.value).collect();
+    let points = options.point_set()?;
     let net = &options.net;
     let pups = match options.orientations()? {
         Some(vectors) => {
@@ -141,15 +138,30 @@ pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, 
         }
         None => net.pups(&points, seed)?,
     };
-    Ok(match options.cells {
-        Cells::Mixed => PupsField::numbers(pups.texture(values)?),
-        Cells::Hard => {
-            PupsField::numbers(LabelTexture::new(pups, own_labels(values.len()), values)?)
-        }
-    })
+    let values = options.points.iter().map(|point| point.value).collect();
+    options.cells.field(pups, values)
+}
+
+impl Cells {
+    /// The texture of values at the points of a net.
+    pub(crate) fn field(self, pups: Pups, values: Vec<f32>) -> Result<PupsField, PupsError> {
+        Ok(match self {
+            Self::Mixed => PupsField::numbers(pups.texture(values)?),
+            Self::Hard => {
+                let labels = own_labels(values.len());
+                PupsField::numbers(LabelTexture::new(pups, labels, values)?)
+            }
+        })
+    }
 }
 
 impl ControlPoints {
+    /// The points, in their order.
+    pub(crate) fn point_set(&self) -> Result<PointSet, PupsError> {
+        let positions = self.points.iter().map(|point| DVec2::new(point.x, point.y));
+        Ok(PointSet::new(self.points_domain()?, positions.collect())?)
+    }
+
     /// Where points may lie, and after which distances the texture repeats: the domain with its margin.
     fn points_domain(&self) -> Result<Domain, PupsError> {
         for margin in self.margin {
@@ -164,7 +176,7 @@ impl ControlPoints {
     }
 
     /// The orientations that the points have, if they have any.
-    fn orientations(&self) -> Result<Option<Vec<DVec3>>, PupsError> {
+    pub(crate) fn orientations(&self) -> Result<Option<Vec<DVec3>>, PupsError> {
         let given: Vec<_> = self.points.iter().filter_map(|p| p.orientation).collect();
         let conflict = |rule| Err(PupsError::new(PupsErrorKind::Conflict { rule }));
         if given.is_empty() {

@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod bits;
+mod editable;
 mod fading;
 mod gradient;
 mod oracle;
