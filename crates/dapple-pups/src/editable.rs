@@ -7,14 +7,15 @@
 use crate::net::Net;
 use crate::support::padded_box;
 use crate::{
-    ControlPoint, ControlPoints, Orientation, Orientations, Pups, PupsError, PupsErrorKind,
-    PupsField,
+    ControlPoint, ControlPoints, NetField, Orientation, Orientations, Pups, PupsError,
+    PupsErrorKind,
 };
 use dapple_graph::{EditableDelaunay, Graph, Star};
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointIdx, PointSet};
 use dapple_raster::{RasterViewMut, Window};
 use glam::{DVec2, DVec3};
+use std::sync::Arc;
 
 /// The most copies of a rectangle in a picture that are told apart.
 const COPIES_LIMIT: f64 = 64.0;
@@ -52,7 +53,7 @@ pub struct EditablePups {
     /// The points as they are now, each with its own orientation, if they have any.
     options: ControlPoints,
     graph: EditableDelaunay,
-    /// How far supports reach, or less.
+    /// No support reaches further than this.
     reach: DVec2,
 }
 
@@ -222,15 +223,11 @@ impl EditablePups {
     ///
     /// [`Raster`](PupsErrorKind::Raster) if `out` has another size than the window.
     pub fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), PupsError> {
-        match self.field(window)? {
-            PupsField::Numbers(field) => Ok(field.render(window, out)?),
-            // Points that are given one by one have numbers.
-            PupsField::Colors(_) => Ok(()),
-        }
+        Ok(self.field(window)?.render(window, out)?)
     }
 
     /// The texture in a window: of the points whose supports reach into it.
-    fn field(&self, window: &Window) -> Result<PupsField, PupsError> {
+    fn field(&self, window: &Window) -> Result<Arc<dyn NetField>, PupsError> {
         let [width, height] = window.size;
         let (first, last) = (
             window.position(0, 0),
@@ -254,7 +251,9 @@ impl EditablePups {
         }
         let points = PointSet::new(net.domain, centers)?;
         let values = given.map(|point| point.value).collect();
-        self.options.cells.field(Pups::of_net(net, points), values)
+        self.options
+            .cells
+            .texture(Pups::of_net(net, points), values)
     }
 
     /// Refuses what a point cannot hold.
@@ -312,10 +311,11 @@ impl EditablePups {
                 None => Changed { min, max },
             });
         }
-        if let [Some(here), Some(there)] = boxes {
-            if here.min.cmple(there.max).all() && there.min.cmple(here.max).all() {
-                boxes = [Some(here.joined(&there)), None];
-            }
+        if let [Some(here), Some(there)] = boxes
+            && here.min.cmple(there.max).all()
+            && there.min.cmple(here.max).all()
+        {
+            boxes = [Some(here.joined(&there)), None];
         }
         let found = boxes.into_iter().flatten();
         found.map(|changed| changed.begun_in(domain)).collect()
@@ -337,7 +337,8 @@ impl EditablePups {
             let size = domain.size[axis];
             copies = (((low - max) / size).floor(), ((high - min) / size).ceil());
         }
-        if !(copies.1 - copies.0 <= COPIES_LIMIT) || n_pixels < 2 {
+        let are_few = copies.1 - copies.0 <= COPIES_LIMIT;
+        if !are_few || n_pixels < 2 {
             return vec![(0, n_pixels)];
         }
         let per_pixel = (ends[1] - ends[0]) / f64::from(last);

@@ -128,11 +128,13 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
             let ax = &member.blocks[0].x;
             weights = self.products(simd, &strips[0], ax, tile.active, x);
         }
-        for index in 1..member.blocks.len() {
-            let (strip, ax) = (&strips[index], &member.blocks[index].x);
+        let blocks = strips.iter().zip(member.blocks).enumerate().skip(1);
+        for (index, (strip, block)) in blocks {
             let products: [V; N] = match member.exponents.get(index) {
-                Some(exponents) if exponents[0] < 1.0 => self.faded(simd, strip, ax, exponents, x),
-                _ => self.products(simd, strip, ax, ALL_AXES, x),
+                Some(exponents) if exponents[0] < 1.0 => {
+                    self.faded(simd, strip, &block.x, exponents, x)
+                }
+                _ => self.products(simd, strip, &block.x, ALL_AXES, x),
             };
             for row in 0..N {
                 weights[row] *= products[row];

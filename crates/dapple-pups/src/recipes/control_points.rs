@@ -1,13 +1,14 @@
 //! Textures of control points that are given one by one.
 
 use crate::{
-    LabelTexture, NetOptions, Orientation, Orientations, Pups, PupsError, PupsErrorKind, PupsField,
-    PupsRecipe, Range, own_labels, range,
+    LabelTexture, NetField, NetOptions, Orientation, Orientations, Pups, PupsError, PupsErrorKind,
+    PupsField, PupsRecipe, Range, own_labels, range,
 };
 use dapple_graph::delaunay;
 use dapple_hash::Seed;
 use dapple_points::{Domain, PointSet};
 use glam::{DVec2, DVec3};
+use std::sync::Arc;
 
 /// Control points that are given one by one.
 #[derive(Clone, Debug)]
@@ -139,17 +140,21 @@ pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, 
         None => net.pups(&points, seed)?,
     };
     let values = options.points.iter().map(|point| point.value).collect();
-    options.cells.field(pups, values)
+    Ok(PupsField::Numbers(options.cells.texture(pups, values)?))
 }
 
 impl Cells {
     /// The texture of values at the points of a net.
-    pub(crate) fn field(self, pups: Pups, values: Vec<f32>) -> Result<PupsField, PupsError> {
+    pub(crate) fn texture(
+        self,
+        pups: Pups,
+        values: Vec<f32>,
+    ) -> Result<Arc<dyn NetField>, PupsError> {
         Ok(match self {
-            Self::Mixed => PupsField::numbers(pups.texture(values)?),
+            Self::Mixed => Arc::new(pups.texture(values)?),
             Self::Hard => {
                 let labels = own_labels(values.len());
-                PupsField::numbers(LabelTexture::new(pups, labels, values)?)
+                Arc::new(LabelTexture::new(pups, labels, values)?)
             }
         })
     }
@@ -199,11 +204,7 @@ mod orientation {
     use serde::de::{Deserialize, Deserializer, Error};
     use serde::ser::{Serialize, Serializer};
 
-    #[expect(
-        clippy::ref_option,
-        clippy::trivially_copy_pass_by_ref,
-        reason = "serde calls it like this"
-    )]
+    #[expect(clippy::ref_option, reason = "serde calls it like this")]
     pub(super) fn serialize<S: Serializer>(
         orientation: &Option<DVec3>,
         serializer: S,

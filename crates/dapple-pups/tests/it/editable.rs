@@ -223,15 +223,13 @@ fn edits_that_are_refused_change_nothing() {
     let mut now = Raster::filled([32; 2], 0.0).unwrap();
     pups.render(&picture, now.view_mut()).unwrap();
     assert!(now.map(|value| value.to_bits()) == before);
+}
 
-    let mut one = EditablePups::new(
-        ControlPoints {
-            points: options.points[..1].to_vec(),
-            ..options.clone()
-        },
-        Seed(1),
-    )
-    .unwrap();
+#[test]
+fn the_last_point_stays_and_points_that_move_are_refused() {
+    let domain = Domain::paper_torus();
+    let options = options(domain, &[DVec2::ZERO], NetOptions::default(), Cells::Mixed);
+    let mut one = EditablePups::new(options.clone(), Seed(1)).unwrap();
     assert!(matches!(
         one.remove(PointIdx(0)).unwrap_err().kind(),
         PupsErrorKind::NoPoints
