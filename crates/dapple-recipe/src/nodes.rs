@@ -71,6 +71,11 @@ pub(crate) trait NodeKind {
         None
     }
 
+    /// The texture of control points that the node is, if it is one.
+    fn pups(&self) -> Option<&dyn pups::Texture> {
+        None
+    }
+
     /// About how much work it is to make the node's step, rather too much than too little.
     fn work(&self, _plan: &Builder<'_>) -> Result<Work, RecipeError> {
         Ok(Work::default())

@@ -2,7 +2,7 @@
 
 use super::{ImageAlpha, NodeKind};
 use crate::plan::{Builder, Images, Picture, PlanLimits, Step, TIME, Work};
-use crate::{Node, Recipe, RecipeError, RecipeErrorKind};
+use crate::{Recipe, RecipeError, RecipeErrorKind};
 use dapple_points::Domain;
 use dapple_pups::{ControlNet, ControlPoints, PupsField, PupsRecipe, ReferenceImage};
 use serde::{Deserialize, Serialize};
@@ -30,7 +30,7 @@ pub struct Referenced<T> {
 }
 
 /// A texture of `dapple-pups` as a node.
-trait Texture {
+pub(crate) trait Texture {
     /// The image that the texture follows, with how its alpha is used.
     fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
         None
@@ -161,7 +161,7 @@ impl PupsNode {
 pub struct ControlNets {
     /// The points of each layer, the coarsest first; a single one where the texture has no layers.
     pub nets: Vec<ControlNet>,
-    /// The options of [`PupsNode::Points`] that make the same texture, bit for bit, where a node of points can.
+    /// The options of a `points` texture that is the same, bit for bit, where there is one.
     pub points: Option<ControlPoints>,
 }
 
@@ -178,14 +178,13 @@ impl Recipe {
     /// # Examples
     ///
     /// ```
-    /// use dapple_recipe::{Images, Node, PlanLimits, PupsNode, Recipe};
+    /// use dapple_recipe::{Images, PlanLimits, Recipe};
     ///
     /// let text = "dapple = 1\n[nodes.hide.pups.cow]\nspacing = 0.2\n[material]\nheight = \"hide\"\n";
-    /// let mut recipe = Recipe::from_toml(text)?;
+    /// let recipe = Recipe::from_toml(text)?;
     /// let nets = recipe.control_nets("hide", &Images::new(), 0.0, &PlanLimits::default())?;
-    /// let mut points = nets.and_then(|nets| nets.points).expect("a cow is one net of numbers");
-    /// points.points[0].x += 0.05;
-    /// recipe.nodes["hide"] = Node::Pups(PupsNode::Points(points));
+    /// let points = nets.and_then(|nets| nets.points).expect("a cow is one net of numbers");
+    /// assert!(points.points.iter().all(|point| point.value == 0.0 || point.value == 1.0));
     /// # Ok::<(), dapple_recipe::RecipeError>(())
     /// ```
     pub fn control_nets(
@@ -196,13 +195,16 @@ impl Recipe {
         limits: &PlanLimits,
     ) -> Result<Option<ControlNets>, RecipeError> {
         RecipeError::check_in(TIME, "time", time)?;
-        let Some((name, node @ Node::Pups(pups))) = self.nodes.get_key_value(node) else {
+        let Some((name, node)) = self.nodes.get_key_value(node) else {
+            return Ok(None);
+        };
+        let Some(texture) = node.kind().pups() else {
             return Ok(None);
         };
         let mut builder = Builder::new(self, images, time, limits);
         let field = builder
             .enter(name, node)
-            .and_then(|()| pups.texture().build(&builder))
+            .and_then(|()| texture.build(&builder))
             .map_err(|error| error.within(name))?;
         let points = field.to_points(builder.domain());
         Ok(Some(ControlNets {
@@ -226,6 +228,10 @@ impl NodeKind for PupsNode {
             control_points: self.texture().expected_points(plan.domain()),
             ..Work::default()
         })
+    }
+
+    fn pups(&self) -> Option<&dyn Texture> {
+        Some(self.texture())
     }
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
