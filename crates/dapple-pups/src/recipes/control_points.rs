@@ -127,7 +127,7 @@ impl Default for ControlPoints {
 ///
 /// [`NoPoints`](PupsErrorKind::NoPoints) if there are none, [`Points`](PupsErrorKind::Points) for points outside of the
 /// domain, [`Conflict`](PupsErrorKind::Conflict) if only some points have an orientation, or the options give
-/// orientations too, and what [`PupsOptions::check`] refuses.
+/// orientations too, and what [`PupsOptions::check`](crate::PupsOptions::check) refuses.
 pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, PupsError> {
     let points = options.point_set()?;
     let net = &options.net;
