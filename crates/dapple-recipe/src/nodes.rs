@@ -44,7 +44,7 @@ pub use mix::Mix;
 pub use noise::{Fractal, FractalBasis};
 pub use power::Power;
 pub use profile::ProfileOf;
-pub use pups::{PupsNode, Referenced};
+pub use pups::{ControlNets, PupsNode, Referenced};
 pub use ramp::Ramped;
 pub use seed::NodeSeed;
 pub use tile::Tiled;
@@ -68,6 +68,11 @@ pub(crate) trait NodeKind {
 
     /// The image file that the node reads, with how its alpha is used where the node says so.
     fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
+        None
+    }
+
+    /// The texture of control points that the node is, if it is one.
+    fn pups(&self) -> Option<&dyn pups::Texture> {
         None
     }
 

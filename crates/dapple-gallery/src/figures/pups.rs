@@ -20,6 +20,7 @@ mod fig_15;
 mod fig_16;
 mod fig_17;
 mod fig_extra_colors;
+mod fig_extra_motion;
 mod fig_extra_weights;
 pub(crate) mod flower;
 mod weight;
@@ -56,6 +57,7 @@ pub(super) const PAPER: Paper = Paper {
         fig_17::FIGURE,
         fig_extra_weights::FIGURE,
         fig_extra_colors::FIGURE,
+        fig_extra_motion::FIGURE,
     ],
 };
 

@@ -1,10 +1,10 @@
 //! The textures of `dapple-pups` over the tile of a recipe.
 
 use super::{ImageAlpha, NodeKind};
-use crate::plan::{Builder, Picture, Step, Work};
-use crate::{RecipeError, RecipeErrorKind};
+use crate::plan::{Builder, Images, Picture, PlanLimits, Step, TIME, Work};
+use crate::{Recipe, RecipeError, RecipeErrorKind};
 use dapple_points::Domain;
-use dapple_pups::{PupsField, PupsRecipe, ReferenceImage};
+use dapple_pups::{ControlNet, ControlPoints, PupsField, PupsRecipe, ReferenceImage};
 use serde::{Deserialize, Serialize};
 
 /// A texture after an image, which covers the tile. Of a color image the luminance counts.
@@ -30,7 +30,7 @@ pub struct Referenced<T> {
 }
 
 /// A texture of `dapple-pups` as a node.
-trait Texture {
+pub(crate) trait Texture {
     /// The image that the texture follows, with how its alpha is used.
     fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
         None
@@ -52,12 +52,12 @@ impl<T: PupsRecipe> Texture for T {
     }
 
     fn expected_points(&self, tile: Domain) -> f64 {
-        placed(self, tile).expected_points()
+        placed(self, tile, 0.0).expected_points()
     }
 
     fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError> {
         check_domain(self)?;
-        Ok(placed(self, plan.domain()).build(&(), plan.seed(None))?)
+        Ok(placed(self, plan.domain(), plan.time()).build(&(), plan.seed(None))?)
     }
 }
 
@@ -71,7 +71,7 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
     }
 
     fn expected_points(&self, tile: Domain) -> f64 {
-        placed(&self.options, tile).expected_points()
+        placed(&self.options, tile, 0.0).expected_points()
     }
 
     fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError> {
@@ -80,18 +80,19 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
             Picture::Colors(raster) => raster.map(|color| color.luminance()),
         })?;
         check_domain(&self.options)?;
-        Ok(placed(&self.options, plan.domain()).build(&image, plan.seed(None))?)
+        Ok(placed(&self.options, plan.domain(), plan.time()).build(&image, plan.seed(None))?)
     }
 }
 
-/// The options with the tile as their domain, which wraps along no axis along which the texture changes.
-fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain) -> T {
+/// The options at a time, with the tile as their domain, which wraps along no axis along which the texture changes.
+fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain, time: f64) -> T {
     let usual = T::default().domain_mut().wrap;
     let mut options = options.clone();
     *options.domain_mut() = Domain {
         wrap: [0, 1].map(|axis| tile.wrap[axis] && usual[axis]),
         ..tile
     };
+    options.net_mut().time = time;
     options
 }
 
@@ -155,6 +156,68 @@ impl PupsNode {
     }
 }
 
+/// The control points of a `pups` node.
+#[derive(Clone, Debug)]
+pub struct ControlNets {
+    /// The points of each layer, the coarsest first; a single one where the texture has no layers.
+    pub nets: Vec<ControlNet>,
+    /// The options of a `points` texture that is the same, bit for bit, where there is one.
+    pub points: Option<ControlPoints>,
+}
+
+impl Recipe {
+    /// The control points of the `pups` node of this name; nothing if there is none.
+    ///
+    /// A texture of one layer of numbers can be had as a node of points: all but `octaves`, `turbulence` and
+    /// `cellular_noise`, which have layers, and `color_noise`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Plan::new_within`](crate::Plan::new_within) that the node has by itself.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_recipe::{Images, PlanLimits, Recipe};
+    ///
+    /// let text = "dapple = 1\n[nodes.hide.pups.cow]\nspacing = 0.2\n[material]\nheight = \"hide\"\n";
+    /// let recipe = Recipe::from_toml(text)?;
+    /// let nets = recipe.control_nets("hide", &Images::new(), 0.0, &PlanLimits::default())?;
+    /// let points = nets.and_then(|nets| nets.points).expect("a cow is one net of numbers");
+    /// assert!(points.points.iter().all(|point| point.value == 0.0 || point.value == 1.0));
+    /// # Ok::<(), dapple_recipe::RecipeError>(())
+    /// ```
+    pub fn control_nets(
+        &self,
+        node: &str,
+        images: &Images,
+        time: f64,
+        limits: &PlanLimits,
+    ) -> Result<Option<ControlNets>, RecipeError> {
+        RecipeError::check_in(TIME, "time", time)?;
+        let Some((name, node)) = self.nodes.get_key_value(node) else {
+            return Ok(None);
+        };
+        let Some(texture) = node.kind().pups() else {
+            return Ok(None);
+        };
+        let mut builder = Builder::new(self, images, time, limits);
+        let field = builder
+            .enter(name, node)
+            .and_then(|()| texture.build(&builder))
+            .map_err(|error| error.within(name))?;
+        let points = field.to_points(builder.domain());
+        Ok(Some(ControlNets {
+            nets: field.nets(),
+            points: points.map(|points| ControlPoints {
+                // In a recipe it is the tile, and is not to be given.
+                domain: ControlPoints::default().domain,
+                ..points
+            }),
+        }))
+    }
+}
+
 impl NodeKind for PupsNode {
     fn image(&self) -> Option<(&str, Option<ImageAlpha>)> {
         self.texture().image()
@@ -165,6 +228,10 @@ impl NodeKind for PupsNode {
             control_points: self.texture().expected_points(plan.domain()),
             ..Work::default()
         })
+    }
+
+    fn pups(&self) -> Option<&dyn Texture> {
+        Some(self.texture())
     }
 
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {

@@ -27,7 +27,7 @@ pub(crate) struct Builder<'a> {
 pub(crate) const FREQUENCY: Range = range!(above 0 to 1e6);
 
 impl<'a> Builder<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         recipe: &'a Recipe,
         images: &'a Images,
         time: f64,
@@ -46,13 +46,18 @@ impl<'a> Builder<'a> {
 
     /// Adds the step of a node all of whose inputs have steps.
     pub(super) fn add(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
-        self.node = name;
-        let work: Work = node.kind().work(self)?;
-        self.work.add(&work)?;
+        self.enter(name, node)?;
         let step = node.kind().build(self)?;
         self.names.insert(name.to_owned(), self.steps.len());
         self.steps.push(step);
         Ok(())
+    }
+
+    /// Goes to a node, if that is no more work than is allowed.
+    pub(crate) fn enter(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
+        self.node = name;
+        let work: Work = node.kind().work(self)?;
+        self.work.add(&work)
     }
 
     /// The part of a loop that has passed.

@@ -264,14 +264,6 @@ fn numbers_out_of_range_are_refused_by_the_reader_and_the_schema() {
             "nodes.a.pups.cow.spacing = 0",
         ),
         (
-            "nodes.a.pups.cow.net.axis_scale = 0.6",
-            "nodes.a.pups.cow.net.axis_scale = 0.5",
-        ),
-        (
-            "nodes.a.pups.cow.net = { orientations = \"random\", strength = 0.9 }",
-            "nodes.a.pups.cow.net = { orientations = \"random\", strength = 1 }",
-        ),
-        (
             "nodes.a.pups.cells = { spacing = 0.1, points_per_cell = [1, 2] }",
             "nodes.a.pups.cells = { spacing = 0.1, points_per_cell = [0, 2] }",
         ),
@@ -280,14 +272,51 @@ fn numbers_out_of_range_are_refused_by_the_reader_and_the_schema() {
             "nodes.a.pups.space_giraffe.pairs = [2, 4]",
         ),
     ] {
-        assert_eq!(
-            refused(right),
-            [false; 2],
-            "{right}: {:?}",
-            validate(&format!("dapple = 1\n{right}\n"))
-        );
-        assert_eq!(refused(wrong), [true; 2], "{wrong}");
+        assert_range(right, wrong);
     }
+}
+
+#[test]
+fn nets_out_of_range_are_refused_by_the_reader_and_the_schema() {
+    for (right, wrong) in [
+        (
+            "nodes.a.pups.cow.net.axis_scale = 0.6",
+            "nodes.a.pups.cow.net.axis_scale = 0.5",
+        ),
+        (
+            "nodes.a.pups.cow.net = { orientations = \"random\", strength = 0.9 }",
+            "nodes.a.pups.cow.net = { orientations = \"random\", strength = 1 }",
+        ),
+        (
+            "nodes.a.pups.cow.net.fade = 1",
+            "nodes.a.pups.cow.net.fade = 1.1",
+        ),
+        (
+            "nodes.a.pups.cow.net.motion.radius = 1",
+            "nodes.a.pups.cow.net.motion.radius = 0",
+        ),
+        (
+            "nodes.a.pups.points = { points = [{ x = 0, y = 0, value = 1, orientation = [1, 0, 1] }], margin = [0, 1] }",
+            "nodes.a.pups.points = { points = [{ x = 0, y = 0, value = 1, orientation = [1] }], margin = [0, 1] }",
+        ),
+        (
+            "nodes.a.pups.points = { points = [{ x = 0, y = 0, value = 1 }], margin = [0, 1] }",
+            "nodes.a.pups.points = { points = [{ x = 0, y = 0, value = 1 }], margin = [0, -1] }",
+        ),
+    ] {
+        assert_range(right, wrong);
+    }
+}
+
+/// Checks that the reader and the schema accept the one recipe, and refuse the other.
+fn assert_range(right: &str, wrong: &str) {
+    assert_eq!(
+        refused(right),
+        [false; 2],
+        "{right}: {:?}",
+        validate(&format!("dapple = 1\n{right}\n"))
+    );
+    assert_eq!(refused(wrong), [true; 2], "{wrong}");
 }
 
 #[test]
