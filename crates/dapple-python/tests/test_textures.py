@@ -17,7 +17,7 @@ KINDS: dict[str, Any] = json.loads(_native._texture_defaults())
 #: The names of functions that are not those of the textures.
 FUNCTIONS = {"reference": "reference_texture", "points": "control_points"}
 TRIANGLE = np.minimum(np.arange(32), 31 - np.arange(32)).astype(np.float32)[:, None] / 15
-NET = ["axis_scale", "weight", "orientations", "strength"]
+NET = ["axis_scale", "weight", "orientations", "strength", "fade"]
 
 
 def function(kind: str) -> Any:
@@ -42,7 +42,8 @@ def test_options_and_defaults_are_those_of_recipes(kind: str) -> None:
     options.pop("domain", None)
     if kind == "points":
         options.pop("points")
-    expected = options | options.pop("net")
+    # What is left out where it is the default.
+    expected = options | options.pop("net") | {"fade": 0.0}
     parameters = inspect.signature(function(kind)).parameters.values()
     given = {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY}
     assert given.pop("seed") == 0

@@ -315,6 +315,7 @@ class Partition:
         weight: _Weight = "cubic",
         orientations: _Orientations = None,
         strength: float = 0.5,
+        fade: float = 0.0,
         seed: SupportsIndex = 0,
     ) -> Partition: ...
     def field(
@@ -372,6 +373,7 @@ def pups(
     weight: _Weight = "cubic",
     orientations: _Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: SupportsIndex = 0,
 ) -> Any: ...  # Field, or ColorField for values of two axes: which cannot be said of an array's type
 def random_values(count: int, *, seed: SupportsIndex = 0) -> npt.NDArray[np.float32]: ...

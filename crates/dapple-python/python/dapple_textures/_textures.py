@@ -42,13 +42,14 @@ Weight: TypeAlias = Literal["cubic", "quintic"] | Mapping[str, object]
 Orientations: TypeAlias = Literal["random"] | Mapping[str, object] | None
 
 
-def _net(axis_scale: float, weight: Weight, orientations: Orientations, strength: float) -> dict[str, object]:
+def _net(axis_scale: float, weight: Weight, orientations: Orientations, strength: float, fade: float) -> dict[str, object]:
     """How control points are weighted, as a recipe says it."""
     return {
         "axis_scale": axis_scale,
         "weight": weight,
         "orientations": "none" if orientations is None else orientations,
         "strength": strength,
+        "fade": fade,
     }
 
 
@@ -60,6 +61,7 @@ def noise(
     weight: Weight = "cubic",
     orientations: Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """Random values at control points, interpolated: smooth noise from 0 to 1. Caron and Mould, section 3.1.
@@ -76,6 +78,8 @@ def noise(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -87,7 +91,7 @@ def noise(
     """
     options = {
         "spacing": spacing,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("noise", options, domain, None, seed))
 
@@ -104,6 +108,7 @@ def octaves(
     weight: Weight = "cubic",
     orientations: Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """The sum of octaves of noise, from 0 to 1 (fractional Brownian motion). Caron and Mould, figure 6.
@@ -126,6 +131,8 @@ def octaves(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -141,7 +148,7 @@ def octaves(
         "lacunarity": lacunarity,
         "gain": gain,
         "source": source,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("octaves", options, domain, None, seed))
 
@@ -158,6 +165,7 @@ def turbulence(
     weight: Weight = "cubic",
     orientations: Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """The sum of octaves of folded noise, from 0 to 1 (Perlin's turbulence). Caron and Mould, figure 8.
@@ -180,6 +188,8 @@ def turbulence(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -193,7 +203,7 @@ def turbulence(
         "lacunarity": lacunarity,
         "gain": gain,
         "source": source,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("turbulence", options, domain, None, seed))
 
@@ -207,6 +217,7 @@ def cells(
     weight: Weight = "cubic",
     orientations: Orientations = "random",
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """Cells with a random value each, from 0 to below 1: of single control points, or of neighboring ones. Caron and
@@ -225,6 +236,8 @@ def cells(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -235,7 +248,7 @@ def cells(
     options = {
         "spacing": spacing,
         "points_per_cell": points_per_cell,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("cells", options, domain, None, seed))
 
@@ -252,6 +265,7 @@ def cellular_noise(
     weight: Weight = "cubic",
     orientations: Orientations = "random",
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """The sum of layers of cells, from 0 to 1. Caron and Mould, figure 10.
@@ -272,6 +286,8 @@ def cellular_noise(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -285,7 +301,7 @@ def cellular_noise(
         "lacunarity": lacunarity,
         "gain": gain,
         "points_per_cell": points_per_cell,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("cellular_noise", options, domain, None, seed))
 
@@ -299,6 +315,7 @@ def color_noise(
     weight: Weight = "cubic",
     orientations: Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> ColorField:
     """Random colors of a palette, interpolated; beyond the paper.
@@ -316,6 +333,8 @@ def color_noise(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -328,7 +347,7 @@ def color_noise(
     options = {
         "spacing": spacing,
         "palette": palette,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("ColorField", _texture("color_noise", options, domain, None, seed))
 
@@ -343,6 +362,7 @@ def cow(
     weight: Weight = "cubic",
     orientations: Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """The patches of a cow: cells of two values. Caron and Mould, figure 11.
@@ -361,6 +381,8 @@ def cow(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -374,7 +396,7 @@ def cow(
         "spacing": spacing,
         "probability": probability,
         "values": values,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("cow", options, domain, None, seed))
 
@@ -390,6 +412,7 @@ def space_giraffe(
     weight: Weight = "cubic",
     orientations: Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """The spots of a giraffe on its ground. Caron and Mould, figure 12.
@@ -410,6 +433,8 @@ def space_giraffe(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -422,7 +447,7 @@ def space_giraffe(
         "pairs": pairs,
         "spots": spots,
         "values": values,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("space_giraffe", options, domain, None, seed))
 
@@ -435,6 +460,7 @@ def cow_progression(
     weight: Weight = "cubic",
     orientations: Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """A cow whose patches get smaller to the right. Caron and Mould, figure 15.
@@ -451,6 +477,8 @@ def cow_progression(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -462,7 +490,7 @@ def cow_progression(
     """
     options = {
         "distances": distances,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("cow_progression", options, domain, None, seed))
 
@@ -475,6 +503,7 @@ def giraffe_progression(
     weight: Weight = "cubic",
     orientations: Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """A giraffe whose spots get smaller to the right. Caron and Mould, figure 16.
@@ -491,6 +520,8 @@ def giraffe_progression(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -500,7 +531,7 @@ def giraffe_progression(
     """
     options = {
         "distances": distances,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("giraffe_progression", options, domain, None, seed))
 
@@ -514,6 +545,7 @@ def label_ramp(
     weight: Weight = "cubic",
     orientations: Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """Black cells (0) on the left that turn white (1) to the right. Caron and Mould, figure 17.
@@ -531,6 +563,8 @@ def label_ramp(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -543,7 +577,7 @@ def label_ramp(
     options = {
         "spacing": spacing,
         "probabilities": probabilities,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("label_ramp", options, domain, None, seed))
 
@@ -558,6 +592,7 @@ def reference_texture(
     weight: Weight = "cubic",
     orientations: Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """Black and white cells after an image: a control point is white with the probability of the pixel under it.
@@ -577,6 +612,8 @@ def reference_texture(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -589,7 +626,7 @@ def reference_texture(
     options = {
         "spacing": spacing,
         "values": values,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("reference", options, domain, image, seed))
 
@@ -605,6 +642,7 @@ def iterated_reference(
     weight: Weight = "cubic",
     orientations: Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """The last of several rounds of black and white points, the first after an image: edges like a coast. Caron and
@@ -625,6 +663,8 @@ def iterated_reference(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -636,7 +676,7 @@ def iterated_reference(
         "spacing": spacing,
         "iterations": iterations,
         "points": points,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("iterated_reference", options, domain, image, seed))
 
@@ -650,13 +690,15 @@ def control_points(
     weight: Weight = "cubic",
     orientations: Orientations = None,
     strength: float = 0.5,
+    fade: float = 0.0,
     seed: int = 0,
 ) -> Field:
     """A texture of control points that are given one by one, as a recipe has them; `pups` takes arrays.
 
     Parameters
     ----------
-    points : dictionaries with "x", "y", "value" and, in all or in none, "orientation": [x, y].
+    points : dictionaries with "x", "y", "value" and, in all or in none, "orientation": [x, y] or
+        [x, y, z].
     domain : where control points lie; the texture repeats where it wraps. By default the paper's torus, Domain(2,
         (-1, -1)).
     cells : "mixed", the weighted mean of the values, or "hard", the value of the strongest point.
@@ -666,6 +708,8 @@ def control_points(
     orientations : where weights lean: None, "random", {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle":
         radians}.
     strength : how strongly orientations shift weights, from 0 to below 1.
+    fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+        which is never, to 1. With 0.25 the texture changes smoothly where points move.
     seed : int, from 0 to 2**64 - 1.
 
     Examples
@@ -678,6 +722,6 @@ def control_points(
     options = {
         "points": points,
         "cells": cells,
-        "net": _net(axis_scale, weight, orientations, strength),
+        "net": _net(axis_scale, weight, orientations, strength, fade),
     }
     return cast("Field", _texture("points", options, domain, None, seed))

@@ -85,6 +85,8 @@ impl Build for PupsMade {
 /// orientations : where the weight of each point leans: None, "random" (drawn from `seed`), an array (n, 2) or (n, 3) of
 ///     vectors, {"same": [x, y, z]}, {"away_from": [x, y]} or {"angle": radians}.
 /// strength : how strongly orientations shift weights, from 0 to below 1.
+/// fade : how short the border that an axis leaves on its point's cell is beside its edge when the axis begins to fade, from 0,
+///     which is never, to 1. With 0.25 the field changes smoothly where points move.
 /// seed : int, from 0 to 2**64 - 1.
 ///
 /// Examples
@@ -110,6 +112,7 @@ struct NetArguments<'a, 'py> {
     weight: Option<&'a Bound<'py, PyAny>>,
     orientations: Option<&'a Bound<'py, PyAny>>,
     strength: f64,
+    fade: f64,
     seed: SeedArgument,
 }
 
@@ -132,7 +135,7 @@ impl NetArguments<'_, '_> {
                 axis_scale: self.axis_scale,
                 weight: data::options_or("weight", self.weight, Default::default())?,
                 orientation,
-                ..PupsOptions::default()
+                fade: self.fade,
             },
         });
         let pups = threads::run(py, || net.get())??;
@@ -188,8 +191,8 @@ fn read_values(values: &Bound<'_, PyAny>) -> Result<(Vec<f32>, Option<usize>)> {
 #[pymethods]
 impl Partition {
     #[new]
-    #[pyo3(signature = (points, *, domain = None, graph = None, axis_scale = 1.0, weight = None, orientations = None, strength = 0.5, seed = SeedArgument::default()),
-        text_signature = "(points, *, domain=None, graph=None, axis_scale=1.0, weight='cubic', orientations=None, strength=0.5, seed=0)")]
+    #[pyo3(signature = (points, *, domain = None, graph = None, axis_scale = 1.0, weight = None, orientations = None, strength = 0.5, fade = 0.0, seed = SeedArgument::default()),
+        text_signature = "(points, *, domain=None, graph=None, axis_scale=1.0, weight='cubic', orientations=None, strength=0.5, fade=0.0, seed=0)")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn new(
         py: Python<'_>,
@@ -200,6 +203,7 @@ impl Partition {
         weight: Option<&Bound<'_, PyAny>>,
         orientations: Option<&Bound<'_, PyAny>>,
         strength: f64,
+        fade: f64,
         seed: SeedArgument,
     ) -> Result<Self> {
         let arguments = NetArguments {
@@ -210,6 +214,7 @@ impl Partition {
             weight,
             orientations,
             strength,
+            fade,
             seed,
         };
         arguments.partition(py)
@@ -354,8 +359,8 @@ pub(crate) fn _partition_from_description(py: Python<'_>, description: &str) -> 
 /// (64, 64, 3)
 /// >>> cells = dp.pups(points, palette, labels=labels)
 #[pyfunction]
-#[pyo3(signature = (points, values, *, labels = None, domain = None, graph = None, axis_scale = 1.0, weight = None, orientations = None, strength = 0.5, seed = SeedArgument::default()),
-    text_signature = "(points, values, *, labels=None, domain=None, graph=None, axis_scale=1.0, weight='cubic', orientations=None, strength=0.5, seed=0)")]
+#[pyo3(signature = (points, values, *, labels = None, domain = None, graph = None, axis_scale = 1.0, weight = None, orientations = None, strength = 0.5, fade = 0.0, seed = SeedArgument::default()),
+    text_signature = "(points, values, *, labels=None, domain=None, graph=None, axis_scale=1.0, weight='cubic', orientations=None, strength=0.5, fade=0.0, seed=0)")]
 #[expect(clippy::too_many_arguments, reason = "they are keywords")]
 pub(crate) fn pups(
     py: Python<'_>,
@@ -368,6 +373,7 @@ pub(crate) fn pups(
     weight: Option<&Bound<'_, PyAny>>,
     orientations: Option<&Bound<'_, PyAny>>,
     strength: f64,
+    fade: f64,
     seed: SeedArgument,
 ) -> Result<Py<PyAny>> {
     let arguments = NetArguments {
@@ -378,6 +384,7 @@ pub(crate) fn pups(
         weight,
         orientations,
         strength,
+        fade,
         seed,
     };
     arguments.partition(py)?.field(py, values, labels)
