@@ -78,6 +78,13 @@ pub(crate) struct Channels {
     pub(crate) metallic: usize,
 }
 
+impl Channels {
+    /// All of them.
+    pub(crate) fn steps(&self) -> [usize; 4] {
+        [self.height, self.albedo, self.roughness, self.metallic]
+    }
+}
+
 impl Recipe {
     /// The images that the recipe names, each once, in the order of its nodes.
     #[must_use]
@@ -219,15 +226,40 @@ impl Plan {
         Ok(NodeColors::new(self.steps.clone(), self.find(node)?))
     }
 
+    /// The names of the nodes, each after all that it is made of.
+    pub fn node_names(&self) -> impl Iterator<Item = &str> {
+        self.names.keys().map(String::as_str)
+    }
+
+    /// Whether a node makes a color at every position, not a number. A node that does not exist makes none.
+    #[must_use]
+    pub fn is_color(&self, node: &str) -> bool {
+        self.names
+            .get(node)
+            .is_some_and(|&step| self.steps[step].is_color())
+    }
+
+    /// Whether a node itself sees the whole tile.
+    #[must_use]
+    pub fn is_global(&self, node: &str) -> bool {
+        let step = self.names.get(node).map(|&step| &self.steps[step]);
+        matches!(step, Some(Step::Global(_)))
+    }
+
     /// The step of a node that has a value at a single position.
     fn find(&self, node: &str) -> Result<usize, RecipeError> {
-        let &step = self.names.get(node).ok_or_else(|| {
+        let step = self.step_of(node)?;
+        self.local(step)?;
+        Ok(step)
+    }
+
+    /// The step of a node.
+    fn step_of(&self, node: &str) -> Result<usize, RecipeError> {
+        self.names.get(node).copied().ok_or_else(|| {
             let name = node.to_owned();
             let names = self.names.keys().map(String::as_str);
             RecipeError::new(RecipeErrorKind::UnknownNode { name }).meant(node, names)
-        })?;
-        self.local(step)?;
-        Ok(step)
+        })
     }
 
     /// Refuses a step that is made of what sees the whole tile.

@@ -313,6 +313,7 @@ impl Args {
             } else {
                 BakeMemory::Whole
             },
+            ..BakeOptions::default()
         })
     }
 }
