@@ -5,7 +5,7 @@ use crate::picture::{of_colors, of_numbers};
 use crate::{Document, Graph, Picture, Shown, StudioError, rgba};
 use dapple::raster::Raster;
 use dapple::recipe::{
-    Bake, BakeOptions, Images, MapKind, Picture as Values, Plan, PlanLimits, Recipe, RecipeError,
+    Bake, BakeOptions, Images, MapKind, Memory, Picture as Values, Plan, PlanLimits, Recipe, RecipeError,
     Region,
 };
 use std::sync::Arc;
@@ -63,9 +63,19 @@ pub trait World {
 }
 
 /// Draws jobs, and keeps what the next one may need again.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Renderer {
+    memory: Memory,
     planned: Option<Planned>,
+}
+
+/// The most bytes of values of nodes that are kept.
+const MEMORY: usize = 1 << 29;
+
+impl Default for Renderer {
+    fn default() -> Self {
+        Self { memory: Memory::new(MEMORY), planned: None }
+    }
 }
 
 /// The plan of a text at a time.
@@ -170,7 +180,7 @@ impl Renderer {
             return Ok(planned.plan.clone());
         }
         self.planned = None;
-        let plan = Arc::new(planned(recipe, &images, time)?);
+        let plan = Arc::new(Plan::new_with_memory(recipe, &images, time, &LIMITS, &self.memory)?);
         let document = job.document.clone();
         self.planned = Some(Planned {
             document,

@@ -170,7 +170,7 @@ impl NodeKind for PupsNode {
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         Ok(match self.texture().build(plan)? {
             PupsField::Numbers(field) => Step::Field(field),
-            PupsField::Colors(texture) => Step::Colors(texture),
+            PupsField::Colors(texture) => Step::Colors(texture.into()),
         })
     }
 }

@@ -87,7 +87,7 @@ impl Plan {
             pictures: vec![None; self.steps().len()],
         };
         for (index, global) in globals {
-            let picture = self.picture(&whole, &window, global);
+            let picture = self.known_picture(&whole, &window, index, global);
             whole.pictures[index] = Some(picture.map_err(|error| self.within(index, error))?);
         }
         Ok(whole)
@@ -118,21 +118,42 @@ impl Plan {
         )
     }
 
-    /// The picture of a step that sees the whole tile.
+    /// The picture of a step that sees the whole tile, from the memory if it is there.
+    fn known_picture(
+        &self,
+        whole: &Whole,
+        window: &Window,
+        index: usize,
+        step: &Global,
+    ) -> Result<Picture, RecipeError> {
+        let Some(memory) = &self.memory else {
+            return self.picture(whole, window, step)?.picture(window.size);
+        };
+        let values = match memory.values(self.ids[index], window) {
+            Some(values) => values,
+            None => {
+                let values = Arc::new(self.picture(whole, window, step)?);
+                memory.keep(self.ids[index], window, values.clone());
+                values
+            }
+        };
+        Values::clone(&values).picture(window.size)
+    }
+
+    /// The values of a step that sees the whole tile.
     fn picture(
         &self,
         whole: &Whole,
         window: &Window,
         step: &Global,
-    ) -> Result<Picture, RecipeError> {
+    ) -> Result<Values, RecipeError> {
         let of_inputs = step.window_of_inputs(window)?;
         let made = self.values(whole, &of_inputs, &step.inputs, &[])?;
-        let values = (step.apply)(&Tile {
+        (step.apply)(&Tile {
             inputs: &made.iter().collect::<Vec<_>>(),
             input_size: of_inputs.size,
             window,
-        })?;
-        values.picture(window.size)
+        })
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod bakes;
 mod copies;
+mod memory;
 mod program;
 mod refusals;
 #[cfg(feature = "schema")]
