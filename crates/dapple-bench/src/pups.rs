@@ -8,6 +8,7 @@
 mod alone;
 #[cfg(feature = "peers")]
 mod beside_spade;
+mod edits;
 
 use crate::harness::Bench;
 use crate::naive::Naive;
@@ -22,7 +23,8 @@ use dapple_raster::{Raster, Window};
 pub(crate) fn run(bench: &mut Bench) -> Result<()> {
     #[cfg(feature = "peers")]
     beside_spade::run(bench)?;
-    alone::run(bench)
+    alone::run(bench)?;
+    edits::run(bench)
 }
 
 /// Columns and rows of the images.

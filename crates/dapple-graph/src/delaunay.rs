@@ -13,6 +13,8 @@
 //! in that circle are dropped, by exact predicates. What is left is unique: the pairs of points whose Voronoi cells
 //! share a side of positive length. It is the same for all images and does not depend on where the domain begins.
 
+mod buckets;
+mod editable;
 mod images;
 mod order;
 mod patch;
@@ -20,6 +22,7 @@ mod star;
 mod tiles;
 mod triangles;
 
+pub use editable::{EditableDelaunay, Star};
 pub use triangles::{Triangle, delaunay_triangles};
 
 use crate::grid::{LazyGrid, TooThin};

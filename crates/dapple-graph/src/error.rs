@@ -32,6 +32,18 @@ dapple_raster::error! {
             /// The number of points.
             n_points: usize,
         } => "the row of point {} names point {}, but the set has {n_points} points", from.0, to.0;
+        /// A point is named that is not there.
+        NotThere {
+            /// The index that was named.
+            point: PointIdx,
+            /// The number of points.
+            n_points: usize,
+        } => "point {} is named, but there are {n_points} points", point.0;
+        /// A point is to be where the domain is not.
+        Outside {
+            /// Where.
+            position: DVec2,
+        } => "the position {position} lies outside of the domain";
         /// Fewer than one or too many nearest neighbors were asked for.
         Neighbors {
             /// How many.

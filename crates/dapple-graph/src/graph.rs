@@ -1,6 +1,6 @@
 //! A graph in compressed rows: the axes of each point.
 
-use crate::angle::by_angle;
+use crate::angle::{by_angle, is_lower};
 use crate::build::{Choice, graph_of};
 use crate::lattice::Lattice;
 use crate::{Direction, GraphError, GraphErrorKind};
@@ -107,6 +107,14 @@ impl Graph {
     #[must_use]
     pub fn all_axes(&self) -> &[Axis] {
         &self.axes
+    }
+
+    /// Each edge of a symmetric graph once: a point, and its axis along the edge, which leads towards larger y, or towards
+    /// larger x where y stays.
+    pub fn edges(&self) -> impl Iterator<Item = (PointIdx, Axis)> + '_ {
+        let points = (0..self.n_points() as u32).map(PointIdx);
+        let axes = points.flat_map(|from| self.axes(from).iter().map(move |&axis| (from, axis)));
+        axes.filter(|(_, axis)| !is_lower(axis.vector))
     }
 
     /// Whether every axis has its opposite: from the other end back, with exactly the negated vector.

@@ -27,7 +27,7 @@ mod lattice;
 pub use build::Direction;
 pub use dapple_points as points;
 pub use dapple_points::{PointIdx, PointSet, glam};
-pub use delaunay::{Triangle, delaunay, delaunay_triangles};
+pub use delaunay::{EditableDelaunay, Star, Triangle, delaunay, delaunay_triangles};
 pub use error::{GraphError, GraphErrorKind};
 pub use gabriel::gabriel;
 pub use graph::{Axis, Graph};

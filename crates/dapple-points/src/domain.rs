@@ -68,6 +68,17 @@ impl Domain {
         }
     }
 
+    /// The domain with a margin around it along the axes that do not wrap.
+    #[must_use]
+    pub fn grown(self, margin: DVec2) -> Self {
+        let margin = DVec2::select(self.wrap.into(), DVec2::ZERO, margin);
+        Self {
+            origin: self.origin - margin,
+            size: self.size + margin * 2.0,
+            ..self
+        }
+    }
+
     /// Width times height.
     #[must_use]
     pub fn area(&self) -> f64 {

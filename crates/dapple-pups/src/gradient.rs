@@ -2,7 +2,8 @@
 //!
 //! With `W = Π A(u_r)` the gradient of a weight is `∇W = Σ_r A'(u_r) ∇u_r Π_{s≠r} A(u_s)`, where `∇u_r = −a_r` inside of
 //! `[0, 1]` and zero where the projection is clamped (there `A'` is zero anyway). With an orientation, `w' = w^e`, so that
-//! `∇w' = e w^(e−1) ∇w + w' ln w ∇e`. For equation 3, `∇T = Σ (T_i − T) ∇W_i / Σ W_i`.
+//! `∇w' = e w^(e−1) ∇w + w' ln w ∇e`; an axis that fades has `∇A^e = e A^(e−1) ∇A`. For equation 3,
+//! `∇T = Σ (T_i − T) ∇W_i / Σ W_i`.
 //!
 //! It is computed in double precision, one position at a time.
 
@@ -72,9 +73,14 @@ fn weight_and_gradient(net: &Net, instance: &Instance, position: DVec2) -> (f64,
     let offset = position - instance.center;
     let mut weight = 1.0;
     let mut gradient = DVec2::ZERO;
-    for block in net.blocks(instance) {
+    for (index, block) in net.blocks(instance).iter().enumerate() {
+        let exponents = net.exponents(instance).get(index);
         for slot in 0..BLOCK {
-            let (value, slope) = axial(net.options.weight, block, slot, offset);
+            let axial = axial(net.options.weight, block, slot, offset);
+            let (value, slope) = match exponents.map(|exponents| exponents[slot]) {
+                Some(exponent) if exponent < 1.0 => faded(axial, exponent.into()),
+                _ => axial,
+            };
             gradient = gradient * value + slope * weight;
             weight *= value;
         }
@@ -90,6 +96,15 @@ fn axial(weight: AxialWeight, block: &AxisBlock, slot: usize, offset: DVec2) -> 
     let axis = DVec2::new(f64::from(block.x[slot]), f64::from(block.y[slot]));
     let u = (1.0 - axis.dot(offset)).clamp(0.0, 1.0);
     (weight.value(u), axis * -weight.slope(u))
+}
+
+/// An axial weight and its gradient, of an axis that fades.
+fn faded((value, slope): (f64, DVec2), exponent: f64) -> (f64, DVec2) {
+    if value <= 0.0 {
+        return (0.0, DVec2::ZERO);
+    }
+    let faded = libm::pow(value, exponent);
+    (faded, slope * (exponent * faded / value))
 }
 
 /// Equation 4 and its gradient.

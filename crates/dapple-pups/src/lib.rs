@@ -10,7 +10,8 @@
 //!
 //! The textures of the paper are recipes on top of that, such as [`noise`], [`octaves`], [`cells`] and [`cow`]: each is
 //! one call with options and a seed. For textures of your own, place points, give them attributes ([`random_values`],
-//! [`biased_labels`], [`grouped_labels`], [`random_orientations`] and others), and make a texture of them.
+//! [`biased_labels`], [`grouped_labels`], [`random_orientations`] and others), and make a texture of them. To change control
+//! points one by one, as an editor does, use [`EditablePups`].
 
 #![forbid(unsafe_code)]
 
@@ -21,6 +22,7 @@ mod weight;
 
 mod net;
 mod pups;
+mod support;
 mod texture;
 
 mod profile;
@@ -44,6 +46,8 @@ mod sink;
 mod assign;
 mod recipes;
 
+mod editable;
+
 #[cfg(feature = "schema")]
 mod schema;
 
@@ -56,19 +60,21 @@ pub use dapple_graph as graph;
 pub use dapple_hash as hash;
 pub use dapple_points as points;
 pub use dapple_raster as raster;
+pub use editable::{Changed, EditablePups};
 pub use error::{PupsError, PupsErrorKind};
 pub use glam;
 pub use options::{Orientation, PupsOptions};
 pub use pups::Pups;
 pub use range::Range;
 pub use recipes::{
-    Cells, CellsOptions, CellularNoiseOptions, ColorNoiseOptions, ControlPoint, ControlPoints,
-    CowOptions, CowProgressionOptions, Folding, GiraffeProgressionOptions, IteratedOptions,
-    IterationPoints, LabelRampOptions, LabelTexture, Layers, NetOptions, NoiseOptions, Octave,
-    OctaveSource, OctavesOptions, ProgressionOptions, PupsField, PupsRecipe, ReferenceOptions,
-    SpaceGiraffeOptions, Spacing, Spots, TurbulenceOptions, VectorLabelTexture, cells,
-    cellular_noise, color_noise, control_points, cow, cow_progression, giraffe_progression,
-    iterated_reference, label_ramp, noise, octaves, reference_texture, space_giraffe, turbulence,
+    Cells, CellsOptions, CellularNoiseOptions, ColorNoiseOptions, ControlNet, ControlPoint,
+    ControlPoints, CowOptions, CowProgressionOptions, Folding, GiraffeProgressionOptions,
+    IteratedOptions, IterationPoints, LabelRampOptions, LabelTexture, Layers, NetField, NetOptions,
+    NetValues, NoiseOptions, Octave, OctaveSource, OctavesOptions, Orbits, ProgressionOptions,
+    PupsField, PupsRecipe, ReferenceOptions, SpaceGiraffeOptions, Spacing, Spots,
+    TurbulenceOptions, VectorLabelTexture, cells, cellular_noise, color_noise, control_points, cow,
+    cow_progression, giraffe_progression, iterated_reference, label_ramp, noise, octaves,
+    reference_texture, space_giraffe, turbulence,
 };
 pub use texture::{Texture, VectorTexture};
 pub use weight::AxialWeight;

@@ -11,8 +11,9 @@
 //! the domain is an [`Instance`]; positions are brought into the domain first, so that a texture repeats exactly.
 
 use crate::bins::Bins;
+use crate::support::{fading, has_gap, padded_box};
 use crate::{PupsError, PupsErrorKind, PupsOptions};
-use dapple_graph::{Axis, Graph, delaunay};
+use dapple_graph::{Graph, delaunay};
 use dapple_points::{Domain, PointIdx, PointSet};
 use fearless_simd::{f32x8, prelude::*};
 use glam::DVec2;
@@ -27,9 +28,6 @@ const FAR: f64 = 1_048_576.0;
 
 /// No support reaches further than this many periods.
 const IMAGES_LIMIT: f64 = 64.0;
-
-/// Supports are taken this much larger than they are, so that rounding cannot put a weight outside of its box.
-const SLACK: f64 = 1e-5;
 
 /// Eight axes side by side; unused ones are zero, which projects every position to 0 and so weighs 1.
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,6 +50,9 @@ impl AxisBlock {
         is_used.to_bitmask() as u32
     }
 }
+
+/// What the axial weights of a block are raised to: below 1 for axes that fade, which a block has first or not at all.
+pub(crate) type Exponents = [f32; BLOCK];
 
 /// A control point, or one of its periodic images; one cache line.
 #[derive(Clone, Copy, Debug)]
@@ -85,8 +86,10 @@ pub(crate) struct Net {
     pub(crate) options: PupsOptions,
     /// Control points and their images, in the order in which weights are summed: by point, then by image.
     pub(crate) instances: Vec<Instance>,
-    /// The axes of all points, point by point.
+    /// The axes of all points, point by point: first those that do not fade, then, in blocks of their own, those that do.
     blocks: Vec<AxisBlock>,
+    /// The exponents of the axial weights of each block; empty where no axis fades.
+    exponents: Vec<Exponents>,
     /// ε times the orientation in the plane, for each point; empty without orientations.
     pub(crate) shifts: Vec<[f32; 2]>,
     /// For single positions; made when the first is asked for.
@@ -104,8 +107,28 @@ impl Net {
             return Err(PupsError::new(PupsErrorKind::NoPoints));
         }
         PupsError::check_count("points in the graph", graph.n_points(), points.len())?;
-        options.check(points.len())?;
-        let size = points.domain().size;
+        let mut net = Self::empty(*points.domain(), options, points.len())?;
+        let mut closing = None;
+        let mut axes = Vec::new();
+        for (point, center) in points.iter() {
+            axes.clear();
+            axes.extend(graph.axes(point).iter().map(|axis| axis.vector));
+            if kind == GraphKind::Any && has_gap(&axes) {
+                close_gap(point, &mut axes, points, &mut closing)?;
+            }
+            net.push(point, center, &axes)?;
+        }
+        Ok(net)
+    }
+
+    /// The net of `n_points` points, to which they are to be added in their order.
+    pub(crate) fn empty(
+        domain: Domain,
+        options: PupsOptions,
+        n_points: usize,
+    ) -> Result<Self, PupsError> {
+        options.check(n_points)?;
+        let size = domain.size;
         let holds = size.min_element() >= 1e-18 && size.max_element() <= 1e18;
         PupsError::check(
             holds,
@@ -113,31 +136,32 @@ impl Net {
             size.max_element(),
             "from 1e-18 to 1e18",
         )?;
-        let mut net = Self {
-            domain: *points.domain(),
-            instances: Vec::with_capacity(points.len() + points.len() / 4 + 16),
-            blocks: Vec::with_capacity(points.len() + points.len() / 16),
+        Ok(Self {
+            domain,
+            instances: Vec::with_capacity(n_points + n_points / 4 + 16),
+            blocks: Vec::with_capacity(n_points + n_points / 16),
+            exponents: Vec::new(),
             shifts: options
                 .orientation
                 .iter()
-                .flat_map(|it| (0..points.len()).map(|index| it.shift(index)))
+                .flat_map(|it| (0..n_points).map(|index| it.shift(index)))
                 .collect(),
             options,
             bins: OnceLock::new(),
-        };
-        let mut closing = None;
-        let mut axes = Vec::new();
-        for (point, center) in points.iter() {
-            axes.clear();
-            axes.extend_from_slice(graph.axes(point));
-            if kind == GraphKind::Any && has_gap(&axes) {
-                close_gap(point, &mut axes, points, &mut closing)?;
-            }
-            let first_block = net.blocks.len();
-            net.push_axes(point, &axes)?;
-            net.push_instances(point, center, &axes, first_block);
-        }
-        Ok(net)
+        })
+    }
+
+    /// Adds the next point, given the vectors of its axes in their order.
+    pub(crate) fn push(
+        &mut self,
+        point: PointIdx,
+        center: DVec2,
+        axes: &[DVec2],
+    ) -> Result<(), PupsError> {
+        let first_block = self.blocks.len();
+        self.push_axes(point, axes)?;
+        self.push_instances(point, center, axes, first_block);
+        Ok(())
     }
 
     /// Which control points can have a weight where.
@@ -150,6 +174,15 @@ impl Net {
     #[inline(always)]
     pub(crate) fn blocks(&self, instance: &Instance) -> &[AxisBlock] {
         &self.blocks[instance.first_block as usize..][..instance.n_blocks as usize]
+    }
+
+    /// The exponents of the blocks of a control point; none where no axis of the net fades.
+    #[inline(always)]
+    pub(crate) fn exponents(&self, instance: &Instance) -> &[Exponents] {
+        if self.exponents.is_empty() {
+            return &[];
+        }
+        &self.exponents[instance.first_block as usize..][..instance.n_blocks as usize]
     }
 
     /// A coordinate along `axis` as the evaluation takes it: in the domain where it wraps, and not too far out where it
@@ -167,13 +200,41 @@ impl Net {
     }
 
     /// Adds the axes of the next point, scaled.
-    fn push_axes(&mut self, point: PointIdx, axes: &[Axis]) -> Result<(), PupsError> {
+    fn push_axes(&mut self, point: PointIdx, axes: &[DVec2]) -> Result<(), PupsError> {
+        if self.options.fade == 0.0 {
+            return self.push_blocks(point, axes);
+        }
+        let exponents = fading(axes, self.options.fade);
+        let of = |is_fading: bool| {
+            let all = axes.iter().zip(&exponents);
+            all.filter(move |&(_, &exponent)| (exponent < 1.0) == is_fading)
+        };
+        let (full, fading): (Vec<DVec2>, Vec<DVec2>) = (
+            of(false).map(|(&axis, _)| axis).collect(),
+            of(true).map(|(&axis, _)| axis).collect(),
+        );
+        self.push_blocks(point, &full)?;
+        self.exponents.resize(self.blocks.len(), [1.0; BLOCK]);
+        if !fading.is_empty() {
+            self.push_blocks(point, &fading)?;
+        }
+        let exponents: Vec<f32> = of(true).map(|(_, &exponent)| exponent).collect();
+        for chunk in exponents.chunks(BLOCK) {
+            let mut block = [1.0; BLOCK];
+            block[..chunk.len()].copy_from_slice(chunk);
+            self.exponents.push(block);
+        }
+        Ok(())
+    }
+
+    /// Adds blocks of axes of the next point, scaled; one without axes if there are none.
+    fn push_blocks(&mut self, point: PointIdx, axes: &[DVec2]) -> Result<(), PupsError> {
         // With this limit, no product of an axis and a position leaves the range of single precision.
         let limit = self.domain.size.max_element() * 1e-9;
         for chunk in axes.chunks(BLOCK) {
             let mut block = AxisBlock::default();
             for (slot, axis) in chunk.iter().enumerate() {
-                let length_sq = axis.vector.length_squared();
+                let length_sq = axis.length_squared();
                 if length_sq < limit * limit {
                     let length = length_sq.sqrt();
                     return Err(PupsError::new(PupsErrorKind::ShortAxis {
@@ -182,7 +243,7 @@ impl Net {
                         limit,
                     }));
                 }
-                let scaled = axis.vector / (length_sq * self.options.axis_scale);
+                let scaled = *axis / (length_sq * self.options.axis_scale);
                 block.x[slot] = scaled.x as f32;
                 block.y[slot] = scaled.y as f32;
             }
@@ -200,15 +261,13 @@ impl Net {
         &mut self,
         point: PointIdx,
         center: DVec2,
-        axes: &[Axis],
+        axes: &[DVec2],
         first_block: usize,
     ) {
         // A graph whose axes do not fit into 2^32 blocks does not fit into memory.
         let n_blocks = (self.blocks.len() - first_block) as u32;
         let first_block = first_block as u32;
-        let (min, max) = support_box(axes, self.options.axis_scale);
-        let slack = (max - min) * SLACK;
-        let (min, max) = (min - slack, max + slack);
+        let (min, max) = padded_box(axes, self.options.axis_scale);
         let [columns, rows] =
             [0, 1].map(|axis| self.image_range(axis, center[axis], min[axis], max[axis]));
         for row in rows {
@@ -247,23 +306,13 @@ impl Net {
     }
 }
 
-/// Whether two neighboring axes, in their order around the point, are half a turn or more apart.
-fn has_gap(axes: &[Axis]) -> bool {
-    let next = axes.iter().cycle().skip(1);
-    axes.len() < 3
-        || axes
-            .iter()
-            .zip(next)
-            .any(|(axis, next)| axis.vector.perp_dot(next.vector) <= 0.0)
-}
-
 /// Adds the Delaunay axes of a point whose own axes leave its support open.
 ///
 /// On the hull of points that do not wrap, the Delaunay axes leave it open too; there it stays so, and the point rules
 /// as far as the plane goes.
 fn close_gap(
     point: PointIdx,
-    axes: &mut Vec<Axis>,
+    axes: &mut Vec<DVec2>,
     points: &PointSet,
     closing: &mut Option<Graph>,
 ) -> Result<(), PupsError> {
@@ -272,87 +321,11 @@ fn close_gap(
         None => closing.insert(delaunay(points)?),
     };
     for axis in graph.axes(point) {
-        if !axes.contains(axis) {
-            axes.push(*axis);
+        if !axes.contains(&axis.vector) {
+            axes.push(axis.vector);
         }
     }
     Ok(())
-}
-
-/// The box around the support of a point, seen from the point: the polygon of all `d` with `d·v < s |v|²` for every
-/// axis `v`. A side is infinite where the polygon is not bounded.
-fn support_box(axes: &[Axis], scale: f64) -> (DVec2, DVec2) {
-    walk_support(axes, scale).unwrap_or_else(|| clip_support(axes, scale))
-}
-
-/// The box when every axis contributes an edge, as Delaunay axes do: its corners are where the borders of neighboring
-/// axes meet. Nothing if an axis has no edge or the polygon is open.
-fn walk_support(axes: &[Axis], scale: f64) -> Option<(DVec2, DVec2)> {
-    if has_gap(axes) {
-        return None;
-    }
-    let corner = |a: DVec2, b: DVec2| {
-        (b.perp() * a.length_squared() - a.perp() * b.length_squared()) * (-scale / a.perp_dot(b))
-    };
-    let vector = |index: usize| axes[index % axes.len()].vector;
-    let mut before = corner(vector(axes.len() - 1), vector(0));
-    let (mut min, mut max) = (before, before);
-    for index in 0..axes.len() {
-        let after = corner(vector(index), vector(index + 1));
-        if vector(index).perp_dot(after - before) < 0.0 {
-            return None;
-        }
-        (min, max) = (min.min(after), max.max(after));
-        before = after;
-    }
-    Some((min, max))
-}
-
-/// The box of any support, by clipping a very large square.
-fn clip_support(axes: &[Axis], scale: f64) -> (DVec2, DVec2) {
-    let longest = axes
-        .iter()
-        .map(|axis| axis.vector.length())
-        .fold(0.0, f64::max);
-    let far = (longest * scale).max(f64::MIN_POSITIVE) * 1e12;
-    let mut polygon = vec![
-        DVec2::new(far, far),
-        DVec2::new(-far, far),
-        DVec2::new(-far, -far),
-        DVec2::new(far, -far),
-    ];
-    for axis in axes {
-        let inside = |corner: DVec2| scale * axis.vector.length_squared() - corner.dot(axis.vector);
-        let mut clipped = Vec::with_capacity(polygon.len() + 1);
-        for (index, &corner) in polygon.iter().enumerate() {
-            let next = polygon[(index + 1) % polygon.len()];
-            let [here, there] = [inside(corner), inside(next)];
-            if here >= 0.0 {
-                clipped.push(corner);
-            }
-            if (here < 0.0) != (there < 0.0) {
-                clipped.push(corner + (next - corner) * (here / (here - there)));
-            }
-        }
-        polygon = clipped;
-    }
-    let min = polygon.iter().copied().fold(DVec2::INFINITY, DVec2::min);
-    let max = polygon
-        .iter()
-        .copied()
-        .fold(DVec2::NEG_INFINITY, DVec2::max);
-    // What reaches far beyond every axis is cut by the square, not by an axis; a long wedge may as well be open.
-    let open = |side: f64| {
-        if side.abs() < far * 1e-3 {
-            side
-        } else {
-            f64::INFINITY.copysign(side)
-        }
-    };
-    (
-        DVec2::new(open(min.x), open(min.y)),
-        DVec2::new(open(max.x), open(max.y)),
-    )
 }
 
 #[cfg(test)]

@@ -35,6 +35,30 @@ pub struct PupsOptions {
     pub weight: AxialWeight,
     /// Orientations, which shift weights after equation 4; none by default.
     pub orientation: Option<Orientation>,
+    /// How short the border that an axis leaves on the Voronoi cell of its control point is beside its edge when the axis
+    /// begins to fade, from 0 to 1; 0 by default, which is never. For points that move it is 0.25.
+    ///
+    /// When points move, edges of a Delaunay triangulation appear and disappear, and with them axes, all at once. An edge
+    /// does so while its border has no length. With `fade`, the axial weight has the exponent
+    /// `min(1, border / (fade · edge))`, which takes the axis away before the edge disappears, so that a texture changes
+    /// as little as its points move. A pixel has no weight where it had none, and elsewhere more than it had, so that the
+    /// weights of a position still sum to 1. With a graph that is not the Delaunay graph, the cell is the polygon about
+    /// the point that its own axes leave at half their length.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_never"))]
+    pub fade: f64,
+}
+
+/// The [`fade`](PupsOptions::fade) at which textures of points that move have no jumps that one sees.
+pub(crate) const MOVING_FADE: f64 = 0.25;
+
+/// Whether no axis fades.
+#[cfg(feature = "serde")]
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde calls it like this"
+)]
+pub(crate) fn is_never(fade: &f64) -> bool {
+    *fade == 0.0
 }
 
 /// The orientations of the control points, and how strongly they shift the weights (equation 4).
@@ -61,6 +85,7 @@ impl Default for PupsOptions {
             axis_scale: 1.0,
             weight: AxialWeight::Cubic,
             orientation: None,
+            fade: 0.0,
         }
     }
 }
@@ -86,6 +111,8 @@ impl Orientation {
 pub(crate) const AXIS_SCALE: Range = range!(above 0.5 to 16);
 /// ε of equation 4.
 pub(crate) const STRENGTH: Range = range!(from 0 below 1);
+/// Borders beside edges at which axes begin to fade.
+pub(crate) const FADE: Range = range!(from 0 to 1);
 /// Dips of an axial weight.
 pub(crate) const DIPS: Range = range!(from 1 to 16);
 
@@ -94,11 +121,12 @@ impl PupsOptions {
     ///
     /// # Errors
     ///
-    /// [`Range`](crate::PupsErrorKind::Range) if the axis scale is not in `(½, 16]`, a weight's parameters or the
+    /// [`Range`](crate::PupsErrorKind::Range) if the axis scale is not in `(½, 16]`, a weight's parameters, the fade or the
     /// strength are outside of their ranges, or a vector has no length; [`Count`](crate::PupsErrorKind::Count) if the
     /// number of vectors is neither 1 nor that of the points.
     pub fn check(&self, n_points: usize) -> Result<(), PupsError> {
         PupsError::check_in(AXIS_SCALE, "axis scale", self.axis_scale)?;
+        PupsError::check_in(FADE, "fade of the axes", self.fade)?;
         if let AxialWeight::Oscillating { dips, depth } = self.weight {
             PupsError::check_in(DIPS, "number of dips", dips.into())?;
             let holds = (0.0..=0.99).contains(&depth);

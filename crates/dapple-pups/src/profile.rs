@@ -18,6 +18,13 @@ pub(crate) trait Profile: Copy + Send + Sync {
     /// The product, after `n` axes, at least one.
     fn finish<V: Lane>(self, q: V, t: V, n: usize) -> V;
 
+    /// The weight of one axis.
+    #[inline(always)]
+    fn single<V: Lane>(self, minus_u: V) -> V {
+        let (q, t) = self.first(minus_u);
+        self.finish(q, t, 1)
+    }
+
     /// The product of the axes of a block, used or not.
     #[inline(always)]
     fn product<V: Lane>(self, minus_u: [V; BLOCK]) -> V {

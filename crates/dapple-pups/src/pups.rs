@@ -32,7 +32,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Pups {
     pub(crate) net: Arc<Net>,
-    n_points: usize,
+    points: Arc<PointSet>,
 }
 
 impl Pups {
@@ -54,7 +54,7 @@ impl Pups {
         let net = Net::new(points, &delaunay(points)?, GraphKind::Delaunay, options)?;
         Ok(Self {
             net: Arc::new(net),
-            n_points: points.len(),
+            points: Arc::new(points.clone()),
         })
     }
 
@@ -76,14 +76,28 @@ impl Pups {
         let net = Arc::new(Net::new(points, graph, GraphKind::Any, options)?);
         Ok(Self {
             net,
-            n_points: points.len(),
+            points: Arc::new(points.clone()),
         })
+    }
+
+    /// The net that was made of `points`.
+    pub(crate) fn of_net(net: Net, points: PointSet) -> Self {
+        Self {
+            net: Arc::new(net),
+            points: Arc::new(points),
+        }
     }
 
     /// The number of control points.
     #[must_use]
     pub fn n_points(&self) -> usize {
-        self.n_points
+        self.points.len()
+    }
+
+    /// The control points.
+    #[must_use]
+    pub fn points(&self) -> &PointSet {
+        &self.points
     }
 
     /// The domain of the control points, which says where the texture repeats.
@@ -215,7 +229,7 @@ impl Pups {
         window: &Window,
         labels: &[L],
     ) -> Result<Raster<L>, PupsError> {
-        PupsError::check_count("labels", labels.len(), self.n_points)?;
+        PupsError::check_count("labels", labels.len(), self.n_points())?;
         let mut strongest = Raster::filled(window.size, PointIdx(u32::MAX))?;
         self.render_strongest(window, strongest.view_mut())?;
         if let Some(at) = strongest

@@ -19,12 +19,14 @@ mod spacing;
 mod cells;
 mod cellular_noise;
 mod color_noise;
+mod control_net;
 mod control_points;
 mod cow;
 mod iterated;
 mod noise;
 mod octave;
 mod octaves;
+mod orbits;
 mod progression;
 mod reference;
 mod space_giraffe;
@@ -32,6 +34,7 @@ mod space_giraffe;
 pub use cells::{CellsOptions, cells};
 pub use cellular_noise::{CellularNoiseOptions, cellular_noise};
 pub use color_noise::{ColorNoiseOptions, color_noise};
+pub use control_net::{ControlNet, NetField, NetValues};
 pub use control_points::{Cells, ControlPoint, ControlPoints, control_points};
 pub use cow::{CowOptions, cow};
 pub use iterated::{IteratedOptions, IterationPoints, iterated_reference};
@@ -41,6 +44,7 @@ pub use net_options::NetOptions;
 pub use noise::{NoiseOptions, noise};
 pub use octave::{Folding, Octave};
 pub use octaves::{OctaveSource, OctavesOptions, TurbulenceOptions, octaves, turbulence};
+pub use orbits::Orbits;
 pub use progression::{
     CowProgressionOptions, GiraffeProgressionOptions, LabelRampOptions, ProgressionOptions,
     cow_progression, giraffe_progression, label_ramp,
@@ -52,7 +56,6 @@ pub use spacing::Spacing;
 use crate::{PupsError, VectorTexture};
 use dapple_hash::Seed;
 use dapple_points::Domain;
-use dapple_raster::Field;
 use std::sync::Arc;
 
 /// The options of a texture, as far as all textures are alike. `Image` is what a texture follows: nothing, or a
@@ -64,6 +67,9 @@ pub trait PupsRecipe<Image = ()>: Clone + Default {
     /// Where the control points lie. A default that does not wrap along an axis is that of a texture that changes along
     /// it, and belongs on such domains.
     fn domain_mut(&mut self) -> &mut Domain;
+
+    /// How the control points are weighted, and how they move.
+    fn net_mut(&mut self) -> &mut NetOptions;
 
     /// About how many control points the texture has, rather too many than too few, without placing them. It may be
     /// infinite.
@@ -81,13 +87,13 @@ pub trait PupsRecipe<Image = ()>: Clone + Default {
 #[derive(Clone)]
 pub enum PupsField {
     /// A number at each position.
-    Numbers(Arc<dyn Field>),
+    Numbers(Arc<dyn NetField>),
     /// A color at each position.
     Colors(Box<VectorTexture<3>>),
 }
 
 impl PupsField {
-    fn numbers(field: impl Field + 'static) -> Self {
+    fn numbers(field: impl NetField + 'static) -> Self {
         Self::Numbers(Arc::new(field))
     }
 }

@@ -156,6 +156,7 @@ impl<K: Sink> Band<'_, '_, K> {
             let member = Member {
                 instance,
                 blocks: self.net.blocks(instance),
+                exponents: self.net.exponents(instance),
                 shift: self.net.shifts.get(instance.point as usize).copied(),
                 footprint,
             };

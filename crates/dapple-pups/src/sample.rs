@@ -4,7 +4,8 @@
 //! register holds the same axis of all candidates and the products of all of them go on side by side.
 
 use crate::bins::{Bins, Candidates, GROUP};
-use crate::net::{AxisBlock, Net};
+use crate::net::{AxisBlock, Exponents, Net};
+use crate::power::powers;
 use crate::profile::{Cubic, Profile, minus_u};
 use crate::shift::shift_weights;
 use crate::weight::AxialWeight;
@@ -117,8 +118,8 @@ impl Net {
                 let offset = [offsets[0][lane], offsets[1][lane]];
                 if candidates.long >> lane & 1 != 0 {
                     let instance = &self.instances[bins.instances[record] as usize];
-                    let blocks = &self.blocks(instance)[1..];
-                    weights[lane] = go_on(simd, profile, weights[lane], blocks, offset);
+                    let (blocks, exponents) = (self.blocks(instance), self.exponents(instance));
+                    weights[lane] = go_on(simd, profile, weights[lane], blocks, exponents, offset);
                 }
                 if let Some(&shift) = self.shifts.get(bins.points[record] as usize) {
                     weights[lane] = shifted(simd, weights[lane], shift, offset);
@@ -136,19 +137,43 @@ fn project<S: Simd>(simd: S, axes: &AxisBlock, [x, y]: [f32; 2]) -> f32x8<S> {
     minus_u(simd, f32x8::from_slice(simd, &axes.x) * x, rest)
 }
 
-/// The weight of a control point, given that of its first axes and the blocks of the others.
+/// The weight of a control point, given that of its first block of axes.
 #[inline(always)]
 fn go_on<S: Simd, P: Profile>(
     simd: S,
     profile: P,
     mut weight: f32,
     blocks: &[AxisBlock],
+    exponents: &[Exponents],
     offset: [f32; 2],
 ) -> f32 {
-    for block in blocks {
-        weight *= profile.product::<f32>(project(simd, block, offset).into());
+    for (index, block) in blocks.iter().enumerate().skip(1) {
+        let minus_u = project(simd, block, offset);
+        weight *= match exponents.get(index) {
+            Some(exponents) if exponents[0] < 1.0 => faded(simd, profile, exponents, minus_u),
+            _ => profile.product::<f32>(minus_u.into()),
+        };
     }
     weight
+}
+
+/// The product of the axial weights of a block of axes that fade.
+#[inline(always)]
+fn faded<S: Simd, P: Profile>(
+    simd: S,
+    profile: P,
+    exponents: &Exponents,
+    minus_u: f32x8<S>,
+) -> f32 {
+    let weights = [profile.single(minus_u)];
+    let [weights] = powers(simd, &weights, &[f32x8::from_slice(simd, exponents)]);
+    let mut product = 1.0;
+    for (&weight, &exponent) in weights.as_slice().iter().zip(exponents) {
+        if exponent < 1.0 {
+            product *= weight;
+        }
+    }
+    product
 }
 
 /// Register `i` of the result holds lane `i` of every register.

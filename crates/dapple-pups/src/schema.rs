@@ -26,6 +26,22 @@ impl JsonSchema for Tile {
     }
 }
 
+/// A vector in the plane, or in space.
+pub(crate) struct Direction;
+
+impl JsonSchema for Direction {
+    fn schema_name() -> Cow<'static, str> {
+        "Direction".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "A vector of any length: x and y, and z, if it has one.",
+            "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 3,
+        })
+    }
+}
+
 /// A ramp of a number, as data.
 #[derive(JsonSchema)]
 #[schemars(rename = "Ramp", deny_unknown_fields)]

@@ -5,7 +5,8 @@
 //! registers of the whole band do: sums that lie across two cache lines, or across the sums that were stored before,
 //! take longer than all that is saved.
 
-use crate::net::{AxisBlock, BLOCK, Instance};
+use crate::net::{AxisBlock, BLOCK, Exponents, Instance};
+use crate::power::powers;
 use crate::profile::{Profile, minus_u};
 use crate::shift::shift_weights;
 use crate::sink::{Planes, Sink};
@@ -39,6 +40,8 @@ pub(crate) struct Splatter<'a, P, K> {
 pub(crate) struct Member<'a> {
     pub(crate) instance: &'a Instance,
     pub(crate) blocks: &'a [AxisBlock],
+    /// Those of the blocks, where axes fade.
+    pub(crate) exponents: &'a [Exponents],
     /// ε times the orientation in the plane, where there are orientations.
     pub(crate) shift: Option<[f32; 2]>,
     pub(crate) footprint: Footprint,
@@ -125,8 +128,12 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
             let ax = &member.blocks[0].x;
             weights = self.products(simd, &strips[0], ax, tile.active, x);
         }
-        for (strip, block) in strips[1..].iter().zip(&member.blocks[1..]) {
-            let products: [V; N] = self.products(simd, strip, &block.x, ALL_AXES, x);
+        for index in 1..member.blocks.len() {
+            let (strip, ax) = (&strips[index], &member.blocks[index].x);
+            let products: [V; N] = match member.exponents.get(index) {
+                Some(exponents) if exponents[0] < 1.0 => self.faded(simd, strip, ax, exponents, x),
+                _ => self.products(simd, strip, ax, ALL_AXES, x),
+            };
             for row in 0..N {
                 weights[row] *= products[row];
             }
@@ -142,6 +149,36 @@ impl<P: Profile, K: Sink> Splatter<'_, P, K> {
         let (sums, lane) = planes.rows(column, row, N);
         let point = member.instance.point;
         self.sink.add(simd, point, &weights, sums, lane);
+    }
+
+    /// The products of the axial weights of a block of axes that fade, in `N` rows.
+    #[inline(always)]
+    fn faded<S: Simd, V: SimdFloat<S, Element = f32>, const N: usize>(
+        &self,
+        simd: S,
+        strip: &Strip,
+        ax: &[f32; BLOCK],
+        exponents: &Exponents,
+        x: V,
+    ) -> [V; N] {
+        let mut products = [V::splat(simd, 1.0); N];
+        let mut weights = products;
+        for axis in 0..BLOCK {
+            if exponents[axis] >= 1.0 {
+                break;
+            }
+            let (along, rest) = (x * ax[axis], &strip.rest[axis][..N]);
+            for row in 0..N {
+                let minus_u = minus_u(simd, along, V::splat(simd, rest[row]));
+                weights[row] = self.profile.single(minus_u);
+            }
+            let exponents = [V::splat(simd, exponents[axis]); N];
+            let faded = powers(simd, &weights, &exponents);
+            for row in 0..N {
+                products[row] *= faded[row];
+            }
+        }
+        products
     }
 
     /// The products of the axial weights of a block, in `N` rows. At least one axis is `active`.

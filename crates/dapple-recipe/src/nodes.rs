@@ -44,7 +44,7 @@ pub use mix::Mix;
 pub use noise::{Fractal, FractalBasis};
 pub use power::Power;
 pub use profile::ProfileOf;
-pub use pups::{PupsNode, Referenced};
+pub use pups::{ControlNets, PupsNode, Referenced};
 pub use ramp::Ramped;
 pub use seed::NodeSeed;
 pub use tile::Tiled;

@@ -394,7 +394,7 @@ impl Plan {
     }
 }
 
-const TIME: Range = range!(finite);
+pub(crate) const TIME: Range = range!(finite);
 pub(crate) const EXTENT: Range = range!(above 0 to 1e6);
 /// Far more than any texture needs, so that slopes and their squares are finite.
 pub(crate) const RELIEF: Range = range!(from -1e6 to 1e6);

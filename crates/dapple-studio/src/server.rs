@@ -18,6 +18,7 @@ use axum::Router;
 use axum::extract::{Request, State};
 use axum::http::{Method, StatusCode};
 use axum::response::{IntoResponse as _, Response};
+use axum::serve::ListenerExt as _;
 use dapple::recipe::{Images, Recipe};
 use disk::Disk;
 use exports::Exports;

@@ -1,5 +1,6 @@
 //! `dapple studio`: a page to make recipes in.
 
+use super::bake;
 use crate::baking::read_images;
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, say};
@@ -7,6 +8,7 @@ use crate::words::with_dashes;
 use anyhow::{Error, Result};
 use dapple::recipe::{Images, Recipe};
 use dapple_studio::{Export, ExportedFile, Host, Mode, Named, ServeOptions, StudioError, serve};
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -59,8 +61,8 @@ pub(crate) struct PageArgs {
 /// # Errors
 ///
 /// If there is no such recipe, or the port is taken.
-pub(crate) fn run(args: &Args, _: &Context) -> Result<Exit> {
-    args.page.serve(args.recipe.as_deref(), Mode::Studio)
+pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    args.page.serve(args.recipe.as_deref(), Mode::Studio, context)
 }
 
 impl PageArgs {
@@ -69,7 +71,7 @@ impl PageArgs {
     /// # Errors
     ///
     /// If there is no such recipe, or the port is taken.
-    pub(crate) fn serve(&self, recipe: Option<&str>, mode: Mode) -> Result<Exit> {
+    pub(crate) fn serve(&self, recipe: Option<&str>, mode: Mode, context: &Context) -> Result<Exit> {
         let (recipe, folder) = match recipe {
             None => (None, PathBuf::new()),
             Some(name) => place(name)?,
@@ -83,7 +85,7 @@ impl PageArgs {
             folder,
             dist: self.dist.clone(),
         };
-        let told = serve(options, Arc::new(Bakes), |url| {
+        let told = serve(options, Arc::new(Bakes(context.silent())), |url| {
             // Where nobody reads it, the browser has it.
             let _ = say(url);
         });
@@ -126,20 +128,67 @@ fn place(name: &str) -> Result<(Option<String>, PathBuf)> {
 }
 
 /// Reads images and makes files as the other commands do.
-struct Bakes;
+struct Bakes(Context);
 
 impl Host for Bakes {
     fn images(&self, recipe: &Recipe, folder: &Path) -> Result<Images, StudioError> {
         read_images(recipe, folder).map_err(told)
     }
 
-    fn export(&self, _: &Recipe, _: &Path, _: &Export) -> Result<Vec<ExportedFile>, StudioError> {
-        Err(StudioError::new("not yet"))
+    fn export(
+        &self,
+        recipe: &Recipe,
+        folder: &Path,
+        export: &Export,
+    ) -> Result<Vec<ExportedFile>, StudioError> {
+        self.files(recipe, folder, export).map_err(told)
     }
 
     fn presets(&self) -> Vec<Named> {
-        Vec::new()
+        let named = |(name, about): (&str, &str)| Named {
+            name: name.to_owned(),
+            about: about.to_owned(),
+        };
+        bake::presets().map(named).collect()
     }
+}
+
+impl Bakes {
+    /// The files that `dapple bake` makes of a recipe.
+    fn files(&self, recipe: &Recipe, folder: &Path, export: &Export) -> Result<Vec<ExportedFile>> {
+        let mut recipe = recipe.clone();
+        if recipe.name.is_empty() {
+            "recipe".clone_into(&mut recipe.name);
+        }
+        let made = tempfile::tempdir()?;
+        let mut words = words(export);
+        words.push(format!("--output={}/", made.path().display()));
+        bake::bake_with(&words, &recipe, folder, &self.0)?;
+        let mut files = Vec::new();
+        for entry in fs::read_dir(made.path())? {
+            let entry = entry?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let bytes = fs::read(entry.path())?;
+            files.push(ExportedFile { name, bytes });
+        }
+        files.sort_by(|a, b| a.name.cmp(&b.name));
+        Ok(files)
+    }
+}
+
+/// The options of `dapple bake` that an export stands for. Each is one word, whatever it holds.
+fn words(export: &Export) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut add = |name: &str, value: Option<String>| {
+        words.extend(value.map(|value| format!("--{name}={value}")));
+    };
+    add("size", export.size.map(|[width, height]| format!("{width}x{height}")));
+    add("maps", export.maps.as_ref().map(|maps| maps.join(",")));
+    add("preset", export.preset.clone());
+    add("format", export.format.clone());
+    add("normal-y", export.normal_y.clone());
+    add("frame", export.frame.map(|[number, count]| format!("{number}/{count}")));
+    words
 }
 
 /// An error as a page tells it.

@@ -28,6 +28,26 @@ impl Cover {
         }
     }
 
+    /// The square of some steps about a place. Where it reaches past an end of the domain that does not wrap, it has no
+    /// bound: there is nothing more.
+    pub(super) fn about(lattice: &Lattice, place: DVec2, reach: f64) -> Self {
+        let (mut low, mut high) = (place - reach, place + reach);
+        for axis in (0..2).filter(|&axis| !lattice.wrap[axis]) {
+            if low[axis] < 0.0 {
+                low[axis] = f64::NEG_INFINITY;
+            }
+            if high[axis] > lattice.size[axis] {
+                high[axis] = f64::INFINITY;
+            }
+        }
+        Self { low, high }
+    }
+
+    /// The corners of the rectangle.
+    pub(super) fn corners(&self) -> [DVec2; 2] {
+        [self.low, self.high]
+    }
+
     /// How far a place in the rectangle is from its border.
     #[inline]
     pub(super) fn depth(&self, at: DVec2) -> f64 {

@@ -116,6 +116,21 @@ impl<'a> Patch<'a> {
         Ok(rows)
     }
 
+    /// The axes of each point that has a row, if no image outside of the patch can change them.
+    pub(super) fn certain_rows(&self) -> Vec<Option<Vec<Axis>>> {
+        let mut star = Star::default();
+        let row = |&vertex: &FixedVertexHandle| {
+            let vertex = self.triangulation.vertex(vertex);
+            star.read(vertex, self.cover.depth(at(vertex)));
+            (!star.is_doubtful()).then(|| {
+                let mut axes = Vec::new();
+                star.push_axes(self.lattice, &mut axes);
+                axes
+            })
+        };
+        self.vertices.iter().map(row).collect()
+    }
+
     /// Inserts images until the stars of the given rows are true. Whether there were any to insert.
     fn complete(&mut self, doubtful: &[u32], grid: &LazyGrid<'a>) -> Result<bool, TooThin> {
         let mut star = Star::default();

@@ -105,6 +105,10 @@ impl PupsRecipe for CellularNoiseOptions {
         &mut self.domain
     }
 
+    fn net_mut(&mut self) -> &mut NetOptions {
+        &mut self.net
+    }
+
     fn expected_points(&self) -> f64 {
         expected_in_series(&self.spacing, self.domain, self.layers, self.lacunarity)
     }

@@ -2,7 +2,7 @@
 
 use crate::{
     LabelTexture, NetOptions, Orientation, Orientations, Pups, PupsError, PupsErrorKind, PupsField,
-    PupsOptions, PupsRecipe, own_labels,
+    PupsRecipe, Range, own_labels, range,
 };
 use dapple_graph::delaunay;
 use dapple_hash::Seed;
@@ -29,6 +29,38 @@ pub struct ControlPoints {
     /// Whether the value of the strongest point counts alone; all count by default.
     #[cfg_attr(feature = "serde", serde(default))]
     pub cells: Cells,
+    /// Along which axes the texture repeats, x first, of those along which its domain does; both by default.
+    #[cfg_attr(
+        feature = "serde",
+        serde(default = "both_wrap", skip_serializing_if = "is_both_wrap")
+    )]
+    pub wrap: [bool; 2],
+    /// How far outside of the domain points may lie, along x and y where the texture does not repeat, in units of the
+    /// plane; nowhere by default.
+    #[cfg_attr(
+        feature = "serde",
+        serde(default, skip_serializing_if = "is_no_margin")
+    )]
+    #[cfg_attr(feature = "schema", schemars(transform = { MARGIN }))]
+    pub margin: [f64; 2],
+}
+
+/// Distances from the domain to points outside of it.
+const MARGIN: Range = range!(at least 0);
+
+#[cfg(feature = "serde")]
+fn both_wrap() -> [bool; 2] {
+    [true; 2]
+}
+
+#[cfg(feature = "serde")]
+fn is_both_wrap(wrap: &[bool; 2]) -> bool {
+    *wrap == [true; 2]
+}
+
+#[cfg(feature = "serde")]
+fn is_no_margin(margin: &[f64; 2]) -> bool {
+    *margin == [0.0; 2]
 }
 
 /// Whether a texture of control points mixes their values.
@@ -62,12 +94,17 @@ pub struct ControlPoint {
     pub y: f64,
     /// The value of the texture there.
     pub value: f32,
-    /// Where it is strong: a vector in the plane, of any length. All points have one, or none has.
+    /// Where it is strong: a vector of any length, as `[x, y]` or, with a part that takes strength away without a
+    /// direction, as `[x, y, z]`. All points have one, or none has.
     #[cfg_attr(
         feature = "serde",
-        serde(default, skip_serializing_if = "Option::is_none")
+        serde(default, skip_serializing_if = "Option::is_none", with = "orientation")
     )]
-    pub orientation: Option<[f64; 2]>,
+    #[cfg_attr(
+        feature = "schema",
+        schemars(with = "Option<crate::schema::Direction>")
+    )]
+    pub orientation: Option<DVec3>,
 }
 
 impl Default for ControlPoints {
@@ -77,6 +114,8 @@ impl Default for ControlPoints {
             points: Vec::new(),
             net: NetOptions::default(),
             cells: Cells::default(),
+            wrap: [true; 2],
+            margin: [0.0; 2],
         }
     }
 }
@@ -89,33 +128,55 @@ impl Default for ControlPoints {
 /// domain, [`Conflict`](PupsErrorKind::Conflict) if only some points have an orientation, or the options give
 /// orientations too, and what [`PupsOptions::check`] refuses.
 pub fn control_points(options: &ControlPoints, seed: Seed) -> Result<PupsField, PupsError> {
-    let given = options.points.iter();
-    let positions = given.map(|point| DVec2::new(point.x, point.y)).collect();
-    let points = PointSet::new(options.domain, positions)?;
-    let values: Vec<f32> = options.points.iter().map(|point| point.value).collect();
+    let points = options.point_set()?;
     let net = &options.net;
     let pups = match options.orientations()? {
         Some(vectors) => {
-            let options = PupsOptions {
-                axis_scale: net.axis_scale,
-                weight: net.weight,
-                orientation: Some(Orientation::new(vectors).with_strength(net.strength)),
-            };
-            Pups::new(&points, &delaunay(&points)?, options)?
+            let orientation = Orientation::new(vectors).with_strength(net.strength);
+            let graph = delaunay(&points)?;
+            net.oriented(&points, &graph, Some(orientation), seed)?
         }
         None => net.pups(&points, seed)?,
     };
-    Ok(match options.cells {
-        Cells::Mixed => PupsField::numbers(pups.texture(values)?),
-        Cells::Hard => {
-            PupsField::numbers(LabelTexture::new(pups, own_labels(values.len()), values)?)
-        }
-    })
+    let values = options.points.iter().map(|point| point.value).collect();
+    options.cells.field(pups, values)
+}
+
+impl Cells {
+    /// The texture of values at the points of a net.
+    pub(crate) fn field(self, pups: Pups, values: Vec<f32>) -> Result<PupsField, PupsError> {
+        Ok(match self {
+            Self::Mixed => PupsField::numbers(pups.texture(values)?),
+            Self::Hard => {
+                let labels = own_labels(values.len());
+                PupsField::numbers(LabelTexture::new(pups, labels, values)?)
+            }
+        })
+    }
 }
 
 impl ControlPoints {
+    /// The points, in their order.
+    pub(crate) fn point_set(&self) -> Result<PointSet, PupsError> {
+        let positions = self.points.iter().map(|point| DVec2::new(point.x, point.y));
+        Ok(PointSet::new(self.points_domain()?, positions.collect())?)
+    }
+
+    /// Where points may lie, and after which distances the texture repeats: the domain with its margin.
+    fn points_domain(&self) -> Result<Domain, PupsError> {
+        for margin in self.margin {
+            PupsError::check_in(MARGIN, "margin of the control points", margin)?;
+        }
+        let wrap = [0, 1].map(|axis| self.domain.wrap[axis] && self.wrap[axis]);
+        let domain = Domain {
+            wrap,
+            ..self.domain
+        };
+        Ok(domain.grown(self.margin.into()))
+    }
+
     /// The orientations that the points have, if they have any.
-    fn orientations(&self) -> Result<Option<Vec<DVec3>>, PupsError> {
+    pub(crate) fn orientations(&self) -> Result<Option<Vec<DVec3>>, PupsError> {
         let given: Vec<_> = self.points.iter().filter_map(|p| p.orientation).collect();
         let conflict = |rule| Err(PupsError::new(PupsErrorKind::Conflict { rule }));
         if given.is_empty() {
@@ -127,14 +188,55 @@ impl ControlPoints {
         if !matches!(self.net.orientations, Orientations::None) {
             return conflict("`orientations` are not given where the points have them");
         }
-        let vectors = given.into_iter().map(|[x, y]| DVec3::new(x, y, 0.0));
-        Ok(Some(vectors.collect()))
+        Ok(Some(given))
+    }
+}
+
+/// Orientations as data: two numbers, or three.
+#[cfg(feature = "serde")]
+mod orientation {
+    use glam::DVec3;
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::{Serialize, Serializer};
+
+    #[expect(
+        clippy::ref_option,
+        clippy::trivially_copy_pass_by_ref,
+        reason = "serde calls it like this"
+    )]
+    pub(super) fn serialize<S: Serializer>(
+        orientation: &Option<DVec3>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        match orientation {
+            Some(vector) if vector.z == 0.0 => [vector.x, vector.y].serialize(serializer),
+            Some(vector) => vector.to_array().serialize(serializer),
+            None => serializer.serialize_none(),
+        }
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<DVec3>, D::Error> {
+        match Option::<Vec<f64>>::deserialize(deserializer)?.as_deref() {
+            None => Ok(None),
+            Some(&[x, y]) => Ok(Some(DVec3::new(x, y, 0.0))),
+            Some(&[x, y, z]) => Ok(Some(DVec3::new(x, y, z))),
+            Some(numbers) => {
+                let expected = &"two or three numbers for an orientation";
+                Err(D::Error::invalid_length(numbers.len(), expected))
+            }
+        }
     }
 }
 
 impl PupsRecipe for ControlPoints {
     fn domain_mut(&mut self) -> &mut Domain {
         &mut self.domain
+    }
+
+    fn net_mut(&mut self) -> &mut NetOptions {
+        &mut self.net
     }
 
     fn expected_points(&self) -> f64 {

@@ -74,6 +74,10 @@ impl PupsRecipe for CowOptions {
         &mut self.domain
     }
 
+    fn net_mut(&mut self) -> &mut NetOptions {
+        &mut self.net
+    }
+
     fn expected_points(&self) -> f64 {
         self.spacing.expected_points(self.domain)
     }

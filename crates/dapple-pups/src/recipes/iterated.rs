@@ -97,17 +97,28 @@ pub fn iterated_reference(
     seed: Seed,
 ) -> Result<Vec<Texture>, PupsError> {
     PupsError::check_in(COUNT, "number of iterations", options.iterations.into())?;
+    let still = NetOptions {
+        motion: None,
+        ..options.net.clone()
+    };
     let mut textures: Vec<Texture> = Vec::new();
+    // What the next iteration follows: if points move, their values stay those of the still texture.
+    let mut former: Option<Texture> = None;
     for (iteration, points) in (0..).zip(options.point_sets(seed)?) {
         let seed = seed.child("iteration", iteration);
-        let intensities = match textures.last() {
+        let intensities = match &former {
             Some(texture) => field_values(&points, texture)?,
             None => first_intensities(image, &points),
         };
         let random = random_values(points.len(), seed.child("label", 0));
         let white = |(random, intensity)| if random < intensity { 1.0 } else { 0.0 };
-        let values = random.into_iter().zip(intensities).map(white).collect();
-        textures.push(options.net.pups(&points, seed)?.texture(values)?);
+        let values: Vec<f32> = random.into_iter().zip(intensities).map(white).collect();
+        let texture = still.pups(&points, seed)?.texture(values.clone())?;
+        textures.push(match options.net.motion {
+            Some(_) => options.net.pups(&points, seed)?.texture(values)?,
+            None => texture.clone(),
+        });
+        former = Some(texture);
     }
     Ok(textures)
 }
@@ -146,6 +157,10 @@ impl IteratedOptions {
 impl PupsRecipe<ReferenceImage> for IteratedOptions {
     fn domain_mut(&mut self) -> &mut Domain {
         &mut self.domain
+    }
+
+    fn net_mut(&mut self) -> &mut NetOptions {
+        &mut self.net
     }
 
     fn expected_points(&self) -> f64 {

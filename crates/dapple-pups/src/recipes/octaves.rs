@@ -208,6 +208,10 @@ impl PupsRecipe for OctavesOptions {
         &mut self.domain
     }
 
+    fn net_mut(&mut self) -> &mut NetOptions {
+        &mut self.net
+    }
+
     fn expected_points(&self) -> f64 {
         match self.source {
             OctaveSource::Separate => {
@@ -225,6 +229,10 @@ impl PupsRecipe for OctavesOptions {
 impl PupsRecipe for TurbulenceOptions {
     fn domain_mut(&mut self) -> &mut Domain {
         &mut self.0.domain
+    }
+
+    fn net_mut(&mut self) -> &mut NetOptions {
+        &mut self.0.net
     }
 
     fn expected_points(&self) -> f64 {

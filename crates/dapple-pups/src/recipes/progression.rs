@@ -199,6 +199,10 @@ impl PupsRecipe for CowProgressionOptions {
         &mut self.0.domain
     }
 
+    fn net_mut(&mut self) -> &mut NetOptions {
+        &mut self.0.net
+    }
+
     fn expected_points(&self) -> f64 {
         self.0.cow().expected_points()
     }
@@ -213,6 +217,10 @@ impl PupsRecipe for GiraffeProgressionOptions {
         &mut self.0.domain
     }
 
+    fn net_mut(&mut self) -> &mut NetOptions {
+        &mut self.0.net
+    }
+
     fn expected_points(&self) -> f64 {
         self.0.giraffe().expected_points()
     }
@@ -225,6 +233,10 @@ impl PupsRecipe for GiraffeProgressionOptions {
 impl PupsRecipe for LabelRampOptions {
     fn domain_mut(&mut self) -> &mut Domain {
         &mut self.domain
+    }
+
+    fn net_mut(&mut self) -> &mut NetOptions {
+        &mut self.net
     }
 
     fn expected_points(&self) -> f64 {

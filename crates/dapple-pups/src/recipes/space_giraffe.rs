@@ -19,6 +19,9 @@
 //! the points of a spot about its center scales the polygons with them: a spot that does not fit is scaled down until it
 //! does. Orientations change weights within supports only and do not matter, nor does the axial weight.
 //!
+//! When points move, the centers do, and spots are made about where they have moved to: at any time they are whole and
+//! apart, and they change their size as they pass each other.
+//!
 //! Where the paper is silent: the first angle is random; n is uniform; radii keep 1/256 of r from 0, from r and, within
 //! a pair, from each other, so that no two points coincide. Along axes that do not wrap, the domain of the texture is
 //! that of the centers grown by the largest r, so that every spot is whole.
@@ -117,7 +120,7 @@ impl Default for SpaceGiraffeOptions {
 /// ```
 pub fn space_giraffe(options: &SpaceGiraffeOptions, seed: Seed) -> Result<LabelTexture, PupsError> {
     let (points, labels) = options.control_points(seed)?;
-    let pups = options.net.pups(&points, seed)?;
+    let pups = options.net.after_motion().pups(&points, seed)?;
     LabelTexture::new(pups, labels, options.values.to_vec())
 }
 
@@ -125,7 +128,10 @@ impl SpaceGiraffeOptions {
     /// The centers and the pairs, and their labels.
     fn control_points(&self, seed: Seed) -> Result<(PointSet, Vec<u32>), PupsError> {
         self.check()?;
-        let centers = self.spacing.points(self.domain, seed.child("points", 0))?;
+        let mut centers = self.spacing.points(self.domain, seed.child("points", 0))?;
+        if let Some(moved) = self.net.moved(&centers, &delaunay(&centers)?, seed)? {
+            centers = moved;
+        }
         let spots = self.place_spots(&centers, seed.child("spot", 0))?;
 
         let mut positions = centers.positions().to_vec();
@@ -137,7 +143,7 @@ impl SpaceGiraffeOptions {
             }
         }
         let reach = spots.iter().map(|spot| spot.radius).fold(0.0, f64::max);
-        let domain = grown(self.domain, reach);
+        let domain = self.domain.grown(DVec2::splat(reach));
         Ok((PointSet::new(domain, positions)?, labels))
     }
 
@@ -182,19 +188,13 @@ fn radius(graph: &Graph, center: PointIdx) -> Result<f64, PupsError> {
     )
 }
 
-/// The domain with a margin along the axes that do not wrap.
-fn grown(domain: Domain, margin: f64) -> Domain {
-    let margin = DVec2::from(domain.wrap.map(|wrap| if wrap { 0.0 } else { margin }));
-    Domain {
-        origin: domain.origin - margin,
-        size: domain.size + margin * 2.0,
-        ..domain
-    }
-}
-
 impl PupsRecipe for SpaceGiraffeOptions {
     fn domain_mut(&mut self) -> &mut Domain {
         &mut self.domain
+    }
+
+    fn net_mut(&mut self) -> &mut NetOptions {
+        &mut self.net
     }
 
     fn expected_points(&self) -> f64 {

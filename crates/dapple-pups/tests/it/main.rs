@@ -3,6 +3,8 @@
 
 mod bad_input;
 mod bits;
+mod editable;
+mod fading;
 mod gradient;
 mod oracle;
 mod properties;

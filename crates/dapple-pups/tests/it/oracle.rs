@@ -1,6 +1,7 @@
 //! Equations 1 to 4 word for word, in double precision, over all control points and many images of each.
 
 use super::sets::{Case, cases, positions};
+use dapple_graph::Axis;
 use dapple_pups::{AxialWeight, PupsOptions};
 use dapple_raster::Field;
 use glam::{DVec2, DVec3};
@@ -12,14 +13,16 @@ pub(super) fn weights(case: &Case, position: DVec2) -> Vec<(usize, f64)> {
     let reach = |axis: usize| if domain.wrap[axis] { 5 } else { 0 };
     let mut weights = Vec::new();
     for (point, center) in case.points.iter() {
+        let exponents = exponents(case.graph.axes(point), case.options.fade);
         for row in -reach(1)..=reach(1) {
             for column in -reach(0)..=reach(0) {
                 let center = center + domain.size * DVec2::new(f64::from(column), f64::from(row));
                 let mut weight = 1.0;
-                for axis in case.graph.axes(point) {
+                for (axis, exponent) in case.graph.axes(point).iter().zip(&exponents) {
                     let along = (position - center).dot(axis.vector) / axis.vector.length();
                     let length = axis.vector.length() * case.options.axis_scale;
-                    weight *= axial_weight(case.options.weight, (along / length).clamp(0.0, 1.0));
+                    let full = axial_weight(case.options.weight, (along / length).clamp(0.0, 1.0));
+                    weight *= libm::pow(full, *exponent);
                 }
                 weight = shifted(&case.options, point.index(), weight, position - center);
                 if weight > 0.0 {
@@ -29,6 +32,35 @@ pub(super) fn weights(case: &Case, position: DVec2) -> Vec<(usize, f64)> {
         }
     }
     weights
+}
+
+/// The exponents of axes that fade: `min(1, border / (fade · edge))`, where the border is the side that is left of a very
+/// large square, cut by all axes at half their length.
+fn exponents(axes: &[Axis], fade: f64) -> Vec<f64> {
+    let border = |axis: &Axis| {
+        let (middle, along) = (axis.vector * 0.5, axis.vector.perp().normalize());
+        let mut ends = [-1e9, 1e9];
+        for cut in axes.iter().filter(|&cut| cut != axis) {
+            let rate = cut.vector.dot(along);
+            let at = (0.5 * cut.vector.length_squared() - middle.dot(cut.vector)) / rate;
+            if rate > 0.0 {
+                ends[1] = at.min(ends[1]);
+            } else if rate < 0.0 {
+                ends[0] = at.max(ends[0]);
+            } else if middle.dot(cut.vector) > 0.5 * cut.vector.length_squared() {
+                return 0.0;
+            }
+        }
+        (ends[1] - ends[0]).max(0.0)
+    };
+    let exponent = |axis: &Axis| {
+        if fade == 0.0 {
+            1.0
+        } else {
+            (border(axis) / (fade * axis.vector.length())).min(1.0)
+        }
+    };
+    axes.iter().map(exponent).collect()
 }
 
 /// Equation 3.

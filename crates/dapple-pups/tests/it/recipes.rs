@@ -4,5 +4,6 @@ mod assign;
 mod bad_input;
 mod common;
 mod labels;
+mod motion;
 mod noise;
 mod progression;

@@ -180,6 +180,22 @@ fn options(count: usize) -> Vec<(String, PupsOptions)> {
             },
         ),
         (
+            "fading".into(),
+            PupsOptions {
+                fade: 0.25,
+                ..plain.clone()
+            },
+        ),
+        (
+            "fading, oriented by 0.4".into(),
+            PupsOptions {
+                fade: 1.0,
+                weight: AxialWeight::Quintic,
+                orientation: orientation(0.4),
+                ..plain.clone()
+            },
+        ),
+        (
             "oscillating".into(),
             PupsOptions {
                 weight: AxialWeight::Oscillating {

@@ -132,6 +132,7 @@ impl NetArguments<'_, '_> {
                 axis_scale: self.axis_scale,
                 weight: data::options_or("weight", self.weight, Default::default())?,
                 orientation,
+                ..PupsOptions::default()
             },
         });
         let pups = threads::run(py, || net.get())??;

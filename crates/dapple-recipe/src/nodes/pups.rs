@@ -1,10 +1,10 @@
 //! The textures of `dapple-pups` over the tile of a recipe.
 
 use super::{ImageAlpha, NodeKind};
-use crate::plan::{Builder, Picture, Step, Work};
-use crate::{RecipeError, RecipeErrorKind};
+use crate::plan::{Builder, Images, Picture, PlanLimits, Step, TIME, Work};
+use crate::{Node, Recipe, RecipeError, RecipeErrorKind};
 use dapple_points::Domain;
-use dapple_pups::{PupsField, PupsRecipe, ReferenceImage};
+use dapple_pups::{ControlNet, ControlPoints, PupsField, PupsRecipe, ReferenceImage};
 use serde::{Deserialize, Serialize};
 
 /// A texture after an image, which covers the tile. Of a color image the luminance counts.
@@ -52,12 +52,12 @@ impl<T: PupsRecipe> Texture for T {
     }
 
     fn expected_points(&self, tile: Domain) -> f64 {
-        placed(self, tile).expected_points()
+        placed(self, tile, 0.0).expected_points()
     }
 
     fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError> {
         check_domain(self)?;
-        Ok(placed(self, plan.domain()).build(&(), plan.seed(None))?)
+        Ok(placed(self, plan.domain(), plan.time()).build(&(), plan.seed(None))?)
     }
 }
 
@@ -71,7 +71,7 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
     }
 
     fn expected_points(&self, tile: Domain) -> f64 {
-        placed(&self.options, tile).expected_points()
+        placed(&self.options, tile, 0.0).expected_points()
     }
 
     fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError> {
@@ -80,18 +80,19 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
             Picture::Colors(raster) => raster.map(|color| color.luminance()),
         })?;
         check_domain(&self.options)?;
-        Ok(placed(&self.options, plan.domain()).build(&image, plan.seed(None))?)
+        Ok(placed(&self.options, plan.domain(), plan.time()).build(&image, plan.seed(None))?)
     }
 }
 
-/// The options with the tile as their domain, which wraps along no axis along which the texture changes.
-fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain) -> T {
+/// The options at a time, with the tile as their domain, which wraps along no axis along which the texture changes.
+fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain, time: f64) -> T {
     let usual = T::default().domain_mut().wrap;
     let mut options = options.clone();
     *options.domain_mut() = Domain {
         wrap: [0, 1].map(|axis| tile.wrap[axis] && usual[axis]),
         ..tile
     };
+    options.net_mut().time = time;
     options
 }
 
@@ -152,6 +153,66 @@ impl PupsNode {
     #[must_use]
     pub fn image_file(&self) -> Option<&str> {
         Some(self.texture().image()?.0)
+    }
+}
+
+/// The control points of a `pups` node.
+#[derive(Clone, Debug)]
+pub struct ControlNets {
+    /// The points of each layer, the coarsest first; a single one where the texture has no layers.
+    pub nets: Vec<ControlNet>,
+    /// The options of [`PupsNode::Points`] that make the same texture, bit for bit, where a node of points can.
+    pub points: Option<ControlPoints>,
+}
+
+impl Recipe {
+    /// The control points of the `pups` node of this name; nothing if there is none.
+    ///
+    /// A texture of one layer of numbers can be had as a node of points: all but `octaves`, `turbulence` and
+    /// `cellular_noise`, which have layers, and `color_noise`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Plan::new_within`](crate::Plan::new_within) that the node has by itself.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_recipe::{Images, Node, PlanLimits, PupsNode, Recipe};
+    ///
+    /// let text = "dapple = 1\n[nodes.hide.pups.cow]\nspacing = 0.2\n[material]\nheight = \"hide\"\n";
+    /// let mut recipe = Recipe::from_toml(text)?;
+    /// let nets = recipe.control_nets("hide", &Images::new(), 0.0, &PlanLimits::default())?;
+    /// let mut points = nets.and_then(|nets| nets.points).expect("a cow is one net of numbers");
+    /// points.points[0].x += 0.05;
+    /// recipe.nodes["hide"] = Node::Pups(PupsNode::Points(points));
+    /// # Ok::<(), dapple_recipe::RecipeError>(())
+    /// ```
+    pub fn control_nets(
+        &self,
+        node: &str,
+        images: &Images,
+        time: f64,
+        limits: &PlanLimits,
+    ) -> Result<Option<ControlNets>, RecipeError> {
+        RecipeError::check_in(TIME, "time", time)?;
+        let Some((name, node @ Node::Pups(pups))) = self.nodes.get_key_value(node) else {
+            return Ok(None);
+        };
+        let mut builder = Builder::new(self, images, time, limits, None);
+        let field = builder
+            .enter(name, node)
+            .and_then(|()| pups.texture().build(&builder))
+            .map_err(|error| error.within(name))?;
+        let points = field.to_points(builder.domain());
+        Ok(Some(ControlNets {
+            nets: field.nets(),
+            points: points.map(|points| ControlPoints {
+                // In a recipe it is the tile, and is not to be given.
+                domain: ControlPoints::default().domain,
+                ..points
+            }),
+        }))
     }
 }
 

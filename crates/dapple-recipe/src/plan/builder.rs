@@ -35,7 +35,7 @@ pub(crate) struct Builder<'a> {
 pub(crate) const FREQUENCY: Range = range!(above 0 to 1e6);
 
 impl<'a> Builder<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         recipe: &'a Recipe,
         images: &'a Images,
         time: f64,
@@ -58,11 +58,9 @@ impl<'a> Builder<'a> {
 
     /// Adds the step of a node all of whose inputs have steps.
     pub(super) fn add(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
-        self.node = name;
-        let work: Work = node.kind().work(self)?;
-        self.work.add(&work)?;
+        self.enter(name, node)?;
         let before = self.memory.and_then(|memory| self.id_in(memory, node));
-        let known = before.and_then(|id| self.memory?.source(id));
+        let known = before.and_then(|(id, _)| self.memory?.source(id));
         self.asks_time.set(false);
         let is_known = known.is_some();
         let step = match known {
@@ -71,8 +69,8 @@ impl<'a> Builder<'a> {
         };
         let id = self.memory.map(|memory| match before {
             None => memory.new_id(),
-            Some(id) if self.asks_time.get() => memory.at_time(id, self.time),
-            Some(id) => id,
+            Some((id, false)) if self.asks_time.get() => memory.at_time(id, self.time),
+            Some((id, _)) => id,
         });
         if let (Some(memory), Some(id), false) = (self.memory, id, is_known) {
             memory.keep_source(id, &step);
@@ -87,8 +85,9 @@ impl<'a> Builder<'a> {
         self.ids.extend(id);
     }
 
-    /// The number of all that the values of the node follow from; none where that cannot be told.
-    fn id_in(&self, memory: &Memory, node: &Node) -> Option<StepId> {
+    /// The number of all that the values of the node follow from, and whether the time is known to be a part of that; none
+    /// where it cannot be told.
+    fn id_in(&self, memory: &Memory, node: &Node) -> Option<(StepId, bool)> {
         // What cannot be written as data, such as a function, cannot be compared.
         serde_json::to_writer(std::io::sink(), node).ok()?;
         let Recipe { seed, extent, wrap, .. } = self.recipe;
@@ -103,7 +102,17 @@ impl<'a> Builder<'a> {
         }
         write!(text, "{node:?}").ok()?;
         let id = memory.id(text);
-        Some(if memory.is_timed(id) { memory.at_time(id, self.time) } else { id })
+        Some(match memory.is_timed(id) {
+            true => (memory.at_time(id, self.time), true),
+            false => (id, false),
+        })
+    }
+
+    /// Goes to a node, if that is no more work than is allowed.
+    pub(crate) fn enter(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
+        self.node = name;
+        let work: Work = node.kind().work(self)?;
+        self.work.add(&work)
     }
 
     /// The part of a loop that has passed.

@@ -85,7 +85,7 @@ fn last_uses(steps: &[Step], order: &[usize], wanted: &[usize]) -> Vec<usize> {
 }
 
 /// The most and the fewest pixels that a thread takes at a time.
-const CHUNK_PIXELS: [u32; 2] = [1 << 16, 1 << 13];
+const CHUNK_PIXELS: [u32; 2] = [1 << 16, 1 << 11];
 
 /// The positions that a warp asks at a time: what is made for them stays in a cache.
 const CHUNK_POSITIONS: usize = 1 << 12;

@@ -3,6 +3,7 @@
 mod bakes;
 mod copies;
 mod memory;
+mod points;
 mod program;
 mod refusals;
 #[cfg(feature = "schema")]

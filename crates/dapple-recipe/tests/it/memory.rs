@@ -50,7 +50,7 @@ fn bits_are_those_of_a_plan_without_a_memory() {
 
 #[test]
 fn what_moves_is_made_anew_and_what_does_not_is_not() {
-    let text = "dapple = 1\nextent = [4.0, 4.0]\n[nodes.still.worley]\n[nodes.moving.worley]\nmotion = { radius = 0.2 }\n[material]\n";
+    let text = "dapple = 1\nextent = [4.0, 4.0]\n[nodes.still.worley]\n[nodes.moving.worley]\nmotion = { cells = 1 }\n[material]\n";
     let recipe = Recipe::from_toml(text).unwrap();
     let memory = Memory::new(1 << 20);
     let picture = |node: &str, time: f64| {

@@ -272,6 +272,22 @@ fn numbers_out_of_range_are_refused_by_the_reader_and_the_schema() {
             "nodes.a.pups.cow.net = { orientations = \"random\", strength = 1 }",
         ),
         (
+            "nodes.a.pups.cow.net.fade = 1",
+            "nodes.a.pups.cow.net.fade = 1.1",
+        ),
+        (
+            "nodes.a.pups.cow.net.motion.radius = 1",
+            "nodes.a.pups.cow.net.motion.radius = 0",
+        ),
+        (
+            "nodes.a.pups.points = { points = [{ x = 0, y = 0, value = 1, orientation = [1, 0, 1] }], margin = [0, 1] }",
+            "nodes.a.pups.points = { points = [{ x = 0, y = 0, value = 1, orientation = [1] }], margin = [0, 1] }",
+        ),
+        (
+            "nodes.a.pups.points = { points = [{ x = 0, y = 0, value = 1 }], margin = [0, 1] }",
+            "nodes.a.pups.points = { points = [{ x = 0, y = 0, value = 1 }], margin = [0, -1] }",
+        ),
+        (
             "nodes.a.pups.cells = { spacing = 0.1, points_per_cell = [1, 2] }",
             "nodes.a.pups.cells = { spacing = 0.1, points_per_cell = [0, 2] }",
         ),

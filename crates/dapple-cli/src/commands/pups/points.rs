@@ -2,6 +2,7 @@
 
 use crate::input;
 use anyhow::{Context as _, Result, bail};
+use dapple::pups::glam::DVec3;
 use dapple::recipe::ControlPoint;
 use std::path::Path;
 
@@ -53,7 +54,7 @@ fn point(text: &str) -> Result<ControlPoint> {
     }
     let (x, y, value, orientation) = match numbers[..] {
         [x, y, value] => (x, y, value, None),
-        [x, y, value, ox, oy] => (x, y, value, Some([ox, oy])),
+        [x, y, value, ox, oy] => (x, y, value, Some(DVec3::new(ox, oy, 0.0))),
         _ => bail!(
             "{text:?} has {} numbers; a control point has x,y,value or x,y,value,ox,oy",
             numbers.len()
@@ -70,6 +71,7 @@ fn point(text: &str) -> Result<ControlPoint> {
 #[cfg(test)]
 mod tests {
     use super::csv;
+    use dapple::pups::glam::DVec3;
 
     #[test]
     fn control_points_have_three_or_five_numbers() {
@@ -78,7 +80,7 @@ mod tests {
             (points[0].x, points[0].y, points[0].value),
             (0.5, 1.0, 0.25)
         );
-        assert_eq!(points[1].orientation, Some([0.0, -1.0]));
+        assert_eq!(points[1].orientation, Some(DVec3::NEG_Y));
     }
 
     #[test]

@@ -22,7 +22,7 @@ pub(super) fn digest(raster: &Raster<f32>) -> u64 {
 }
 
 /// A gray ramp from top to bottom and back.
-fn reference() -> ReferenceImage {
+pub(super) fn reference() -> ReferenceImage {
     let triangle = |row: u32| row.min(31 - row) as f32 / 15.0;
     ReferenceImage::new(Raster::from_fn([1, 32], |_, row| triangle(row)).unwrap()).unwrap()
 }

@@ -1,0 +1,420 @@
+//! A Delaunay graph whose points can be inserted, moved and removed, one at a time.
+//!
+//! An edit changes the axes of the point itself and of the points that it is or was connected to: those between which a
+//! point is taken away, or put. So the points about the place are triangulated anew, as a tile of [`delaunay`] is, in a
+//! square that grows until no image outside of it can change one of these stars. Where there are few points, or at the hull
+//! of points that do not wrap, all of them are.
+//!
+//! The triangulation itself is not kept: on a torus it would hold several images of points at its border, all of which an
+//! edit would have to follow, and a triangulation of a hundred points takes as long as finding one's way in a large one.
+//!
+//! Points have a number within, which is never given again, so that an edit does not touch those far away. Their index is
+//! the place of their number among those that are there.
+
+use super::buckets::Buckets;
+use super::images::Cover;
+use super::patch::{Image, Patch};
+use super::{Refusal, delaunay, rows};
+use crate::lattice::Lattice;
+use crate::{Axis, Graph, GraphError, GraphErrorKind};
+use dapple_points::{Domain, PointIdx, PointSet};
+use glam::DVec2;
+use std::collections::BTreeMap;
+
+/// Up to so many points are all triangulated anew.
+const FEW: usize = 256;
+
+/// Half the sides of the squares in which points are triangulated, one after the other, in mean distances.
+const REACHES: [f64; 3] = [4.0, 7.0, 14.0];
+
+/// The most images in such a square. There are more of them only where points crowd, or on thin domains.
+const IMAGES_LIMIT: usize = 4096;
+
+/// The points for each cell of the buckets at which there must be more cells.
+const CROWD: usize = 8;
+
+/// The Delaunay graph of points that can be inserted, moved and removed: at any time that of [`delaunay`], bit for bit.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_graph::{EditableDelaunay, PointIdx, delaunay, glam::DVec2};
+/// use dapple_graph::points::{Domain, hash::Seed, poisson_disk};
+///
+/// let points = poisson_disk(Domain::paper_torus(), 0.1, Seed(7))?;
+/// let mut graph = EditableDelaunay::new(&points)?;
+/// let stars = graph.move_to(PointIdx(5), DVec2::new(0.25, -0.5))?;
+/// assert!(stars.len() < 40);
+/// assert_eq!(graph.to_graph(), delaunay(&graph.to_points()?)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct EditableDelaunay {
+    domain: Domain,
+    lattice: Lattice,
+    /// Of each number: the position, the site, and the axes, which lead to numbers. Numbers of removed points stay.
+    positions: Vec<DVec2>,
+    sites: Vec<DVec2>,
+    rows: Vec<Vec<Axis>>,
+    /// The numbers of the points in their order, ascending.
+    numbers: Vec<u32>,
+    buckets: Buckets,
+}
+
+/// A point with the vectors of its axes, in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Star {
+    /// Where the point is.
+    pub center: DVec2,
+    /// Where its axes lead from there.
+    pub vectors: Vec<DVec2>,
+}
+
+impl EditableDelaunay {
+    /// The Delaunay graph of some points.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`delaunay`].
+    pub fn new(points: &PointSet) -> Result<Self, GraphError> {
+        let graph = delaunay(points)?;
+        let of_row = |point| graph.axes(PointIdx(point)).to_vec();
+        let n_points = points.len() as u32;
+        let mut buckets = Buckets::new(&graph.lattice, points.len());
+        for (number, &site) in (0..).zip(&graph.sites) {
+            buckets.insert(number, site);
+        }
+        Ok(Self {
+            domain: *points.domain(),
+            lattice: graph.lattice,
+            positions: points.positions().to_vec(),
+            rows: (0..n_points).map(of_row).collect(),
+            sites: graph.sites,
+            numbers: (0..n_points).collect(),
+            buckets,
+        })
+    }
+
+    /// The number of points.
+    #[must_use]
+    pub fn n_points(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// The domain of the points.
+    #[must_use]
+    pub fn domain(&self) -> &Domain {
+        &self.domain
+    }
+
+    /// A point with its axes.
+    ///
+    /// # Errors
+    ///
+    /// [`NotThere`](GraphErrorKind::NotThere) if there is no such point.
+    pub fn star(&self, point: PointIdx) -> Result<Star, GraphError> {
+        Ok(self.star_of(self.number(point)?))
+    }
+
+    /// The points with an image in a rectangle, and some beside it, in their order.
+    #[must_use]
+    pub fn points_in(&self, low: DVec2, high: DVec2) -> Vec<PointIdx> {
+        let steps = |at: DVec2, slack: f64| self.lattice.steps(at - self.domain.origin) + slack;
+        let mut found = Vec::new();
+        let limit = self.n_points();
+        // Positions are snapped to whole steps.
+        let corners = [steps(low, -1.0), steps(high, 1.0)];
+        if !corners[0].is_finite() || !corners[1].is_finite() {
+            return (0..limit as u32).map(PointIdx).collect();
+        }
+        self.buckets.visit(&self.lattice, corners, |number, _| {
+            found.push(number);
+            // In a rectangle of more than a period every point is found more than once.
+            found.len() <= 2 * limit
+        });
+        if found.len() > 2 * limit {
+            return (0..limit as u32).map(PointIdx).collect();
+        }
+        found.sort_unstable();
+        found.dedup();
+        found.into_iter().map(|number| self.index(number)).collect()
+    }
+
+    /// The points.
+    ///
+    /// # Errors
+    ///
+    /// None, in truth: each of them was accepted.
+    pub fn to_points(&self) -> Result<PointSet, dapple_points::PointsError> {
+        let numbers = self.numbers.iter();
+        let positions = numbers.map(|&number| self.positions[number as usize]);
+        PointSet::new(self.domain, positions.collect())
+    }
+
+    /// The graph.
+    #[must_use]
+    pub fn to_graph(&self) -> Graph {
+        let mut graph = Graph {
+            lattice: self.lattice,
+            sites: self.dense_sites(),
+            offsets: vec![0],
+            axes: Vec::new(),
+            symmetric: true,
+        };
+        for &number in &self.numbers {
+            graph
+                .axes
+                .extend(self.rows[number as usize].iter().map(|axis| Axis {
+                    to: self.index(axis.to.0),
+                    ..*axis
+                }));
+            graph.offsets.push(graph.axes.len() as u32);
+        }
+        graph
+    }
+
+    /// Adds a point after the last one. Gives the stars that were there before and those that are there now, as far as they
+    /// changed.
+    ///
+    /// # Errors
+    ///
+    /// [`Outside`](GraphErrorKind::Outside) for a position that is not in the domain,
+    /// [`Coincident`](GraphErrorKind::Coincident) where another point is, [`Thin`](GraphErrorKind::Thin) as for [`delaunay`].
+    /// Nothing has changed then.
+    pub fn insert(&mut self, position: DVec2) -> Result<Vec<Star>, GraphError> {
+        let (position, site) = self.accepted(position, None)?;
+        let number = self.positions.len() as u32;
+        self.positions.push(position);
+        self.sites.push(site);
+        self.rows.push(Vec::new());
+        self.numbers.push(number);
+        self.buckets.insert(number, site);
+        let rows = self.rows_about(site, Some(number), &[]);
+        let replaced = self.replace(rows);
+        if replaced.is_err() {
+            self.buckets.remove(number, site);
+            self.numbers.pop();
+            self.rows.pop();
+            self.sites.pop();
+            self.positions.pop();
+        }
+        let mut stars = replaced?;
+        // The new point had no star.
+        stars.retain(|star| star.center != position || !star.vectors.is_empty());
+        if self.n_points() > CROWD * self.buckets.n_cells() {
+            self.buckets = Buckets::new(&self.lattice, self.n_points());
+            for &number in &self.numbers {
+                self.buckets.insert(number, self.sites[number as usize]);
+            }
+        }
+        Ok(stars)
+    }
+
+    /// Moves a point; along wrapped axes the position is brought into the domain. Gives the stars that were there before and
+    /// those that are there now, as far as they changed.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`insert`](Self::insert), and [`NotThere`](GraphErrorKind::NotThere) if there is no such point.
+    pub fn move_to(&mut self, point: PointIdx, position: DVec2) -> Result<Vec<Star>, GraphError> {
+        let number = self.number(point)?;
+        let (position, site) = self.accepted(position, Some(number))?;
+        let before = self.star_of(number);
+        let former = (self.positions[number as usize], self.sites[number as usize]);
+        let neighbors = self.neighbors(number);
+        self.put(number, (position, site));
+        let rows = self
+            .rows_about(former.1, None, &neighbors)
+            .and_then(|mut rows| {
+                rows.extend(self.rows_about(site, Some(number), &[])?);
+                Some(rows)
+            });
+        let replaced = self.replace(rows);
+        if replaced.is_err() {
+            self.put(number, former);
+        }
+        let mut stars = replaced?;
+        // A star that moves changes even if its axes do not.
+        stars.retain(|star| star.center != position);
+        stars.extend([before, self.star_of(number)]);
+        Ok(stars)
+    }
+
+    /// Takes a point away; those after it move up by one. Gives the stars that were there before and those that are there
+    /// now, as far as they changed.
+    ///
+    /// # Errors
+    ///
+    /// [`NotThere`](GraphErrorKind::NotThere) if there is no such point, [`Thin`](GraphErrorKind::Thin) as for [`delaunay`].
+    /// Nothing has changed then.
+    pub fn remove(&mut self, point: PointIdx) -> Result<Vec<Star>, GraphError> {
+        let number = self.number(point)?;
+        let site = self.sites[number as usize];
+        let before = self.star_of(number);
+        let neighbors = self.neighbors(number);
+        self.buckets.remove(number, site);
+        self.numbers.remove(point.index());
+        let rows = self.rows_about(site, None, &neighbors);
+        let replaced = self.replace(rows);
+        if replaced.is_err() {
+            self.numbers.insert(point.index(), number);
+            self.buckets.insert(number, site);
+        }
+        let mut stars = replaced?;
+        self.rows[number as usize] = Vec::new();
+        stars.push(before);
+        Ok(stars)
+    }
+
+    fn number(&self, point: PointIdx) -> Result<u32, GraphError> {
+        let n_points = self.n_points();
+        let kind = GraphErrorKind::NotThere { point, n_points };
+        let number = self.numbers.get(point.index()).copied();
+        number.ok_or(GraphError::new(kind))
+    }
+
+    fn index(&self, number: u32) -> PointIdx {
+        // What is asked for is there; else it is where it would be.
+        let (Ok(index) | Err(index)) = self.numbers.binary_search(&number);
+        PointIdx(index as u32)
+    }
+
+    fn star_of(&self, number: u32) -> Star {
+        let axes = self.rows[number as usize].iter();
+        Star {
+            center: self.positions[number as usize],
+            vectors: axes.map(|axis| axis.vector).collect(),
+        }
+    }
+
+    /// The numbers of the other points that a point is connected to.
+    fn neighbors(&self, number: u32) -> Vec<u32> {
+        let axes = self.rows[number as usize].iter();
+        let mut neighbors: Vec<u32> = axes.map(|axis| axis.to.0).collect();
+        neighbors.sort_unstable();
+        neighbors.dedup();
+        neighbors.retain(|&other| other != number);
+        neighbors
+    }
+
+    fn dense_sites(&self) -> Vec<DVec2> {
+        let numbers = self.numbers.iter();
+        numbers.map(|&number| self.sites[number as usize]).collect()
+    }
+
+    fn put(&mut self, number: u32, (position, site): (DVec2, DVec2)) {
+        self.buckets.remove(number, self.sites[number as usize]);
+        (self.positions[number as usize], self.sites[number as usize]) = (position, site);
+        self.buckets.insert(number, site);
+    }
+
+    /// A position in the domain and its site, if no other point is there.
+    fn accepted(&self, position: DVec2, own: Option<u32>) -> Result<(DVec2, DVec2), GraphError> {
+        let wrapped = self.domain.wrap(position);
+        if !position.is_finite() || !self.domain.contains(wrapped) {
+            return Err(GraphError::new(GraphErrorKind::Outside { position }));
+        }
+        let site = self.lattice.site(wrapped);
+        let is_there = |&&other: &&u32| Some(other) != own && self.sites[other as usize] == site;
+        if let Some(&other) = self.buckets.beside(site).iter().find(is_there) {
+            let own = own.map_or(PointIdx(self.n_points() as u32), |own| self.index(own));
+            return Err(GraphError::coincident(self.index(other), own));
+        }
+        Ok((wrapped, site))
+    }
+
+    /// The axes of the `asked` points near a place and of the point `hub` there with all its neighbors; nothing if too many
+    /// points would have to be looked at.
+    fn rows_about(
+        &self,
+        place: DVec2,
+        hub: Option<u32>,
+        asked: &[u32],
+    ) -> Option<Vec<(u32, Vec<Axis>)>> {
+        if self.n_points() <= FEW {
+            return None;
+        }
+        let size = self.lattice.size;
+        let mean = (size.x * (size.y / self.n_points() as f64)).sqrt();
+        REACHES.into_iter().find_map(|reach| {
+            let mut certain = self.certain_rows(place, reach * mean)?;
+            let mut wanted = asked.to_vec();
+            if let Some(hub) = hub {
+                let axes = certain.get(&hub)?.iter();
+                wanted.extend(axes.map(|axis| axis.to.0));
+                wanted.push(hub);
+            }
+            wanted.sort_unstable();
+            wanted.dedup();
+            let row = |number: u32| Some((number, certain.remove(&number)?));
+            wanted.into_iter().map(row).collect()
+        })
+    }
+
+    /// The axes of all points in the square about a place that no image outside of it can change.
+    fn certain_rows(&self, place: DVec2, reach: f64) -> Option<BTreeMap<u32, Vec<Axis>>> {
+        let cover = Cover::about(&self.lattice, place, reach);
+        let mut images = Vec::new();
+        let mut numbers = BTreeMap::new();
+        self.buckets
+            .visit(&self.lattice, cover.corners(), |number, shift| {
+                let at = self.sites[number as usize] + shift;
+                if cover.depth(at) >= 0.0 {
+                    let next = numbers.len() as u32;
+                    let row = match numbers.entry(number) {
+                        std::collections::btree_map::Entry::Vacant(free) => *free.insert(next),
+                        std::collections::btree_map::Entry::Occupied(_) => Image::FOREIGN,
+                    };
+                    images.push(Image::new(at, number, row));
+                }
+                images.len() <= IMAGES_LIMIT
+            });
+        if images.len() > IMAGES_LIMIT {
+            return None;
+        }
+        let patch = Patch::new(&self.lattice, cover, &images, numbers.len()).ok()?;
+        let mut rows = patch.certain_rows();
+        let taken = |(number, row): (u32, u32)| Some((number, rows[row as usize].take()?));
+        Some(numbers.into_iter().filter_map(taken).collect())
+    }
+
+    /// Puts rows in the place of others, or all if none are given. Gives the stars that changed, before and after.
+    fn replace(&mut self, rows: Option<Vec<(u32, Vec<Axis>)>>) -> Result<Vec<Star>, GraphError> {
+        let rows = match rows {
+            Some(rows) => rows,
+            None => self.all_rows()?,
+        };
+        let mut stars = Vec::new();
+        for (number, row) in rows {
+            if self.rows[number as usize] != row {
+                stars.push(self.star_of(number));
+                self.rows[number as usize] = row;
+                stars.push(self.star_of(number));
+            }
+        }
+        Ok(stars)
+    }
+
+    /// The axes of all points.
+    fn all_rows(&self) -> Result<Vec<(u32, Vec<Axis>)>, GraphError> {
+        let rows = match rows(&self.lattice, &self.dense_sites()) {
+            Ok(rows) => rows,
+            // No two sites are the same.
+            Err(Refusal::Thin | Refusal::Coincident) => {
+                return Err(GraphError::new(GraphErrorKind::Thin {
+                    size: self.domain.size,
+                    limit: crate::grid::Budget::limit(self.n_points()),
+                }));
+            }
+        };
+        let row = |(index, &number): (usize, &u32)| {
+            let [start, end] = [index, index + 1].map(|at| rows.offsets[at] as usize);
+            let axes = rows.axes[start..end].iter().map(|axis| Axis {
+                to: PointIdx(self.numbers[axis.to.index()]),
+                ..*axis
+            });
+            (number, axes.collect())
+        };
+        Ok(self.numbers.iter().enumerate().map(row).collect())
+    }
+}

@@ -1,0 +1,385 @@
+//! A texture whose control points are inserted, moved, removed and changed one by one, as in an editor.
+//!
+//! An edit changes the weights of the point, and of those that it is or was connected to, within their supports; nothing
+//! else. So an edit says in which rectangles it has changed the texture, and the net of a window is made of the points whose
+//! supports reach into it, in their order, which gives the bits of the whole net.
+
+use crate::net::Net;
+use crate::support::padded_box;
+use crate::{
+    ControlPoint, ControlPoints, Orientation, Orientations, Pups, PupsError, PupsErrorKind,
+    PupsField,
+};
+use dapple_graph::{EditableDelaunay, Graph, Star};
+use dapple_hash::Seed;
+use dapple_points::{Domain, PointIdx, PointSet};
+use dapple_raster::{RasterViewMut, Window};
+use glam::{DVec2, DVec3};
+
+/// The most copies of a rectangle in a picture that are told apart.
+const COPIES_LIMIT: f64 = 64.0;
+
+/// A texture of control points that can be edited: at any time that of [`control_points`](crate::control_points) for the
+/// same points, bit for bit.
+///
+/// An index is the place in [`points`](Self::points): a new point comes last, and when a point is removed, those after it
+/// move up by one, as in a list.
+///
+/// An edit of some points among many, and drawing what it changed, takes no longer than among few, where the domain wraps
+/// along both axes. Along an axis that does not wrap, supports of points at the border have no end: windows are then made of all
+/// points.
+///
+/// # Examples
+///
+/// ```
+/// use dapple_pups::raster::{Raster, Window};
+/// use dapple_pups::{CowOptions, EditablePups, PupsRecipe, glam::DVec2, hash::Seed, points::PointIdx};
+///
+/// let cow = CowOptions::default();
+/// let points = cow.build(&(), Seed(7))?.to_points(cow.domain).expect("a cow is one net of numbers");
+/// let mut hide = EditablePups::new(points, Seed(7))?;
+///
+/// let picture = Window::new(DVec2::NEG_ONE, DVec2::splat(2.0), [512, 512])?;
+/// let changed = hide.move_to(PointIdx(3), DVec2::new(0.25, -0.5))?;
+/// for window in hide.windows(&changed, &picture) {
+///     let mut part = Raster::filled(window.size, 0.0)?;
+///     hide.render(&window, part.view_mut())?;
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct EditablePups {
+    /// The points as they are now, each with its own orientation, if they have any.
+    options: ControlPoints,
+    graph: EditableDelaunay,
+    /// How far supports reach, or less.
+    reach: DVec2,
+}
+
+/// A rectangle of the plane, outside of which an edit changed nothing.
+///
+/// Along an axis that wraps, it begins in the domain, and where it ends past it, goes on at its beginning. It is infinite
+/// where the supports of points on a border that does not wrap have no end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Changed {
+    /// The corner with the smallest coordinates.
+    pub min: DVec2,
+    /// The corner with the largest coordinates.
+    pub max: DVec2,
+}
+
+impl EditablePups {
+    /// A texture to edit. Orientations that the options give become those of the points.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`control_points`](crate::control_points), and [`Conflict`](PupsErrorKind::Conflict) for points that move.
+    pub fn new(mut options: ControlPoints, seed: Seed) -> Result<Self, PupsError> {
+        if options.net.motion.is_some() {
+            let rule = "points with a `motion` cannot be edited; edit them without it";
+            return Err(PupsError::new(PupsErrorKind::Conflict { rule }));
+        }
+        let points = options.point_set()?;
+        // Refuses all that a texture refuses.
+        let field = crate::control_points(&options, seed)?;
+        let nets = field.nets();
+        let orientations = nets[0].orientations();
+        for (index, point) in options.points.iter_mut().enumerate() {
+            point.orientation = orientations.as_ref().map(|vectors| vectors[index]);
+        }
+        options.net.orientations = Orientations::None;
+        let mut editable = Self {
+            options,
+            graph: EditableDelaunay::new(&points)?,
+            reach: DVec2::ZERO,
+        };
+        for (point, _) in points.iter() {
+            let star = editable.graph.star(point)?;
+            editable.extend_reach(&[star]);
+        }
+        Ok(editable)
+    }
+
+    /// The points, by their index.
+    #[must_use]
+    pub fn points(&self) -> &[ControlPoint] {
+        &self.options.points
+    }
+
+    /// The options that make the same texture anew.
+    #[must_use]
+    pub fn options(&self) -> &ControlPoints {
+        &self.options
+    }
+
+    /// The Delaunay graph of the points.
+    #[must_use]
+    pub fn graph(&self) -> Graph {
+        self.graph.to_graph()
+    }
+
+    /// Adds a point after the last one.
+    ///
+    /// # Errors
+    ///
+    /// [`Graph`](PupsErrorKind::Graph) for a position outside of the domain or at another point,
+    /// [`ShortAxis`](PupsErrorKind::ShortAxis) for one too close to another, [`Range`](PupsErrorKind::Range) for a value that
+    /// is not finite or an orientation without a length, [`Conflict`](PupsErrorKind::Conflict) for an orientation where points
+    /// have none, or none where they have one. Nothing has changed then.
+    pub fn insert(&mut self, point: ControlPoint) -> Result<Vec<Changed>, PupsError> {
+        self.check(&point)?;
+        let at = DVec2::new(point.x, point.y);
+        let index = PointIdx(self.options.points.len() as u32);
+        let stars = self.graph.insert(at)?;
+        if let Err(error) = self.check_stars(index, &stars) {
+            self.graph.remove(index)?;
+            return Err(error);
+        }
+        self.options.points.push(point);
+        Ok(self.changed(&stars, [at; 2]))
+    }
+
+    /// Moves a point; along wrapped axes it may go past the end of the domain.
+    ///
+    /// # Errors
+    ///
+    /// [`Graph`](PupsErrorKind::Graph) for a position outside of the domain or at another point, or if there is no such
+    /// point, and [`ShortAxis`](PupsErrorKind::ShortAxis) for one too close to another. Nothing has changed then.
+    pub fn move_to(&mut self, point: PointIdx, position: DVec2) -> Result<Vec<Changed>, PupsError> {
+        let former = self.graph.star(point)?.center;
+        let stars = self.graph.move_to(point, position)?;
+        if let Err(error) = self.check_stars(point, &stars) {
+            self.graph.move_to(point, former)?;
+            return Err(error);
+        }
+        let moved = &mut self.options.points[point.index()];
+        (moved.x, moved.y) = (position.x, position.y);
+        Ok(self.changed(&stars, [former, position]))
+    }
+
+    /// Takes a point away; those after it move up by one.
+    ///
+    /// # Errors
+    ///
+    /// [`Graph`](PupsErrorKind::Graph) if there is no such point, and [`NoPoints`](PupsErrorKind::NoPoints) if it is the last
+    /// one. Nothing has changed then.
+    pub fn remove(&mut self, point: PointIdx) -> Result<Vec<Changed>, PupsError> {
+        let at = self.graph.star(point)?.center;
+        if self.options.points.len() == 1 {
+            return Err(PupsError::new(PupsErrorKind::NoPoints));
+        }
+        let stars = self.graph.remove(point)?;
+        self.options.points.remove(point.index());
+        self.extend_reach(&stars);
+        Ok(self.changed(&stars, [at; 2]))
+    }
+
+    /// Gives a point another value and orientation. Where the value of the strongest point counts alone, the value is what
+    /// a label stands for.
+    ///
+    /// # Errors
+    ///
+    /// [`Graph`](PupsErrorKind::Graph) if there is no such point, and those of [`insert`](Self::insert) for a value and an
+    /// orientation. Nothing has changed then.
+    pub fn set(
+        &mut self,
+        point: PointIdx,
+        value: f32,
+        orientation: Option<DVec3>,
+    ) -> Result<Vec<Changed>, PupsError> {
+        let star = self.graph.star(point)?;
+        let changed = ControlPoint {
+            value,
+            orientation,
+            ..self.options.points[point.index()]
+        };
+        self.check(&changed)?;
+        self.options.points[point.index()] = changed;
+        let at = star.center;
+        Ok(self.changed(&[star], [at; 2]))
+    }
+
+    /// The parts of a picture that have changed: windows of its pixels, which may overlap.
+    #[must_use]
+    pub fn windows(&self, changed: &[Changed], picture: &Window) -> Vec<Window> {
+        let mut windows = Vec::new();
+        for changed in changed {
+            let [columns, rows] = [0, 1].map(|axis| self.pixels(changed, picture, axis));
+            for &(row, n_rows) in &rows {
+                for &(column, n_columns) in &columns {
+                    let first = [i64::from(column), i64::from(row)];
+                    // A part of a window is a window.
+                    windows.extend(picture.crop(first, [n_columns, n_rows]));
+                }
+            }
+        }
+        windows
+    }
+
+    /// Fills a window with the values of the texture.
+    ///
+    /// # Errors
+    ///
+    /// [`Raster`](PupsErrorKind::Raster) if `out` has another size than the window.
+    pub fn render(&self, window: &Window, out: RasterViewMut<'_, f32>) -> Result<(), PupsError> {
+        match self.field(window)? {
+            PupsField::Numbers(field) => Ok(field.render(window, out)?),
+            // Points that are given one by one have numbers.
+            PupsField::Colors(_) => Ok(()),
+        }
+    }
+
+    /// The texture in a window: of the points whose supports reach into it.
+    fn field(&self, window: &Window) -> Result<PupsField, PupsError> {
+        let [width, height] = window.size;
+        let (first, last) = (
+            window.position(0, 0),
+            window.position(width.max(1) - 1, height.max(1) - 1),
+        );
+        let (low, high) = (first.min(last) - self.reach, first.max(last) + self.reach);
+        let points = self.graph.points_in(low, high);
+        let given = points
+            .iter()
+            .map(|point| &self.options.points[point.index()]);
+        let vectors: Option<Vec<DVec3>> = given.clone().map(|point| point.orientation).collect();
+        let orientation = vectors
+            .map(|vectors| Orientation::new(vectors).with_strength(self.options.net.strength));
+        let options = self.options.net.pups_options(orientation);
+        let mut net = Net::empty(*self.graph.domain(), options, points.len())?;
+        let mut centers = Vec::with_capacity(points.len());
+        for (index, &point) in (0..).map(PointIdx).zip(&points) {
+            let star = self.graph.star(point)?;
+            net.push(index, star.center, &star.vectors)?;
+            centers.push(star.center);
+        }
+        let points = PointSet::new(net.domain, centers)?;
+        let values = given.map(|point| point.value).collect();
+        self.options.cells.field(Pups::of_net(net, points), values)
+    }
+
+    /// Refuses what a point cannot hold.
+    fn check(&self, point: &ControlPoint) -> Result<(), PupsError> {
+        let (finite, value) = (point.value.is_finite(), f64::from(point.value));
+        PupsError::check(finite, "value of a control point", value, "finite")?;
+        let first = self.options.points.first();
+        if first.is_some_and(|first| first.orientation.is_some() != point.orientation.is_some()) {
+            let rule = "all points have an `orientation`, or none has";
+            return Err(PupsError::new(PupsErrorKind::Conflict { rule }));
+        }
+        let orientation = point
+            .orientation
+            .map(|vector| Orientation::new(vec![vector]));
+        self.options.net.pups_options(orientation).check(1)
+    }
+
+    /// Refuses stars with axes that are too short, and takes note of how far the others reach.
+    fn check_stars(&mut self, point: PointIdx, stars: &[Star]) -> Result<(), PupsError> {
+        let options = self.options.net.pups_options(None);
+        let mut net = Net::empty(*self.graph.domain(), options, 0)?;
+        for star in stars {
+            net.push(point, star.center, &star.vectors)?;
+        }
+        self.extend_reach(stars);
+        Ok(())
+    }
+
+    fn support(&self, star: &Star) -> (DVec2, DVec2) {
+        padded_box(&star.vectors, self.options.net.axis_scale)
+    }
+
+    fn extend_reach(&mut self, stars: &[Star]) {
+        for star in stars {
+            let (min, max) = self.support(star);
+            self.reach = self.reach.max(-min).max(max);
+        }
+    }
+
+    /// The rectangles around the supports of stars near the two places of an edit: one if they overlap.
+    fn changed(&self, stars: &[Star], places: [DVec2; 2]) -> Vec<Changed> {
+        let domain = self.graph.domain();
+        let [here, there] = places.map(|place| domain.wrap(place));
+        let places = [here, here + domain.delta(here, there)];
+        let mut boxes = [None, None];
+        for star in stars {
+            let ways = [here, there].map(|place| domain.delta(place, star.center));
+            let near = usize::from(ways[1].length_squared() < ways[0].length_squared());
+            let center = places[near] + ways[near];
+            let (min, max) = self.support(star);
+            let (min, max) = (center + min, center + max);
+            let around: &mut Option<Changed> = &mut boxes[near];
+            *around = Some(match *around {
+                Some(around) => around.joined(&Changed { min, max }),
+                None => Changed { min, max },
+            });
+        }
+        if let [Some(here), Some(there)] = boxes {
+            if here.min.cmple(there.max).all() && there.min.cmple(here.max).all() {
+                boxes = [Some(here.joined(&there)), None];
+            }
+        }
+        let found = boxes.into_iter().flatten();
+        found.map(|changed| changed.begun_in(domain)).collect()
+    }
+
+    /// The first pixel and the number of pixels of a picture, along an axis, in each image of a rectangle.
+    fn pixels(&self, changed: &Changed, picture: &Window, axis: usize) -> Vec<(u32, u32)> {
+        let domain = self.graph.domain();
+        let n_pixels = picture.size[axis];
+        let last = n_pixels.max(1) - 1;
+        let ends = match axis {
+            0 => [picture.column_x(0), picture.column_x(last)],
+            _ => [picture.row_y(0), picture.row_y(last)],
+        };
+        let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        let (min, max) = (changed.min[axis], changed.max[axis]);
+        let mut copies = (0.0, 0.0);
+        if domain.wrap[axis] {
+            let size = domain.size[axis];
+            copies = (((low - max) / size).floor(), ((high - min) / size).ceil());
+        }
+        if !(copies.1 - copies.0 <= COPIES_LIMIT) || n_pixels < 2 {
+            return vec![(0, n_pixels)];
+        }
+        let per_pixel = (ends[1] - ends[0]) / f64::from(last);
+        let mut pixels = Vec::new();
+        let mut copy = copies.0;
+        while copy <= copies.1 {
+            let shift = copy * domain.size[axis];
+            let at = [min, max].map(|end| (end + shift - ends[0]) / per_pixel);
+            // A pixel more on either side, for rounding; the conversion saturates.
+            let first = (at[0].min(at[1]) - 1.0).floor().max(0.0);
+            let end = (at[0].max(at[1]) + 2.0).ceil().min(f64::from(n_pixels));
+            if first < end {
+                pixels.push((first as u32, (end - first) as u32));
+            }
+            copy += 1.0;
+        }
+        pixels
+    }
+}
+
+impl Changed {
+    /// The rectangle around two.
+    fn joined(&self, other: &Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+
+    /// The rectangle with its beginning in the domain; all of an axis that wraps if it is that long.
+    fn begun_in(mut self, domain: &Domain) -> Self {
+        for axis in (0..2).filter(|&axis| domain.wrap[axis]) {
+            let (origin, size) = (domain.origin[axis], domain.size[axis]);
+            let length = self.max[axis] - self.min[axis];
+            if length < size {
+                self.min[axis] = domain.wrap_axis(axis, self.min[axis]);
+                self.max[axis] = self.min[axis] + length;
+            } else {
+                self.min[axis] = origin;
+                self.max[axis] = origin + size;
+            }
+        }
+        self
+    }
+}

@@ -1,0 +1,232 @@
+//! The control points of a texture as data, for editors: where they are, what they hold and how they are connected; and
+//! the texture of points given one by one that has the same picture.
+
+use super::Octave;
+use crate::{
+    Cells, ControlPoint, ControlPoints, LabelTexture, Layers, NetOptions, Orientations, Pups,
+    PupsError, PupsField, PupsOptions, Texture, VectorTexture,
+};
+use dapple_graph::{Graph, delaunay};
+use dapple_points::Domain;
+use dapple_raster::Field;
+use glam::{DVec2, DVec3};
+
+/// Control points with what they hold: a texture, or one layer of a texture.
+#[derive(Clone, Debug)]
+pub struct ControlNet {
+    /// Where the points are, and how they are weighted.
+    pub pups: Pups,
+    /// What they hold.
+    pub values: NetValues,
+}
+
+/// What control points hold.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum NetValues {
+    /// A value each, and the texture mixes them.
+    Numbers(Vec<f32>),
+    /// A label each, and the texture has the value of the label of the strongest point.
+    Labels {
+        /// The label of each point.
+        labels: Vec<u32>,
+        /// The value of each label.
+        values: Vec<f32>,
+    },
+    /// A color each, and the texture mixes them.
+    Colors(Vec<[f32; 3]>),
+}
+
+/// A texture of numbers whose control points can be looked at.
+pub trait NetField: Field {
+    /// The nets of its layers, the coarsest first; a single one where there are no layers.
+    fn nets(&self) -> Vec<ControlNet>;
+
+    /// What [`PupsField::to_points`] gives.
+    fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
+        let _ = tile;
+        None
+    }
+}
+
+impl ControlNet {
+    /// The Delaunay graph of the points: the edges that the texture is made along.
+    ///
+    /// # Errors
+    ///
+    /// [`Graph`](crate::PupsErrorKind::Graph) if there is no triangulation, which there is for a texture of a recipe.
+    pub fn graph(&self) -> Result<Graph, PupsError> {
+        Ok(delaunay(self.pups.points())?)
+    }
+
+    /// The orientation of each point, if points have any.
+    #[must_use]
+    pub fn orientations(&self) -> Option<Vec<DVec3>> {
+        let vectors = &self.pups.options().orientation.as_ref()?.vectors;
+        let of_point = |index: usize| vectors[if vectors.len() == 1 { 0 } else { index }];
+        Some((0..self.pups.n_points()).map(of_point).collect())
+    }
+
+    /// The value of each point, or that of its label; nothing for colors.
+    #[must_use]
+    pub fn numbers(&self) -> Option<Vec<f32>> {
+        match &self.values {
+            NetValues::Numbers(numbers) => Some(numbers.clone()),
+            NetValues::Labels { labels, values } => {
+                let value = |&label: &u32| values[label as usize];
+                Some(labels.iter().map(value).collect())
+            }
+            NetValues::Colors(_) => None,
+        }
+    }
+
+    /// The points as options of [`control_points`](crate::control_points) whose domain is `tile`; nothing for colors, and
+    /// where the texture repeats otherwise than the tile.
+    fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
+        let (domain, numbers) = (self.pups.domain(), self.numbers()?);
+        let wraps_within = |axis: usize| !domain.wrap[axis] || tile.wrap[axis];
+        let margin = (tile.origin - domain.origin).max(DVec2::ZERO);
+        let covered = Domain {
+            wrap: domain.wrap,
+            ..tile
+        };
+        if !wraps_within(0) || !wraps_within(1) || covered.grown(margin) != *domain {
+            return None;
+        }
+        let orientations = self.orientations();
+        let points = self.pups.points().iter().zip(numbers);
+        let points = points.map(|((point, at), value)| ControlPoint {
+            x: at.x,
+            y: at.y,
+            value,
+            orientation: orientations.as_ref().map(|vectors| vectors[point.index()]),
+        });
+        Some(ControlPoints {
+            domain: tile,
+            points: points.collect(),
+            net: net_options(self.pups.options()),
+            cells: match self.values {
+                NetValues::Labels { .. } => Cells::Hard,
+                _ => Cells::Mixed,
+            },
+            wrap: [0, 1].map(|axis| domain.wrap[axis] || !tile.wrap[axis]),
+            margin: margin.to_array(),
+        })
+    }
+}
+
+/// The options of a net whose points have their orientations themselves.
+fn net_options(options: &PupsOptions) -> NetOptions {
+    let usual = NetOptions::default();
+    NetOptions {
+        axis_scale: options.axis_scale,
+        weight: options.weight,
+        orientations: Orientations::None,
+        strength: options
+            .orientation
+            .as_ref()
+            .map_or(usual.strength, |orientation| orientation.strength),
+        fade: options.fade,
+        ..usual
+    }
+}
+
+impl PupsField {
+    /// The control points of the texture, layer by layer, the coarsest layer first.
+    #[must_use]
+    pub fn nets(&self) -> Vec<ControlNet> {
+        match self {
+            Self::Numbers(field) => field.nets(),
+            Self::Colors(texture) => vec![ControlNet::from(&**texture)],
+        }
+    }
+
+    /// The texture as control points that are given one by one, on a domain that is `tile`: the same picture, bit for bit.
+    /// Points that move stay where they are.
+    ///
+    /// There are none for a texture of several layers (octaves, turbulence, cellular noise) and for colors, which
+    /// [`control_points`](crate::control_points) does not make.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_pups::{CowOptions, PupsRecipe, control_points, hash::Seed};
+    ///
+    /// let cow = CowOptions::default();
+    /// let mut points = cow.build(&(), Seed(7))?.to_points(cow.domain).expect("a cow is one net of numbers");
+    /// points.points[3].value = 0.5;
+    /// let edited = control_points(&points, Seed(7))?;
+    /// # Ok::<(), dapple_pups::PupsError>(())
+    /// ```
+    #[must_use]
+    pub fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
+        match self {
+            Self::Numbers(field) => field.to_points(tile),
+            Self::Colors(_) => None,
+        }
+    }
+}
+
+impl From<&Texture> for ControlNet {
+    fn from(texture: &Texture) -> Self {
+        Self {
+            pups: texture.pups().clone(),
+            values: NetValues::Numbers(texture.values().to_vec()),
+        }
+    }
+}
+
+impl From<&LabelTexture> for ControlNet {
+    fn from(texture: &LabelTexture) -> Self {
+        Self {
+            pups: texture.pups().clone(),
+            values: NetValues::Labels {
+                labels: texture.labels().to_vec(),
+                values: texture.values().to_vec(),
+            },
+        }
+    }
+}
+
+impl From<&VectorTexture<3>> for ControlNet {
+    fn from(texture: &VectorTexture<3>) -> Self {
+        Self {
+            pups: texture.pups().clone(),
+            values: NetValues::Colors(texture.values().to_vec()),
+        }
+    }
+}
+
+impl NetField for Texture {
+    fn nets(&self) -> Vec<ControlNet> {
+        vec![self.into()]
+    }
+
+    fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
+        ControlNet::from(self).to_points(tile)
+    }
+}
+
+impl NetField for LabelTexture {
+    fn nets(&self) -> Vec<ControlNet> {
+        vec![self.into()]
+    }
+
+    fn to_points(&self, tile: Domain) -> Option<ControlPoints> {
+        ControlNet::from(self).to_points(tile)
+    }
+}
+
+impl NetField for Layers<Octave> {
+    /// The nets of the octaves, of which rescaled ones have a single one together.
+    fn nets(&self) -> Vec<ControlNet> {
+        let octaves = self.layers().iter().filter(|octave| octave.scale() == 1.0);
+        octaves.map(|octave| octave.texture().into()).collect()
+    }
+}
+
+impl NetField for Layers<LabelTexture> {
+    fn nets(&self) -> Vec<ControlNet> {
+        self.layers().iter().map(ControlNet::from).collect()
+    }
+}

@@ -1,0 +1,89 @@
+//! Control points that move on circles, for loops in time.
+//!
+//! The paper's outlook: "the motion of the texture can be governed by the motion of the underlying discrete structure. The
+//! main difficulty here lies in smoothing out sudden changes in the texture arising from sudden changes in the control
+//! net topology." Points keep what they hold while they move, and what smooths is [`PupsOptions::fade`].
+//!
+//! A circle lies about the place of its point in the still texture, so that points are as far apart at one time as at any
+//! other.
+//!
+//! [`PupsOptions::fade`]: crate::PupsOptions::fade
+
+use crate::{PupsError, Range, range};
+use core::f64::consts::TAU;
+use dapple_graph::Graph;
+use dapple_hash::{CellHash, Seed, unit_f64};
+use dapple_points::{PointIdx, PointSet};
+use glam::DVec2;
+
+/// Control points on circles: each goes around its own once in a loop, one way or the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+pub struct Orbits {
+    /// The radius of the largest circles, as a part of the mean distance of a point to those that it is connected to: above
+    /// 0 and at most 1. The smallest circles are half as large; up to 0.3, points of a Poisson-disk set stay apart.
+    #[cfg_attr(feature = "schema", schemars(transform = { RADIUS }))]
+    pub radius: f64,
+}
+
+/// Radii beside mean distances.
+const RADIUS: Range = range!(above 0 to 1);
+/// Parts of a loop; whole loops change nothing.
+const TIME: Range = range!(finite);
+
+impl Orbits {
+    /// Where the points are when a part of the loop has passed; at 1 it is where they were at 0. Along axes of the domain
+    /// that do not wrap, circles end at its border.
+    pub(crate) fn moved(
+        self,
+        points: &PointSet,
+        graph: &Graph,
+        time: f64,
+        seed: Seed,
+    ) -> Result<PointSet, PupsError> {
+        PupsError::check_in(RADIUS, "radius of the orbits", self.radius)?;
+        PupsError::check_in(TIME, "time", time)?;
+        let passed = time - time.floor();
+        let moved = points.iter().map(|(point, center)| {
+            let random = CellHash::new(seed, [i64::from(point.0)]);
+            let [phase, size, way] = [0, 1, 2].map(|lane| unit_f64(random.at(lane)));
+            let turn = if way < 0.5 {
+                phase + passed
+            } else {
+                phase - passed
+            };
+            let radius = self.radius * (0.5 + 0.5 * size) * mean_distance(graph, point);
+            let circle = DVec2::new(libm::cos(TAU * turn), libm::sin(TAU * turn));
+            within(points, center, radius, circle)
+        });
+        Ok(PointSet::new(*points.domain(), moved.collect())?)
+    }
+}
+
+/// The mean length of the edges at a point; zero without edges.
+fn mean_distance(graph: &Graph, point: PointIdx) -> f64 {
+    let axes = graph.axes(point);
+    let sum: f64 = axes.iter().map(|axis| axis.vector.length()).sum();
+    sum / axes.len().max(1) as f64
+}
+
+/// A place on a circle, which is made smaller where it would cross a border that does not wrap.
+fn within(points: &PointSet, center: DVec2, mut radius: f64, circle: DVec2) -> DVec2 {
+    let domain = points.domain();
+    let (first, last) = (domain.origin, domain.end());
+    for axis in (0..2).filter(|&axis| !domain.wrap[axis]) {
+        let room = (center[axis] - first[axis]).min(last[axis] - center[axis]);
+        radius = radius.min(room);
+    }
+    let mut at = center + circle * radius;
+    for axis in (0..2).filter(|&axis| !domain.wrap[axis]) {
+        // Rounding may lead past the border.
+        at[axis] = at[axis].clamp(first[axis], last[axis]);
+    }
+    at
+}
