@@ -27,6 +27,7 @@ mod graph;
 mod message;
 mod patch;
 mod picture;
+mod points;
 mod render;
 mod schema;
 
@@ -51,4 +52,4 @@ pub use render::{Job, MAX_SIDE, Renderer, World};
 
 #[cfg(feature = "server")]
 pub use server::{ExportedFile, Host, ServeOptions, serve};
-pub use session::Session;
+pub use session::{ImagesOf, Session};

@@ -281,7 +281,7 @@ pub enum Reply {
         maps: Vec<MapSeams>,
     },
     /// The control points of a node.
-    Points(Box<Json>),
+    Points(Box<Points>),
     /// A program or a text.
     Code {
         /// The language.
@@ -459,6 +459,23 @@ pub struct MapSeams {
     pub y: Option<Json>,
     /// The report as a table.
     pub text: String,
+}
+
+/// The control points of a node.
+#[derive(Clone, Debug, Serialize)]
+pub struct Points {
+    pub(crate) node: String,
+    /// Whether the points are in the text.
+    pub(crate) editable: bool,
+    /// Whether the op `make_points` can put them there.
+    pub(crate) can_be_editable: bool,
+    /// How many nets of points the texture has; those of the coarsest are told.
+    pub(crate) layers: usize,
+    pub(crate) extent: [f64; 2],
+    pub(crate) wrap: [bool; 2],
+    pub(crate) points: Vec<dapple::recipe::ControlPoint>,
+    /// The indices of two points, and the way from the first to the second, each edge once.
+    pub(crate) edges: Vec<(u32, u32, f64, f64)>,
 }
 
 /// A file and its length.

@@ -94,6 +94,14 @@ pub enum Op {
         /// A name of a node, a color or a number.
         from: Json,
     },
+    /// Makes a PUPs texture one of points that are in the text, with the same picture.
+    MakePoints {
+        /// The node.
+        node: String,
+        /// The options of the texture of points, which a [`Session`](crate::Session) fills in.
+        #[serde(skip)]
+        points: Option<Json>,
+    },
 }
 
 /// The text after some changes, one after the other.
@@ -132,6 +140,11 @@ fn apply_one(document: &mut DocumentMut, op: &Op) -> Result<(), StudioError> {
         Op::RenameNode { name, to } => nodes::rename(document, name, to),
         Op::DuplicateNode { name, to } => nodes::duplicate(document, name, to),
         Op::Connect { node, input, from } => nodes::connect(document, node, input, from),
+        Op::MakePoints { node, points } => {
+            let missing = || StudioError::new("the points of the texture are not known");
+            let points = points.as_ref().and_then(Json::as_object).ok_or_else(missing)?;
+            nodes::make_points(document, node, points)
+        }
     }
 }
 

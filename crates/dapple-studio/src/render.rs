@@ -14,15 +14,19 @@ use std::sync::Arc;
 pub const MAX_SIDE: u32 = 4096;
 /// The longest side of a tile of which a part is shown, in pixels.
 pub(crate) const MAX_TILE: u32 = 1 << 16;
-/// The longest side of a draft, in pixels.
-const DRAFT_SIDE: u32 = 256;
+/// The longest and the shortest longer side of a draft, in pixels.
+const DRAFT_SIDES: [u32; 2] = [256, 64];
+/// The milliseconds for which a draft is fast enough, and those for which a larger one is, too.
+const DRAFT_MS: [f64; 2] = [16.0, 5.0];
 /// The longest side of a thumbnail, in pixels.
 const THUMBNAIL_SIDE: u32 = 64;
 /// The pixels that are drawn before it is asked again whether they are still wanted.
-const BAND_PIXELS: u32 = 1 << 18;
+const BAND_PIXELS: u32 = 1 << 15;
+/// The pixels that are sent at a time.
+const SENT_PIXELS: usize = 1 << 18;
 
 /// How much work a recipe may ask for in the studio.
-const LIMITS: PlanLimits = PlanLimits {
+pub(crate) const LIMITS: PlanLimits = PlanLimits {
     control_points: 1 << 18,
     wavelet_cells: 1 << 22,
     values: 1024,
@@ -67,6 +71,10 @@ pub trait World {
 pub struct Renderer {
     memory: Memory,
     planned: Option<Planned>,
+    /// The longest side of the next draft, in pixels.
+    draft_side: u32,
+    /// The document of which it was said last that nothing is wrong with it.
+    told: Option<Arc<Document>>,
 }
 
 /// The most bytes of values of nodes that are kept.
@@ -74,7 +82,12 @@ const MEMORY: usize = 1 << 29;
 
 impl Default for Renderer {
     fn default() -> Self {
-        Self { memory: Memory::new(MEMORY), planned: None }
+        Self {
+            memory: Memory::new(MEMORY),
+            planned: None,
+            draft_side: DRAFT_SIDES[0],
+            told: None,
+        }
     }
 }
 
@@ -134,36 +147,33 @@ impl Renderer {
 
     fn draw_all(&mut self, job: &Job, recipe: &Recipe, world: &dyn World) -> Result<(), Stop> {
         let start = world.now();
-        let is_new = self
-            .planned
-            .as_ref()
-            .is_none_or(|planned| !Arc::ptr_eq(&planned.document, &job.document));
         let plan = match self.plan(job, recipe, world) {
             Ok(plan) => plan,
             Err(error) => {
+                self.told = None;
                 put_graph(job, None, world);
                 return Err(error);
             }
         };
-        let pass = Pass {
+        let mut pass = Pass {
             job,
             world,
             plan: &plan,
             start,
+            draft_side: self.draft_side,
         };
         let drawn = pass.draw();
+        self.draft_side = pass.draft_side;
+        let is_told = |told: &Arc<Document>| Arc::ptr_eq(told, &job.document);
+        let is_new = !self.told.as_ref().is_some_and(is_told);
         if is_new {
             put_graph(job, Some(&plan), world);
         }
         drawn?;
         if is_new {
-            world.put(
-                Reply::Diagnostics {
-                    rev: job.rev,
-                    items: Vec::new(),
-                }
-                .into(),
-            );
+            self.told = Some(job.document.clone());
+            let (rev, items) = (job.rev, Vec::new());
+            world.put(Reply::Diagnostics { rev, items }.into());
         }
         pass.thumbnails()
     }
@@ -229,6 +239,7 @@ struct Pass<'a> {
     world: &'a dyn World,
     plan: &'a Plan,
     start: f64,
+    draft_side: u32,
 }
 
 /// The scale of a picture, and what of it is made.
@@ -240,7 +251,7 @@ struct Frame {
 }
 
 impl Pass<'_> {
-    fn draw(&self) -> Result<(), Stop> {
+    fn draw(&mut self) -> Result<(), Stop> {
         let view = &self.job.view;
         if view.paused {
             return Ok(());
@@ -257,15 +268,27 @@ impl Pass<'_> {
             }
             .into(),
         );
-        let draft = frame.draft().filter(|_| view.draft);
+        let draft = frame.draft(self.draft_side).filter(|_| view.draft);
         if let Some(draft) = draft {
             // Some recipes have no smaller picture, such as those whose tiles have a whole number of pixels.
             match self.draw_frame(draft, true) {
-                Ok(()) | Err(Stop::Refused(_)) => {}
+                Ok(()) => self.choose_draft(),
+                Err(Stop::Refused(_)) => {}
                 Err(stop) => return Err(stop),
             }
         }
         self.draw_frame(frame, false)
+    }
+
+    /// Makes the next draft smaller if this one was slow, and larger if it was fast.
+    fn choose_draft(&mut self) {
+        let ms = self.world.now() - self.start;
+        let ([slow, fast], [largest, smallest]) = (DRAFT_MS, DRAFT_SIDES);
+        if ms > slow {
+            self.draft_side = (self.draft_side / 2).max(smallest);
+        } else if ms < fast {
+            self.draft_side = (self.draft_side * 2).min(largest);
+        }
     }
 
     fn frame(&self) -> Result<Frame, StudioError> {
@@ -297,11 +320,14 @@ impl Pass<'_> {
     }
 
     fn draw_frame(&self, frame: Frame, is_draft: bool) -> Result<(), Stop> {
-        match &self.job.view.node {
-            Some(node) => self.node(node, frame, is_draft)?,
-            None => self.maps(frame, is_draft)?,
-        }
-        self.rendered(is_draft, None);
+        let nodes = match &self.job.view.node {
+            Some(node) => Some(vec![self.node(node, frame, is_draft)?]),
+            None => {
+                self.maps(frame, is_draft)?;
+                None
+            }
+        };
+        self.rendered(is_draft, nodes);
         Ok(())
     }
 
@@ -318,34 +344,41 @@ impl Pass<'_> {
         }
         self.check_wanted()?;
         let rows = frame.region.size[1];
+        let mut parts: Vec<_> = options.maps.iter().map(|_| (0, Vec::new())).collect();
         for band in Bake::new(self.plan, &options)? {
             self.check_wanted()?;
             let band = band?;
-            for (kind, map) in &band.maps {
-                let end = band.first_row + map.size()[1];
+            for ((kind, map), (first_row, pixels)) in band.maps.iter().zip(&mut parts) {
+                pixels.extend(rgba(map));
+                let [width, height] = map.size();
+                let end = band.first_row + height;
+                if pixels.len() < 4 * SENT_PIXELS && end < rows {
+                    continue;
+                }
+                let [left, top] = frame.region.first;
                 self.world.put(Output::Picture(Picture {
                     generation: self.job.generation,
                     shown: Shown::Map(*kind),
-                    first: [
-                        frame.region.first[0],
-                        frame.region.first[1] + band.first_row,
-                    ],
-                    size: map.size(),
+                    first: [left, top + *first_row],
+                    size: [width, end - *first_row],
                     scale: frame.scale as u16,
                     is_draft,
                     is_last: end == rows,
-                    pixels: rgba(map),
+                    pixels: core::mem::take(pixels),
                 }));
+                *first_row = end;
             }
         }
         Ok(())
     }
 
-    fn node(&self, node: &str, frame: Frame, is_draft: bool) -> Result<(), Stop> {
+    fn node(&self, node: &str, frame: Frame, is_draft: bool) -> Result<NodeTime, Stop> {
         self.check_wanted()?;
+        let start = self.world.now();
         let values = self
             .plan
             .node_picture(node, frame.size, Some(frame.region))?;
+        let (pixels, range) = of_values(&values);
         self.world.put(Output::Picture(Picture {
             generation: self.job.generation,
             shown: Shown::Node,
@@ -354,9 +387,13 @@ impl Pass<'_> {
             scale: frame.scale as u16,
             is_draft,
             is_last: true,
-            pixels: of_values(&values).0,
+            pixels,
         }));
-        Ok(())
+        Ok(NodeTime {
+            name: node.to_owned(),
+            ms: self.world.now() - start,
+            range,
+        })
     }
 
     /// A small picture of each node.
@@ -431,15 +468,15 @@ impl Pass<'_> {
 
 impl Frame {
     /// The largest smaller picture that is a draft and whose pixels begin where those of this one do.
-    fn draft(self) -> Option<Self> {
+    fn draft(self, side: u32) -> Option<Self> {
         let longest = self.region.size[0].max(self.region.size[1]);
         let numbers = [self.size, self.region.first, self.region.size].concat();
         let scales = (1..=6).map(|power| 1_u32 << power);
         let fits = |scale: &u32| numbers.iter().all(|number| number % scale == 0);
         let mut scales = scales
-            .filter(|scale| longest / scale <= DRAFT_SIDE)
+            .filter(|scale| longest / scale <= side)
             .filter(fits);
-        let scale = scales.next().filter(|_| longest > DRAFT_SIDE)?;
+        let scale = scales.next().filter(|_| longest > side)?;
         let smaller = |numbers: [u32; 2]| numbers.map(|number| number / scale);
         Some(Self {
             size: smaller(self.size),

@@ -154,6 +154,10 @@ async fn run(
     }
     let end = shared.clone();
     let router = Router::new().fallback(answer).with_state(shared);
+    // Small messages do not wait for others.
+    let listener = listener.tap_io(|socket| {
+        let _ = socket.set_nodelay(true);
+    });
     let served =
         axum::serve(listener, router).with_graceful_shutdown(async move { end.ended().await });
     served

@@ -4,9 +4,12 @@ use crate::change::changes;
 use crate::message::{Reply, Request, View};
 use crate::patch::{Op, apply};
 use crate::render::Job;
-use crate::{Document, StudioError};
-use dapple::recipe::Recipe;
+use crate::{Document, StudioError, points};
+use dapple::recipe::{Images, Recipe};
 use std::sync::Arc;
+
+/// Gives the images that a recipe names.
+pub type ImagesOf<'a> = &'a dyn Fn(&Recipe) -> Result<Images, StudioError>;
 
 /// The state of one page. It answers at once what needs no drawing; what is to be drawn is a [`Job`].
 #[derive(Debug)]
@@ -104,12 +107,13 @@ impl Session {
     }
 
     /// Makes small changes of the text.
-    pub fn patch(&mut self, rev: u64, ops: &[Op], drag: bool) -> Vec<Reply> {
+    pub fn patch(&mut self, rev: u64, ops: &[Op], drag: bool, images: ImagesOf<'_>) -> Vec<Reply> {
         if rev != self.rev {
             return vec![Reply::Stale { rev: self.rev }];
         }
         let old = self.document.text();
-        let new = match apply(old, ops) {
+        let ops = self.with_points(ops, images);
+        let new = match ops.and_then(|ops| apply(old, &ops)) {
             Ok(new) if new.len() > dapple::recipe::MAX_TEXT => {
                 let error = StudioError::new("the text would be longer than 4 MiB");
                 return vec![Reply::refused("patch", &error)];
@@ -140,7 +144,7 @@ impl Session {
     }
 
     /// Answers a request that needs no file and no drawing; none for others.
-    pub fn handle(&mut self, request: &Request) -> Option<Vec<Reply>> {
+    pub fn handle(&mut self, request: &Request, images: ImagesOf<'_>) -> Option<Vec<Reply>> {
         Some(match request {
             Request::Open {
                 builtin,
@@ -151,7 +155,7 @@ impl Session {
                 Err(error) => vec![Reply::refused("open", &error)],
             },
             Request::Doc { rev, text } => self.doc(*rev, text),
-            Request::Patch { rev, ops, drag } => self.patch(*rev, ops, *drag),
+            Request::Patch { rev, ops, drag } => self.patch(*rev, ops, *drag, images),
             Request::View(view) => {
                 self.look(view.clone());
                 Vec::new()
@@ -183,6 +187,20 @@ impl Session {
     pub fn renew(&mut self) {
         self.generation = self.generation.wrapping_add(1);
         self.is_new = true;
+    }
+
+    /// The changes, with the points of the nodes whose points are to be editable.
+    fn with_points(&self, ops: &[Op], images: ImagesOf<'_>) -> Result<Vec<Op>, StudioError> {
+        let with_points = |op: &Op| {
+            let Op::MakePoints { node, points: None } = op else {
+                return Ok(op.clone());
+            };
+            let recipe = self.document.recipe().map_err(|error| StudioError::from(error.clone()))?;
+            let points = Some(points::editable(recipe, &images(recipe)?, node)?);
+            let node = node.clone();
+            Ok(Op::MakePoints { node, points })
+        };
+        ops.iter().map(with_points).collect()
     }
 
     fn put(&mut self, document: Document) -> Vec<Reply> {

@@ -2,11 +2,11 @@
 
 use super::{Op, Part, Place, apply_one};
 use crate::StudioError;
-use crate::data::json_of_table;
+use crate::data::{json_of_table, table_of};
 use crate::schema::roles;
 use dapple::recipe::KINDS;
-use serde_json::{Value as Json, json};
-use toml_edit::{DocumentMut, Item, Key, Table, Value};
+use serde_json::{Map, Value as Json, json};
+use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, Value};
 
 /// Adds a node after all others.
 pub(super) fn add(
@@ -155,6 +155,47 @@ pub(super) fn connect(
         }
     }
     root.set(&path, from)
+}
+
+/// Makes a PUPs texture one of points, each on a line of its own.
+pub(super) fn make_points(
+    document: &mut DocumentMut,
+    node: &str,
+    options: &Map<String, Json>,
+) -> Result<(), StudioError> {
+    let mut table = table_of(options)?;
+    if let Some(Item::Value(Value::Array(points))) = table.get_mut("points") {
+        for point in points.iter_mut() {
+            point.decor_mut().set_prefix("\n    ");
+        }
+        points.set_trailing("\n");
+        points.set_trailing_comma(true);
+    }
+    let pups = document.get_mut("nodes").and_then(|nodes| nodes.get_mut(node)?.get_mut("pups"));
+    let pups = pups.ok_or_else(|| no_node(node))?;
+    match pups {
+        Item::Table(old) if !old.is_dotted() => {
+            // The comments before the old header stay before the new one.
+            let header = if old.is_implicit() {
+                old.iter().find_map(|(_, item)| item.as_table())
+            } else {
+                Some(&*old)
+            };
+            if let Some(header) = header {
+                *table.decor_mut() = header.decor().clone();
+                table.set_position(header.position());
+            }
+            old.clear();
+            old.set_implicit(true);
+            old.insert("points", Item::Table(table));
+        }
+        _ => {
+            let mut inline = InlineTable::new();
+            inline.insert("points", Value::InlineTable(table.into_inline_table()));
+            *pups = Item::Value(Value::InlineTable(inline));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses the name of a node that is there, or that no node can have.

@@ -150,7 +150,8 @@ impl Page {
                 None => Ok(()),
             };
         }
-        let replies = match self.session.handle(&request) {
+        let images = |recipe: &Recipe| self.worker.images(recipe);
+        let replies = match self.session.handle(&request, &images) {
             Some(replies) => {
                 if let Request::Open { .. } = request {
                     self.file = None;
@@ -202,7 +203,10 @@ impl Page {
                 Ok(self.session.open(&text, Some((file, hash))))
             }
             Request::Seams { size } => ask("seams", TaskKind::Seams { size }),
-            Request::Points { node } => ask("points", TaskKind::Points { node }),
+            Request::Points { node } => {
+                let time = self.session.view().time;
+                ask("points", TaskKind::Points { node, time })
+            }
             Request::Code { kind, size, maps } => {
                 let name = self
                     .file

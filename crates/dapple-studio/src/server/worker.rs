@@ -3,7 +3,7 @@
 use super::Shared;
 use crate::message::{CodeKind, Export, Output, Reply};
 use crate::render::{Job, Renderer, World};
-use crate::{Document, StudioError, code, seams};
+use crate::{Document, StudioError, code, points, seams};
 use dapple::recipe::{Images, Recipe};
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -26,6 +26,7 @@ pub(super) enum TaskKind {
     },
     Points {
         node: String,
+        time: f64,
     },
     Code {
         kind: CodeKind,
@@ -96,6 +97,11 @@ impl Worker {
         self.inside.newest.store(job.generation, Ordering::SeqCst);
         self.inside.lock().job = Some(job);
         self.inside.changed.notify_one();
+    }
+
+    /// The images of a recipe.
+    pub(super) fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
+        World::images(&*self.inside, recipe)
     }
 
     /// Does this as well.
@@ -193,8 +199,10 @@ impl Inside {
                     maps: seams::report(recipe, &images, *size)?,
                 }
             }
-            TaskKind::Points { node: _ } => {
-                return Err(StudioError::new("points are not at hand yet"));
+            TaskKind::Points { node, time } => {
+                let images = self.images(recipe)?;
+                let points = points::report(recipe, &images, node, *time)?;
+                Reply::Points(Box::new(points))
             }
             TaskKind::Code {
                 kind,
