@@ -33,8 +33,16 @@ pub(crate) fn bench(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()>
 pub(crate) fn studio(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()> {
     let page = shell.push_dir("crates/dapple-studio/web");
     let npm = if cfg!(windows) { "npm.cmd" } else { "npm" };
-    if cmd!(shell, "{npm} --version").quiet().ignore_stdout().ignore_stderr().run().is_err() {
-        bail!("the page of the studio is built with Node 20 or newer, whose `npm` was not found: see https://nodejs.org");
+    if cmd!(shell, "{npm} --version")
+        .quiet()
+        .ignore_stdout()
+        .ignore_stderr()
+        .run()
+        .is_err()
+    {
+        bail!(
+            "the page of the studio is built with Node 20 or newer, whose `npm` was not found: see https://nodejs.org"
+        );
     }
     cmd!(shell, "{npm} ci --no-audit --no-fund").run()?;
     cmd!(shell, "{npm} run build").run()?;

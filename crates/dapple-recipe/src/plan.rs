@@ -17,9 +17,9 @@ pub(crate) use builder::{Builder, FREQUENCY};
 pub(crate) use evaluate::Known;
 pub use field::{NodeColors, NodeField};
 pub use memory::Memory;
+use memory::StepId;
 pub(crate) use order::order;
 pub(crate) use step::{Laid, Step};
-use memory::StepId;
 pub use whole::Whole;
 pub use work::PlanLimits;
 pub(crate) use work::Work;
@@ -348,7 +348,10 @@ impl Plan {
         known: &Known,
     ) -> Result<Vec<Values>, RecipeError> {
         let is_kept = |index: usize| {
-            !matches!(self.steps[index], Step::Number(_) | Step::Color(_) | Step::Global(_))
+            !matches!(
+                self.steps[index],
+                Step::Number(_) | Step::Color(_) | Step::Global(_)
+            )
         };
         let mut known = known.to_vec();
         let found = RefCell::new(Vec::new());
@@ -358,11 +361,14 @@ impl Plan {
                 .then(|| memory.values(self.ids[index], window))
                 .flatten();
             let is_found = values.is_some();
-            found.borrow_mut().extend(values.map(|values| (index, values)));
+            found
+                .borrow_mut()
+                .extend(values.map(|values| (index, values)));
             is_known || is_found
         });
         known.append(&mut found.into_inner());
-        let is_new = |index: &usize| is_kept(*index) && !known.iter().any(|(known, _)| known == index);
+        let is_new =
+            |index: &usize| is_kept(*index) && !known.iter().any(|(known, _)| known == index);
         let fresh: Vec<_> = order.into_iter().filter(is_new).collect();
         if !memory.has_room(fresh.len(), window) {
             return evaluate::window(&self.steps, whole, window, wanted, &known);

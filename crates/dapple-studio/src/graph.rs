@@ -12,7 +12,7 @@ pub struct Graph {
     nodes: Vec<GraphNode>,
     /// The inputs of the material by their names.
     material: Map<String, Json>,
-    /// The names of the nodes, each after all that it is made of; in the order of the text where there is a circle.
+    /// The names of the nodes, each after all that it is made of; in the order of the text where there is no plan.
     order: Vec<String>,
 }
 
@@ -70,9 +70,9 @@ impl Graph {
                 range: None,
             })
         };
-        let nodes = names_in_order(document, &data);
+        let names = names_in_order(document, &data);
         let all = data.get("nodes").and_then(Json::as_object);
-        let nodes = nodes
+        let nodes = names
             .iter()
             .filter_map(|name| node(all?.get_key_value(name)?));
         let nodes: Vec<_> = nodes.collect();
@@ -88,7 +88,10 @@ impl Graph {
         });
         Some(Self {
             material: material.collect(),
-            order: sorted(&nodes),
+            order: match plan {
+                Some(plan) => plan.node_names().map(str::to_owned).collect(),
+                None => names,
+            },
             nodes,
         })
     }
@@ -141,24 +144,4 @@ fn label(path: &[Part]) -> String {
         Part::Key(key) => key.clone(),
     });
     words.collect::<Vec<_>>().join(" ")
-}
-
-/// The names of nodes, each after all that it is made of.
-fn sorted(nodes: &[GraphNode]) -> Vec<String> {
-    let mut order: Vec<String> = Vec::new();
-    loop {
-        let is_ready = |node: &&GraphNode| {
-            let inputs = node.inputs.iter().filter_map(|input| input.node.as_ref());
-            let mut missing = inputs.filter(|name| nodes.iter().any(|node| node.name == **name));
-            !order.contains(&node.name) && missing.all(|name| order.contains(name))
-        };
-        let Some(next) = nodes.iter().find(is_ready) else {
-            break;
-        };
-        order.push(next.name.clone());
-    }
-    let rest = nodes.iter().map(|node| node.name.clone());
-    let rest: Vec<_> = rest.filter(|name| !order.contains(name)).collect();
-    order.extend(rest);
-    order
 }

@@ -29,6 +29,8 @@ mod patch;
 mod picture;
 mod points;
 mod render;
+#[cfg(feature = "server")]
+mod sample;
 mod schema;
 
 mod seams;

@@ -51,6 +51,11 @@ pub enum Request {
         /// Columns and rows of the tile.
         size: [u32; 2],
     },
+    /// Small pictures of the built-in recipes and of those in the folder, when there is time.
+    Gallery {
+        /// The longer side of a picture, in pixels.
+        size: u32,
+    },
     /// The control points of a node.
     Points {
         /// The node.
@@ -132,18 +137,11 @@ pub struct Area {
 }
 
 /// A lit preview.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Exact {
     /// The shape that the material is on.
     pub shape: Shape,
-    /// Columns and rows of the picture.
-    #[serde(default = "default_side")]
-    pub side: u32,
-}
-
-fn default_side() -> u32 {
-    512
 }
 
 /// The shape that a material is on.

@@ -142,7 +142,10 @@ fn apply_one(document: &mut DocumentMut, op: &Op) -> Result<(), StudioError> {
         Op::Connect { node, input, from } => nodes::connect(document, node, input, from),
         Op::MakePoints { node, points } => {
             let missing = || StudioError::new("the points of the texture are not known");
-            let points = points.as_ref().and_then(Json::as_object).ok_or_else(missing)?;
+            let points = points
+                .as_ref()
+                .and_then(Json::as_object)
+                .ok_or_else(missing)?;
             nodes::make_points(document, node, points)
         }
     }

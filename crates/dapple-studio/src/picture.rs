@@ -15,6 +15,10 @@ pub enum Shown {
     Preview,
     /// The node of this index, small.
     Thumbnail(u16),
+    /// The built-in recipe of this index.
+    Builtin(u16),
+    /// The recipe of the folder with this index.
+    File(u16),
 }
 
 impl Shown {
@@ -28,7 +32,10 @@ impl Shown {
                 .unwrap_or(0) as u16,
             Self::Node => 100,
             Self::Preview => 101,
-            Self::Thumbnail(index) => index.saturating_add(200),
+            // The numbers of thumbnails end before those of recipes.
+            Self::Thumbnail(index) => 200 + index.min(799),
+            Self::Builtin(index) => 1000 + index.min(999),
+            Self::File(index) => 2000 + index.min(999),
         }
     }
 }

@@ -11,7 +11,12 @@ use serde_json::Value as Json;
 const MOST_POINTS: usize = 20_000;
 
 /// The control points of a node, and the edges of their graph.
-pub(crate) fn report(recipe: &Recipe, images: &Images, node: &str, time: f64) -> Result<Points, StudioError> {
+pub(crate) fn report(
+    recipe: &Recipe,
+    images: &Images,
+    node: &str,
+    time: f64,
+) -> Result<Points, StudioError> {
     let nets = recipe.control_nets(node, images, time, &LIMITS)?;
     let nets = nets.ok_or_else(|| no_points(node))?;
     let net = nets.nets.first().ok_or_else(|| no_points(node))?;
@@ -20,13 +25,18 @@ pub(crate) fn report(recipe: &Recipe, images: &Images, node: &str, time: f64) ->
         let message = format!("`{node}` has {n_points} control points, too many to be shown");
         return Err(StudioError::new(message));
     }
-    let graph = net.graph().map_err(|error| StudioError::new(error.to_string()))?;
+    let graph = net
+        .graph()
+        .map_err(|error| StudioError::new(error.to_string()))?;
     let edge = |(from, axis): (dapple::points::PointIdx, dapple::graph::Axis)| {
         (from.0, axis.to.0, axis.vector.x, axis.vector.y)
     };
     Ok(Points {
         node: node.to_owned(),
-        editable: matches!(recipe.nodes.get(node), Some(Node::Pups(PupsNode::Points(_)))),
+        editable: matches!(
+            recipe.nodes.get(node),
+            Some(Node::Pups(PupsNode::Points(_)))
+        ),
         can_be_editable: nets.points.is_some(),
         layers: nets.nets.len(),
         extent: recipe.extent,
@@ -43,7 +53,9 @@ fn points(net: &ControlNet) -> Vec<ControlPoint> {
         x: position.x,
         y: position.y,
         value: numbers.as_ref().map_or(0.5, |numbers| numbers[index]),
-        orientation: orientations.as_ref().map(|orientations| orientations[index]),
+        orientation: orientations
+            .as_ref()
+            .map(|orientations| orientations[index]),
     };
     positions.map(point).collect()
 }
@@ -57,7 +69,10 @@ pub(crate) fn editable(recipe: &Recipe, images: &Images, node: &str) -> Result<J
         StudioError::new(message)
     })?;
     if points.points.len() > MOST_POINTS {
-        let message = format!("`{node}` has {} control points, too many to be edited", points.points.len());
+        let message = format!(
+            "`{node}` has {} control points, too many to be edited",
+            points.points.len()
+        );
         return Err(StudioError::new(message));
     }
     let options = PupsNode::Points(points).to_json()?;

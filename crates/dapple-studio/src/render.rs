@@ -1,12 +1,13 @@
 //! Drawing: a plan of the recipe, a draft, the maps, the node that is looked at, and thumbnails, the newest first.
 
-use crate::message::{NodeTime, Output, Reply, View};
+use crate::message::{NodeTime, Output, Reply, Shape, View};
 use crate::picture::{of_colors, of_numbers};
 use crate::{Document, Graph, Picture, Shown, StudioError, rgba};
+use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{
-    Bake, BakeOptions, Images, MapKind, Memory, Picture as Values, Plan, PlanLimits, Recipe, RecipeError,
-    Region,
+    Bake, BakeOptions, Images, MapKind, Memory, Picture as Values, Plan, PlanLimits, Recipe,
+    RecipeError, Region,
 };
 use std::sync::Arc;
 
@@ -20,6 +21,8 @@ const DRAFT_SIDES: [u32; 2] = [256, 64];
 const DRAFT_MS: [f64; 2] = [16.0, 5.0];
 /// The longest side of a thumbnail, in pixels.
 const THUMBNAIL_SIDE: u32 = 64;
+/// The most thumbnails: their numbers end before those of recipes.
+const MOST_THUMBNAILS: usize = 800;
 /// The pixels that are drawn before it is asked again whether they are still wanted.
 const BAND_PIXELS: u32 = 1 << 15;
 /// The pixels that are sent at a time.
@@ -55,6 +58,19 @@ pub trait World {
     ///
     /// If one of them cannot be had.
     fn images(&self, recipe: &Recipe) -> Result<Images, StudioError>;
+
+    /// A lit picture of a recipe on a thing.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such picture here, or the recipe is refused.
+    fn preview(
+        &self,
+        recipe: &Recipe,
+        images: &Images,
+        time: f64,
+        shape: Shape,
+    ) -> Result<Raster<LinearRgb>, StudioError>;
 
     /// Milliseconds since some moment.
     fn now(&self) -> f64;
@@ -175,7 +191,8 @@ impl Renderer {
             let (rev, items) = (job.rev, Vec::new());
             world.put(Reply::Diagnostics { rev, items }.into());
         }
-        pass.thumbnails()
+        pass.thumbnails()?;
+        pass.preview(recipe, &world.images(recipe)?)
     }
 
     /// The plan of a job.
@@ -190,7 +207,13 @@ impl Renderer {
             return Ok(planned.plan.clone());
         }
         self.planned = None;
-        let plan = Arc::new(Plan::new_with_memory(recipe, &images, time, &LIMITS, &self.memory)?);
+        let plan = Arc::new(Plan::new_with_memory(
+            recipe,
+            &images,
+            time,
+            &LIMITS,
+            &self.memory,
+        )?);
         let document = job.document.clone();
         self.planned = Some(Planned {
             document,
@@ -312,6 +335,13 @@ impl Pass<'_> {
                 "a side of the tile is at most {MAX_TILE} pixels"
             )));
         }
+        let is_within = |axis: usize| {
+            let end = u64::from(region.first[axis]) + u64::from(region.size[axis]);
+            end <= size[axis].into()
+        };
+        if !(is_within(0) && is_within(1)) {
+            return Err(StudioError::new("the region is not within the tile"));
+        }
         Ok(Frame {
             size,
             region,
@@ -406,7 +436,7 @@ impl Pass<'_> {
             return Ok(());
         };
         let names: Vec<_> = graph.names().collect();
-        let size = thumbnail_size(self.plan.extent().to_array());
+        let size = size_of(self.plan.extent().to_array(), THUMBNAIL_SIDE);
         let mut times = Vec::new();
         for node in self.plan.node_names() {
             self.check_wanted()?;
@@ -420,6 +450,9 @@ impl Pass<'_> {
             let Some(index) = names.iter().position(|name| *name == node) else {
                 continue;
             };
+            if index >= MOST_THUMBNAILS {
+                continue;
+            }
             times.push(NodeTime {
                 name: node.to_owned(),
                 ms,
@@ -437,6 +470,27 @@ impl Pass<'_> {
             }));
         }
         self.rendered(false, Some(times));
+        Ok(())
+    }
+
+    /// A lit picture, made exactly.
+    fn preview(&self, recipe: &Recipe, images: &Images) -> Result<(), Stop> {
+        let view = &self.job.view;
+        let Some(exact) = view.exact.as_ref().filter(|_| !view.paused) else {
+            return Ok(());
+        };
+        self.check_wanted()?;
+        let picture = self.world.preview(recipe, images, view.time, exact.shape)?;
+        self.world.put(Output::Picture(Picture {
+            generation: self.job.generation,
+            shown: Shown::Preview,
+            first: [0; 2],
+            size: picture.size(),
+            scale: 1,
+            is_draft: false,
+            is_last: true,
+            pixels: of_colors(&picture),
+        }));
         Ok(())
     }
 
@@ -473,9 +527,7 @@ impl Frame {
         let numbers = [self.size, self.region.first, self.region.size].concat();
         let scales = (1..=6).map(|power| 1_u32 << power);
         let fits = |scale: &u32| numbers.iter().all(|number| number % scale == 0);
-        let mut scales = scales
-            .filter(|scale| longest / scale <= side)
-            .filter(fits);
+        let mut scales = scales.filter(|scale| longest / scale <= side).filter(fits);
         let scale = scales.next().filter(|_| longest > side)?;
         let smaller = |numbers: [u32; 2]| numbers.map(|number| number / scale);
         Some(Self {
@@ -502,10 +554,10 @@ pub(crate) fn map_kinds(names: &[String]) -> Result<Vec<MapKind>, StudioError> {
     Ok(kinds)
 }
 
-/// The size of the thumbnails of a tile.
-fn thumbnail_size(extent: [f64; 2]) -> [u32; 2] {
+/// The size of a picture of a tile whose longer side has so many pixels.
+pub(crate) fn size_of(extent: [f64; 2], longest: u32) -> [u32; 2] {
     let longer = extent[0].max(extent[1]);
-    extent.map(|side| (side / longer * f64::from(THUMBNAIL_SIDE)).round().max(1.0) as u32)
+    extent.map(|side| (side / longer * f64::from(longest)).round().max(1.0) as u32)
 }
 
 /// The pixels of a node, and the numbers that are black and white in it.

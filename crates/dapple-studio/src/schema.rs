@@ -66,6 +66,10 @@ impl<'a> Walk<'a> {
             return;
         }
         let schema = resolved(schema);
+        // A type that is nothing but an input.
+        if schema.get("$ref").is_some() {
+            return self.value(schema, value);
+        }
         for branch in branches(schema) {
             self.value(branch, value);
         }
@@ -168,7 +172,7 @@ const GROUPS: [(&str, &str, &str); 28] = [
     ("wavelet", "cells and noise", "{}"),
     ("noise", "cells and noise", "{}"),
     ("coordinate", "position", r#"{"along":[1.0,0.0]}"#),
-    ("distance", "position", "{}"),
+    ("distance", "position", r#"{"center":[0.5,0.5]}"#),
     ("image", "color and images", r#"{"file":"image.png"}"#),
     ("color", "color and images", r##""#c08040""##),
     ("add", "arithmetic", "[0.0,0.0]"),
@@ -196,8 +200,12 @@ const GROUPS: [(&str, &str, &str); 28] = [
         "whole tile",
         r#"{"input":0.5,"border":0.5}"#,
     ),
-    ("corner_tiles", "whole tile", r#"{"inputs":[0.5]}"#),
-    ("blend_map", "whole tile", r#"{"input":0.5}"#),
+    ("corner_tiles", "whole tile", r#"{"inputs":[0.25,0.75]}"#),
+    (
+        "blend_map",
+        "whole tile",
+        r#"{"input":0.5,"feature_size":0.5}"#,
+    ),
     ("blend", "whole tile", r#"{"layers":[{"input":0.5}]}"#),
 ];
 
@@ -213,7 +221,7 @@ fn kind(name: &'static str) -> Kind {
     let variant = variant.unwrap_or(&Json::Null);
     let options = resolved(&variant["properties"][name]);
     let inputs = match options.get("properties").and_then(Json::as_object) {
-        _ if role(&variant["properties"][name]) == Some(Role::Input) => vec!["input".to_owned()],
+        _ if role(options) == Some(Role::Input) => vec!["input".to_owned()],
         None if options.get("items").and_then(role).is_some() => vec!["*".to_owned()],
         None => Vec::new(),
         Some(properties) => {

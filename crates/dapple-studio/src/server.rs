@@ -7,22 +7,26 @@ mod disk;
 mod exports;
 mod files;
 mod flow;
+mod gallery;
 mod guard;
 mod page;
 mod socket;
 mod worker;
 
 use crate::StudioError;
-use crate::message::{Export, Mode, Named};
+use crate::message::{Export, Mode, Named, Shape};
 use axum::Router;
 use axum::extract::{Request, State};
 use axum::http::{Method, StatusCode};
 use axum::response::{IntoResponse as _, Response};
 use axum::serve::ListenerExt as _;
+use dapple::color::LinearRgb;
+use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
 use disk::Disk;
 use exports::Exports;
 use files::Folder;
+use gallery::Gallery;
 use guard::Guard;
 use std::net::Ipv4Addr;
 use std::path::PathBuf;
@@ -52,6 +56,19 @@ pub trait Host: Send + Sync {
         folder: &std::path::Path,
         export: &Export,
     ) -> Result<Vec<ExportedFile>, StudioError>;
+
+    /// A lit picture of a recipe on a thing.
+    ///
+    /// # Errors
+    ///
+    /// What the bake refuses.
+    fn preview(
+        &self,
+        recipe: &Recipe,
+        images: &Images,
+        time: f64,
+        shape: Shape,
+    ) -> Result<Raster<LinearRgb>, StudioError>;
 
     /// The programs that files can be made for.
     fn presets(&self) -> Vec<Named>;
@@ -92,6 +109,8 @@ struct Shared {
     guard: Guard,
     folder: Folder,
     exports: Exports,
+    /// Small pictures of recipes, by their texts and sides.
+    gallery: Gallery,
     disk: Disk,
     n_pages: AtomicUsize,
     closed: Notify,
@@ -142,6 +161,7 @@ async fn run(
         host,
         guard,
         exports: Exports::default(),
+        gallery: Gallery::default(),
         disk,
         folder,
         n_pages: AtomicUsize::new(0),

@@ -195,7 +195,10 @@ impl Session {
             let Op::MakePoints { node, points: None } = op else {
                 return Ok(op.clone());
             };
-            let recipe = self.document.recipe().map_err(|error| StudioError::from(error.clone()))?;
+            let recipe = self
+                .document
+                .recipe()
+                .map_err(|error| StudioError::from(error.clone()))?;
             let points = Some(points::editable(recipe, &images(recipe)?, node)?);
             let node = node.clone();
             Ok(Op::MakePoints { node, points })

@@ -4,10 +4,15 @@ use super::bake;
 use crate::baking::read_images;
 use crate::error::{Exit, Hint, usage};
 use crate::job::{Context, say};
+use crate::preview::{self, Thing};
 use crate::words::with_dashes;
 use anyhow::{Error, Result};
+use dapple::color::LinearRgb;
+use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
-use dapple_studio::{Export, ExportedFile, Host, Mode, Named, ServeOptions, StudioError, serve};
+use dapple_studio::{
+    Export, ExportedFile, Host, Mode, Named, ServeOptions, Shape, StudioError, serve,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -62,7 +67,8 @@ pub(crate) struct PageArgs {
 ///
 /// If there is no such recipe, or the port is taken.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
-    args.page.serve(args.recipe.as_deref(), Mode::Studio, context)
+    args.page
+        .serve(args.recipe.as_deref(), Mode::Studio, context)
 }
 
 impl PageArgs {
@@ -71,7 +77,12 @@ impl PageArgs {
     /// # Errors
     ///
     /// If there is no such recipe, or the port is taken.
-    pub(crate) fn serve(&self, recipe: Option<&str>, mode: Mode, context: &Context) -> Result<Exit> {
+    pub(crate) fn serve(
+        &self,
+        recipe: Option<&str>,
+        mode: Mode,
+        context: &Context,
+    ) -> Result<Exit> {
         let (recipe, folder) = match recipe {
             None => (None, PathBuf::new()),
             Some(name) => place(name)?,
@@ -144,6 +155,21 @@ impl Host for Bakes {
         self.files(recipe, folder, export).map_err(told)
     }
 
+    fn preview(
+        &self,
+        recipe: &Recipe,
+        images: &Images,
+        time: f64,
+        shape: Shape,
+    ) -> Result<Raster<LinearRgb>, StudioError> {
+        let thing = match shape {
+            Shape::Plane => Thing::Plane,
+            Shape::Sphere => Thing::Sphere,
+            Shape::Torus => Thing::Torus,
+        };
+        preview::picture(recipe, images, time, thing).map_err(told)
+    }
+
     fn presets(&self) -> Vec<Named> {
         let named = |(name, about): (&str, &str)| Named {
             name: name.to_owned(),
@@ -182,12 +208,22 @@ fn words(export: &Export) -> Vec<String> {
     let mut add = |name: &str, value: Option<String>| {
         words.extend(value.map(|value| format!("--{name}={value}")));
     };
-    add("size", export.size.map(|[width, height]| format!("{width}x{height}")));
+    add(
+        "size",
+        export
+            .size
+            .map(|[width, height]| format!("{width}x{height}")),
+    );
     add("maps", export.maps.as_ref().map(|maps| maps.join(",")));
     add("preset", export.preset.clone());
     add("format", export.format.clone());
     add("normal-y", export.normal_y.clone());
-    add("frame", export.frame.map(|[number, count]| format!("{number}/{count}")));
+    add(
+        "frame",
+        export
+            .frame
+            .map(|[number, count]| format!("{number}/{count}")),
+    );
     words
 }
 

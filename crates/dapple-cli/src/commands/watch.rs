@@ -49,7 +49,9 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     #[cfg(feature = "studio")]
     if !args.bake.has_output() {
         let mode = dapple_studio::Mode::Watch;
-        return args.page.serve(Some(&recipe.to_string_lossy()), mode, context);
+        return args
+            .page
+            .serve(Some(&recipe.to_string_lossy()), mode, context);
     }
     let (sender, changes) = channel();
     let watcher = notify::recommended_watcher(move |event| {

@@ -1,8 +1,8 @@
 //! Making steps of nodes: the tile, the seed and the inputs that a node asks for.
 
+use super::memory::{Memory, StepId};
 use super::step::{Global, Local, Step, Tile};
 use super::work::{Work, WorkSum};
-use super::memory::{Memory, StepId};
 use super::{Images, Picture, PlanLimits, not_a_number, order};
 use crate::{Input, Node, NodeSeed, Recipe, RecipeError, RecipeErrorKind, Values};
 use dapple_color::LinearRgb;
@@ -90,7 +90,9 @@ impl<'a> Builder<'a> {
     fn id_in(&self, memory: &Memory, node: &Node) -> Option<(StepId, bool)> {
         // What cannot be written as data, such as a function, cannot be compared.
         serde_json::to_writer(std::io::sink(), node).ok()?;
-        let Recipe { seed, extent, wrap, .. } = self.recipe;
+        let Recipe {
+            seed, extent, wrap, ..
+        } = self.recipe;
         let mut text = format!("{} {extent:?} {wrap:?} {:?} ", seed.0, self.node);
         for input in node.inputs() {
             if let Some(name) = input.node() {

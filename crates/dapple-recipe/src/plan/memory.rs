@@ -82,7 +82,9 @@ impl Memory {
 
     /// Whether the values of a number of steps at a window may be kept without forgetting most others.
     pub(super) fn has_room(&self, steps: usize, window: &Window) -> bool {
-        let bytes = steps.saturating_mul(window.n_pixels()).saturating_mul(size_of::<LinearRgb>());
+        let bytes = steps
+            .saturating_mul(window.n_pixels())
+            .saturating_mul(size_of::<LinearRgb>());
         bytes <= self.max_bytes / 2
     }
 
@@ -91,7 +93,10 @@ impl Memory {
         let mut kept = self.lock();
         if kept.ids.len() >= MAX_IDS {
             // Numbers go on, so that plans that are still there are not mistaken for others.
-            *kept = Kept { next: kept.next, ..Kept::default() };
+            *kept = Kept {
+                next: kept.next,
+                ..Kept::default()
+            };
         }
         let next = kept.next;
         let id = *kept.ids.entry(description).or_insert(next);
@@ -121,7 +126,10 @@ impl Memory {
     pub(super) fn picture_id(&self, picture: &Picture) -> usize {
         let mut kept = self.lock();
         if kept.pictures.len() >= MAX_PICTURES {
-            *kept = Kept { next: kept.next, ..Kept::default() };
+            *kept = Kept {
+                next: kept.next,
+                ..Kept::default()
+            };
         }
         // What is kept cannot be replaced by others at the same place in memory.
         let is_it = |other: &Picture| match (other, picture) {

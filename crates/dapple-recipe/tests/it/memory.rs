@@ -1,6 +1,8 @@
 //! Plans that take from a memory what others have made.
 
-use dapple_recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Memory, Plan, PlanLimits, Recipe};
+use dapple_recipe::{
+    Bake, BakeOptions, Images, MapKind, MapRows, Memory, Plan, PlanLimits, Recipe,
+};
 
 fn baked(plan: &Plan, band_pixels: u32) -> Vec<(MapKind, MapRows)> {
     let options = BakeOptions {
@@ -28,7 +30,11 @@ fn changed(text: &str) -> Vec<Recipe> {
     let mut recipes = vec![Recipe::from_toml(text).unwrap()];
     for (old, new) in changes {
         let text = text.replacen(old, new, 1);
-        recipes.extend(Recipe::from_toml(&text).ok().filter(|recipe| Plan::new(recipe, &Images::new(), 0.0).is_ok()));
+        recipes.extend(
+            Recipe::from_toml(&text)
+                .ok()
+                .filter(|recipe| Plan::new(recipe, &Images::new(), 0.0).is_ok()),
+        );
     }
     recipes
 }
@@ -40,7 +46,11 @@ fn bits_are_those_of_a_plan_without_a_memory() {
         for recipe in changed(Recipe::builtin_text(name).unwrap()) {
             for (time, band_pixels) in [(0.0, 1 << 20), (0.0, 1 << 9), (0.25, 1 << 20)] {
                 let plain = baked(&Plan::new(&recipe, &Images::new(), time).unwrap(), 1 << 20);
-                assert_eq!(baked(&with(&recipe, time, &memory), band_pixels), plain, "{name} at {time}");
+                assert_eq!(
+                    baked(&with(&recipe, time, &memory), band_pixels),
+                    plain,
+                    "{name} at {time}"
+                );
             }
         }
         assert!(memory.bytes() <= 1 << 24, "{name}: {}", memory.bytes());
@@ -55,7 +65,9 @@ fn what_moves_is_made_anew_and_what_does_not_is_not() {
     let memory = Memory::new(1 << 20);
     let picture = |node: &str, time: f64| {
         let before = memory.bytes();
-        let picture = with(&recipe, time, &memory).node_picture(node, [16, 16], None).unwrap();
+        let picture = with(&recipe, time, &memory)
+            .node_picture(node, [16, 16], None)
+            .unwrap();
         (picture, memory.bytes() - before)
     };
     let bytes = 16 * 16 * 4;

@@ -171,7 +171,9 @@ pub(super) fn make_points(
         points.set_trailing("\n");
         points.set_trailing_comma(true);
     }
-    let pups = document.get_mut("nodes").and_then(|nodes| nodes.get_mut(node)?.get_mut("pups"));
+    let pups = document
+        .get_mut("nodes")
+        .and_then(|nodes| nodes.get_mut(node)?.get_mut("pups"));
     let pups = pups.ok_or_else(|| no_node(node))?;
     match pups {
         Item::Table(old) if !old.is_dotted() => {

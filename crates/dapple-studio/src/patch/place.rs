@@ -37,7 +37,11 @@ impl<'a> Place<'a> {
         let (last, way) = path.split_last().ok_or_else(empty)?;
         let missing = || nothing_at(last);
         match (self.found(way)?, last) {
-            (Self::Table(table), Part::Key(key)) => table.remove(key).map(drop).ok_or_else(missing),
+            (Self::Table(table), Part::Key(key)) => {
+                table.remove(key).ok_or_else(missing)?;
+                show(table);
+                Ok(())
+            }
             (Self::Value(Value::InlineTable(table)), Part::Key(key)) => {
                 table.remove(key).ok_or_else(missing)?;
                 tidy(table);
@@ -243,7 +247,16 @@ fn rewrite_table(
     for (key, json) in entries {
         put_into_table(table, key, json, depth + 1)?;
     }
+    show(table);
     Ok(())
+}
+
+/// Gives a table a header of its own if it would be nowhere without one.
+fn show(table: &mut Table) {
+    if table.is_empty() {
+        table.set_implicit(false);
+        table.set_dotted(false);
+    }
 }
 
 /// Puts a table into a list of tables with headers.

@@ -3,9 +3,9 @@
 use super::Shared;
 use super::disk::QUIET;
 use super::flow::Flow;
-use super::worker::{Task, TaskKind, Worker};
+use super::worker::{Sample, Task, TaskKind, Worker};
 use crate::message::{Hello, Mode, Output, Reply, Request};
-use crate::{Session, StudioError};
+use crate::{Session, Shown, StudioError};
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::extract::{FromRequestParts as _, Request as HttpRequest};
 use axum::http::StatusCode;
@@ -222,6 +222,10 @@ impl Page {
                     },
                 )
             }
+            Request::Gallery { size } => {
+                self.worker.sample(self.samples(size));
+                Ok(Vec::new())
+            }
             Request::Export(export) => ask("export", TaskKind::Export(export)),
             Request::Save {
                 text,
@@ -245,6 +249,27 @@ impl Page {
                 StudioError::new("give one of `builtin`, `file` and `text`"),
             )),
         }
+    }
+
+    /// The recipes of which there are small pictures: the built-in ones, and those of the folder.
+    fn samples(&self, side: u32) -> Vec<Sample> {
+        let builtin = |(index, name): (u16, &str)| Sample {
+            shown: Shown::Builtin(index),
+            text: Recipe::builtin_text(name).unwrap_or_default().to_owned(),
+            side,
+        };
+        let folder = &self.shared.folder;
+        let file = |(index, name): (u16, String)| {
+            let (text, _) = folder.read(&name).ok()?;
+            let shown = Shown::File(index);
+            Some(Sample { shown, text, side })
+        };
+        let files = (0..).zip(folder.recipes()).filter_map(file);
+        (0..)
+            .zip(Recipe::builtin_names())
+            .map(builtin)
+            .chain(files)
+            .collect()
     }
 
     /// Tells the page if the file or an image of it has changed.

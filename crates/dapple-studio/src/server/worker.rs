@@ -1,9 +1,11 @@
 //! The thread that draws what one page shows. What is drawn is always the newest; what was asked for besides comes before.
 
 use super::Shared;
-use crate::message::{CodeKind, Export, Output, Reply};
+use crate::message::{CodeKind, Export, Output, Reply, Shape};
 use crate::render::{Job, Renderer, World};
-use crate::{Document, StudioError, code, points, seams};
+use crate::{Document, Picture, Shown, StudioError, code, points, seams};
+use dapple::color::LinearRgb;
+use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -42,7 +44,16 @@ pub(super) enum TaskKind {
 struct Queue {
     job: Option<Job>,
     tasks: VecDeque<Task>,
+    /// Small pictures for which there is time when nothing else is to be done.
+    samples: VecDeque<Sample>,
     is_over: bool,
+}
+
+/// A small picture of a recipe.
+pub(super) struct Sample {
+    pub(super) shown: Shown,
+    pub(super) text: String,
+    pub(super) side: u32,
 }
 
 /// The end of the thread that a page holds.
@@ -99,6 +110,12 @@ impl Worker {
         self.inside.changed.notify_one();
     }
 
+    /// Makes small pictures when there is time.
+    pub(super) fn sample(&self, samples: Vec<Sample>) {
+        self.inside.lock().samples = samples.into();
+        self.inside.changed.notify_one();
+    }
+
     /// The images of a recipe.
     pub(super) fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
         World::images(&*self.inside, recipe)
@@ -135,6 +152,7 @@ impl Drop for Worker {
 enum Next {
     Draw(Job),
     Do(Task),
+    Sample(Sample),
 }
 
 impl Inside {
@@ -148,11 +166,13 @@ impl Inside {
             let what = match &next {
                 Next::Draw(_) => "view",
                 Next::Do(task) => task.what,
+                Next::Sample(_) => "gallery",
             };
             // A defect in a method must not end the server while somebody works.
             let done = catch_unwind(AssertUnwindSafe(|| match next {
                 Next::Draw(job) => renderer.draw(&job, self),
                 Next::Do(task) => self.perform(task),
+                Next::Sample(sample) => self.show(&sample),
             }));
             if done.is_err() {
                 renderer = Renderer::default();
@@ -174,10 +194,35 @@ impl Inside {
             if let Some(job) = queue.job.take() {
                 return Some(Next::Draw(job));
             }
+            if let Some(sample) = queue.samples.pop_front() {
+                return Some(Next::Sample(sample));
+            }
             queue = self
                 .changed
                 .wait(queue)
                 .unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Shows a small picture of a recipe. One that cannot be baked has none.
+    fn show(&self, sample: &Sample) {
+        let folder = &self.shared.folder;
+        let images = |recipe: &Recipe| {
+            folder.check_images(recipe)?;
+            self.shared.host.images(recipe, folder.path())
+        };
+        let made = self.shared.gallery.of(&sample.text, sample.side, images);
+        if let Ok(made) = made {
+            self.put(Output::Picture(Picture {
+                generation: 0,
+                shown: sample.shown,
+                first: [0; 2],
+                size: made.size,
+                scale: 1,
+                is_draft: false,
+                is_last: true,
+                pixels: made.pixels.clone(),
+            }));
         }
     }
 
@@ -246,6 +291,16 @@ impl World for Inside {
             *loaded = Loaded { times, images };
         }
         Ok(loaded.images.clone())
+    }
+
+    fn preview(
+        &self,
+        recipe: &Recipe,
+        images: &Images,
+        time: f64,
+        shape: Shape,
+    ) -> Result<Raster<LinearRgb>, StudioError> {
+        self.shared.host.preview(recipe, images, time, shape)
     }
 
     fn now(&self) -> f64 {
