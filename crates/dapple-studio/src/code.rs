@@ -44,9 +44,14 @@ impl Code<'_> {
             .replace("'''", "\\'\\'\\'");
         let maps: Vec<_> = self.maps().iter().map(|map| format!("{map:?}")).collect();
         let [width, height] = self.size();
+        let size = if width == height {
+            width.to_string()
+        } else {
+            format!("({width}, {height})")
+        };
         format!(
-            "import dapple_textures as dt\n\nrecipe = dt.Recipe.from_toml('''\n{text}''')\n\
-             maps = recipe.bake({width}, {height}, maps=[{}])\n",
+            "import dapple_textures as dp\n\nrecipe = dp.Recipe.from_toml('''\\\n{text}''')\n\
+             maps = recipe.plan().bake({size}, [{}])\n",
             maps.join(", ")
         )
     }
@@ -95,4 +100,68 @@ fn quoted(word: &str) -> String {
         word.to_owned()
     };
     format!("'{}'", word.replace('\'', r"'\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Code;
+    use crate::Document;
+    use crate::message::CodeKind;
+
+    fn code(kind: CodeKind, text: &str, name: &str) -> String {
+        let document = Document::new(text);
+        let maps = ["height".to_owned(), "ao".to_owned()];
+        let (size, maps) = (Some([64, 32]), Some(&maps[..]));
+        let code = Code {
+            kind,
+            size,
+            maps,
+            name,
+        };
+        code.text(&document, document.recipe().unwrap()).unwrap()
+    }
+
+    #[test]
+    fn a_command_bakes_the_recipe_into_a_folder() {
+        let flagstone = dapple::recipe::Recipe::builtin_text("flagstone").unwrap();
+        let options = "--size 64x32 --maps height,ao -o";
+        for (text, name, command) in [
+            (
+                flagstone,
+                "",
+                format!("dapple bake flagstone {options} flagstone/\n"),
+            ),
+            (
+                flagstone,
+                "mine.toml",
+                format!("dapple bake mine.toml {options} flagstone/\n"),
+            ),
+            (
+                "dapple = 1\n[material]\n",
+                "",
+                format!("dapple bake recipe.toml {options} out/\n"),
+            ),
+            (
+                "dapple = 1\nname = \"it's; rm\"\n[material]\n",
+                "-a b.toml",
+                format!("dapple bake './-a b.toml' {options} 'it'\\''s; rm/'\n"),
+            ),
+        ] {
+            assert_eq!(code(CodeKind::Command, text, name), command);
+        }
+    }
+
+    #[test]
+    fn a_python_program_holds_the_text_whatever_is_in_it() {
+        let text = "dapple = 1\nabout = '''a \\ b'''\n[material]\n";
+        let python = code(CodeKind::Python, text, "");
+        let held =
+            "from_toml('''\\\ndapple = 1\nabout = \\'\\'\\'a \\\\ b\\'\\'\\'\n[material]\n''')";
+        assert!(python.contains(held), "{python}");
+        assert!(
+            python.ends_with("recipe.plan().bake((64, 32), [\"height\", \"ao\"])\n"),
+            "{python}"
+        );
+        assert_eq!(code(CodeKind::Toml, text, ""), text);
+    }
 }

@@ -8,13 +8,17 @@ use dapple::recipe::RecipeError;
 pub struct StudioError {
     message: String,
     hint: Option<String>,
+    reason: Option<&'static str>,
 }
 
 impl StudioError {
     /// A refusal with this sentence, in lower case and without a full stop.
     pub fn new(message: impl Into<String>) -> Self {
-        let (message, hint) = (message.into(), None);
-        Self { message, hint }
+        Self {
+            message: message.into(),
+            hint: None,
+            reason: None,
+        }
     }
 
     /// This refusal, with what to do about it.
@@ -22,6 +26,19 @@ impl StudioError {
     pub fn with_hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());
         self
+    }
+
+    /// This refusal, with a word by which a program knows it.
+    #[must_use]
+    pub fn with_reason(self, reason: &'static str) -> Self {
+        let reason = Some(reason);
+        Self { reason, ..self }
+    }
+
+    /// The word by which a program knows it, if it has one.
+    #[must_use]
+    pub fn reason(&self) -> Option<&'static str> {
+        self.reason
     }
 
     /// What to do about it, if that is known.

@@ -318,6 +318,8 @@ pub enum Reply {
         message: String,
         /// What to do about it.
         hint: Option<String>,
+        /// A word by which a program knows it: `changed_on_disk`.
+        reason: Option<&'static str>,
     },
 }
 
@@ -329,6 +331,7 @@ impl Reply {
             what: what.to_owned(),
             message: error.to_string(),
             hint: error.hint().map(str::to_owned),
+            reason: error.reason(),
         }
     }
 }

@@ -111,10 +111,8 @@ impl Folder {
             }
             let (_, hash) = self.read(name)?;
             if !overwrite && seen != Some(&hash) {
-                let error = StudioError::new("changed_on_disk");
-                return Err(error.with_hint(format!(
-                    "{name} has changed since it was read, or is there already"
-                )));
+                let message = format!("{name} has changed since it was read, or is there already");
+                return Err(StudioError::new(message).with_reason("changed_on_disk"));
             }
         }
         dapple::image::replace(&path, text.as_bytes())

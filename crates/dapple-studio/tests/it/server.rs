@@ -372,8 +372,8 @@ fn a_saved_file_is_never_one_that_was_not_seen() {
     say(&mut page, &save("lost", &saved["hash"]));
     let refused = refusal(&mut page);
     assert_eq!(
-        (&refused["type"], &refused["message"]),
-        (&json!("refused"), &json!("changed_on_disk"))
+        (&refused["what"], &refused["reason"]),
+        (&json!("save"), &json!("changed_on_disk"))
     );
     say(
         &mut page,
