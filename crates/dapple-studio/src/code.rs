@@ -47,7 +47,8 @@ impl Code<'_> {
         let size = if width == height {
             width.to_string()
         } else {
-            format!("({width}, {height})")
+            // Arrays have rows first.
+            format!("({height}, {width})")
         };
         format!(
             "import dapple_textures as dp\n\nrecipe = dp.Recipe.from_toml('''\\\n{text}''')\n\
@@ -159,7 +160,7 @@ mod tests {
             "from_toml('''\\\ndapple = 1\nabout = \\'\\'\\'a \\\\ b\\'\\'\\'\n[material]\n''')";
         assert!(python.contains(held), "{python}");
         assert!(
-            python.ends_with("recipe.plan().bake((64, 32), [\"height\", \"ao\"])\n"),
+            python.ends_with("recipe.plan().bake((32, 64), [\"height\", \"ao\"])\n"),
             "{python}"
         );
         assert_eq!(code(CodeKind::Toml, text, ""), text);

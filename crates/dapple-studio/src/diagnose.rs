@@ -127,10 +127,17 @@ fn place(document: &Document, error: &RecipeError) -> Option<Range<usize>> {
         }
         RecipeErrorKind::NotANumber { input } => text_in(item, input.trim_matches('`')),
         RecipeErrorKind::Cycle { names } => names.get(1).and_then(|name| text_in(item, name)),
-        RecipeErrorKind::Range { what, .. } | RecipeErrorKind::Count { what, .. } => {
-            number_in(item, what)
+        RecipeErrorKind::Range { what, range, .. } => {
+            // What the number follows from is in brackets: `(extent times frequency)`.
+            let origin = range.split_once('(').map_or("", |(_, origin)| origin);
+            words_in(item, what).or_else(|| words_in(item, origin))
         }
-        _ => words_in(item, &error.kind().to_string()),
+        RecipeErrorKind::Count { what, .. } => words_in(item, what),
+        kind => {
+            let message = kind.to_string();
+            let quoted: Vec<_> = message.split('`').skip(1).step_by(2).collect();
+            words_in(item, &quoted.join(" "))
+        }
     };
     found.or_else(|| key?.span()).or_else(|| item.span())
 }
@@ -152,11 +159,7 @@ fn text_in(item: &Item, text: &str) -> Option<Range<usize>> {
         .and_then(|(_, value)| value.span())
 }
 
-/// The value whose key is the longest of those in the name of a number: `octaves` of "number of octaves".
-fn number_in(item: &Item, what: &str) -> Option<Range<usize>> {
-    words_in(item, what)
-}
-
+/// The value whose key is the longest of those in a sentence: `octaves` of "number of octaves".
 fn words_in(item: &Item, sentence: &str) -> Option<Range<usize>> {
     let words: Vec<_> = sentence
         .split(|c: char| !c.is_alphanumeric() && c != '_')

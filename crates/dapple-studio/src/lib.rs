@@ -53,5 +53,5 @@ pub use picture::{Picture, Shown, rgba};
 pub use render::{Job, MAX_SIDE, Renderer, World};
 
 #[cfg(feature = "server")]
-pub use server::{ExportedFile, Host, ServeOptions, serve};
+pub use server::{ExportedFile, Host, ServeOptions, has_page, serve};
 pub use session::{ImagesOf, Session};

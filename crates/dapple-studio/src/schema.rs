@@ -185,7 +185,11 @@ const GROUPS: [(&str, &str, &str); 28] = [
     ("power", "arithmetic", r#"{"input":0.5,"exponent":2.0}"#),
     ("wave", "shape", r#"{"input":0.5}"#),
     ("levels", "shape", r#"{"input":0.5}"#),
-    ("profile", "shape", r#"{"input":0.5}"#),
+    (
+        "profile",
+        "shape",
+        r#"{"input":0.5,"shape":{"spots":{"radius":0.5}}}"#,
+    ),
     ("mix", "shape", r#"{"from":0.0,"to":1.0,"by":0.5}"#),
     ("warp", "shape", r#"{"input":0.5,"x":0.0,"y":0.0}"#),
     (

@@ -119,6 +119,12 @@ struct Shared {
 /// How long a page may be gone before a server with `once` ends: a page that is loaded again comes back.
 const GRACE: Duration = Duration::from_secs(2);
 
+/// Whether the page is part of this program. Without it the server answers, and its page says how to build it.
+#[must_use]
+pub fn has_page() -> bool {
+    page::is_built()
+}
+
 /// Serves the page until the process ends or, with [`once`](ServeOptions::once), until the last page is closed. Gives the
 /// address to `tell` as soon as it can be opened.
 ///

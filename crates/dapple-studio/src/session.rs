@@ -47,12 +47,6 @@ impl Session {
         &self.document
     }
 
-    /// The state of the text.
-    #[must_use]
-    pub fn rev(&self) -> u64 {
-        self.rev
-    }
-
     /// What is to be seen.
     #[must_use]
     pub fn view(&self) -> &View {
@@ -85,11 +79,7 @@ impl Session {
     }
 
     /// The text of a recipe that a page asks for, if that needs no file.
-    ///
-    /// # Errors
-    ///
-    /// If there is no such built-in recipe, or nothing was asked for.
-    pub fn text_of(builtin: Option<&str>, text: Option<String>) -> Result<String, StudioError> {
+    fn text_of(builtin: Option<&str>, text: Option<String>) -> Result<String, StudioError> {
         match (builtin, text) {
             (Some(name), None) => Ok(Recipe::builtin_text(name)?.to_owned()),
             (None, Some(text)) => Ok(text),
@@ -98,7 +88,7 @@ impl Session {
     }
 
     /// Takes the whole text after a change.
-    pub fn doc(&mut self, rev: u64, text: &str) -> Vec<Reply> {
+    fn doc(&mut self, rev: u64, text: &str) -> Vec<Reply> {
         self.rev = rev;
         if self.document.text() == text {
             return Vec::new();
@@ -107,7 +97,7 @@ impl Session {
     }
 
     /// Makes small changes of the text.
-    pub fn patch(&mut self, rev: u64, ops: &[Op], drag: bool, images: ImagesOf<'_>) -> Vec<Reply> {
+    fn patch(&mut self, rev: u64, ops: &[Op], drag: bool, images: ImagesOf<'_>) -> Vec<Reply> {
         if rev != self.rev {
             return vec![Reply::Stale { rev: self.rev }];
         }
@@ -135,7 +125,7 @@ impl Session {
     }
 
     /// Shows something else.
-    pub fn look(&mut self, view: View) {
+    fn look(&mut self, view: View) {
         self.is_new |= self.view != view;
         self.view = view;
         if self.is_new {
@@ -166,21 +156,12 @@ impl Session {
 
     /// What is to be drawn, if that is something else than before.
     pub fn job(&mut self) -> Option<Job> {
-        if !core::mem::take(&mut self.is_new) {
-            return None;
-        }
-        Some(self.job_now())
-    }
-
-    /// What is to be seen now, whether it was drawn or not.
-    #[must_use]
-    pub fn job_now(&self) -> Job {
-        Job {
+        core::mem::take(&mut self.is_new).then(|| Job {
             generation: self.generation,
             rev: self.rev,
             document: self.document.clone(),
             view: self.view.clone(),
-        }
+        })
     }
 
     /// Draws again, since something beside the text has changed.

@@ -3,7 +3,7 @@
 use super::bake;
 use crate::baking::read_images;
 use crate::error::{Exit, Hint, usage};
-use crate::job::{Context, say};
+use crate::job::{Context, eprintln_if_possible, say};
 use crate::preview::{self, Thing};
 use crate::words::with_dashes;
 use anyhow::{Error, Result};
@@ -11,7 +11,7 @@ use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
 use dapple_studio::{
-    Export, ExportedFile, Host, Mode, Named, ServeOptions, Shape, StudioError, serve,
+    Export, ExportedFile, Host, Mode, Named, ServeOptions, Shape, StudioError, has_page, serve,
 };
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -27,6 +27,10 @@ Examples:
 The page shows the maps of a recipe while it is changed, as text, by sliders or as a graph. It is
 served to this machine alone, under the address that is printed, and ends with Ctrl-C. Files are
 read from the recipe's folder, and written only when they are saved.";
+
+/// What is said where the page was not built.
+const NO_PAGE: &str = "warning: this program was built without the page: `cargo xtask studio` in the repository of dapple builds \
+    both, with Node";
 
 /// Make recipes on a page in the browser: see each change at once.
 #[derive(clap::Args, Debug)]
@@ -96,6 +100,9 @@ impl PageArgs {
             folder,
             dist: self.dist.clone(),
         };
+        if self.dist.is_none() && !has_page() {
+            eprintln_if_possible(NO_PAGE);
+        }
         let told = serve(options, Arc::new(Bakes(context.silent())), |url| {
             // Where nobody reads it, the browser has it.
             let _ = say(url);

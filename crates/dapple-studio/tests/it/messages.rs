@@ -69,8 +69,8 @@ fn mistakes_are_told_where_they_are_written() {
             "a",
         ),
         (
-            "[nodes.a.noise]\nfrequency = 2.5\n[nodes.b.worley]\nfrequency = 2.25\n",
-            "2.25",
+            "[nodes.a.noise]\nfrequency = 2.5\n[nodes.b.worley]\nfrequency = 2.1\n",
+            "2.1",
             "b",
         ),
         (
