@@ -18,6 +18,7 @@
 #![forbid(unsafe_code)]
 
 mod change;
+#[cfg(feature = "server")]
 mod code;
 mod data;
 mod diagnose;
@@ -33,6 +34,7 @@ mod render;
 mod sample;
 mod schema;
 
+#[cfg(feature = "server")]
 mod seams;
 #[cfg(feature = "server")]
 mod server;

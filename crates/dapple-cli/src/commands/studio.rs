@@ -91,6 +91,7 @@ impl PageArgs {
             None => (None, PathBuf::new()),
             Some(name) => place(name)?,
         };
+        let has_page = self.dist.is_some() || has_page();
         let options = ServeOptions {
             port: self.port,
             no_open: self.no_open,
@@ -100,10 +101,10 @@ impl PageArgs {
             folder,
             dist: self.dist.clone(),
         };
-        if self.dist.is_none() && !has_page() {
-            eprintln_if_possible(NO_PAGE);
-        }
         let told = serve(options, Arc::new(Bakes(context.silent())), |url| {
+            if !has_page {
+                eprintln_if_possible(NO_PAGE);
+            }
             // Where nobody reads it, the browser has it.
             let _ = say(url);
         });
