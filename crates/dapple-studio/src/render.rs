@@ -101,7 +101,8 @@ impl Default for Renderer {
         Self {
             memory: Memory::new(MEMORY),
             planned: None,
-            draft_side: DRAFT_SIDES[0],
+            // The first picture is to be there soon, and nothing is known of the recipe yet.
+            draft_side: DRAFT_SIDES[0] / 2,
             told: None,
         }
     }

@@ -109,11 +109,11 @@ fn a_draft_is_the_same_tile_with_fewer_pixels() {
     let (_, pictures) = page.draw();
     let draft = &pictures[0];
     assert!(
-        draft.is_draft && draft.scale == 2 && draft.size == [256, 256],
+        draft.is_draft && draft.scale == 4 && draft.size == [128, 128],
         "{:?}",
         (draft.scale, draft.size)
     );
-    assert_eq!(draft.pixels, baked("marble", MapKind::Albedo, 256));
+    assert_eq!(draft.pixels, baked("marble", MapKind::Albedo, 128));
 }
 
 #[test]
