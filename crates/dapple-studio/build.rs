@@ -1,5 +1,10 @@
 //! Looks whether the page was built, and lists its files.
 
+#![expect(
+    clippy::disallowed_methods,
+    reason = "the files of the page are found before there is a program"
+)]
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};

@@ -193,6 +193,9 @@ impl Plan {
         for side in recipe.extent {
             RecipeError::check_in(EXTENT, "extent", side)?;
         }
+        if let Some(memory) = memory {
+            memory.begin();
+        }
         let mut builder = Builder::new(recipe, images, time, limits, memory);
         for name in order(recipe)? {
             let added = builder.add(name, &recipe.nodes[name]);

@@ -96,15 +96,29 @@ pub struct Renderer {
 /// The most bytes of values of nodes that are kept.
 const MEMORY: usize = 1 << 29;
 
-impl Default for Renderer {
-    fn default() -> Self {
+impl Renderer {
+    /// A renderer that keeps what it made in a memory, which others may use, too.
+    #[must_use]
+    pub fn new(memory: &Memory) -> Self {
         Self {
-            memory: Memory::new(MEMORY),
+            memory: memory.clone(),
             planned: None,
             // The first picture is to be there soon, and nothing is known of the recipe yet.
             draft_side: DRAFT_SIDES[0] / 2,
             told: None,
         }
+    }
+
+    /// An empty memory for one or several renderers.
+    #[must_use]
+    pub fn memory() -> Memory {
+        Memory::new(MEMORY)
+    }
+}
+
+impl Default for Renderer {
+    fn default() -> Self {
+        Self::new(&Self::memory())
     }
 }
 

@@ -112,7 +112,7 @@ impl<'a> Walk<'a> {
             {
                 let default = inner.get("default").filter(|value| !value.is_null());
                 self.within(Part::Key(key.clone()), |walk| {
-                    walk.note(role, default, false)
+                    walk.note(role, default, false);
                 });
             }
         }

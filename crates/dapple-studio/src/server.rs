@@ -13,8 +13,8 @@ mod page;
 mod socket;
 mod worker;
 
-use crate::StudioError;
 use crate::message::{Export, Mode, Named, Shape};
+use crate::{Renderer, StudioError};
 use axum::Router;
 use axum::extract::{Request, State};
 use axum::http::{Method, StatusCode};
@@ -22,7 +22,7 @@ use axum::response::{IntoResponse as _, Response};
 use axum::serve::ListenerExt as _;
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
-use dapple::recipe::{Images, Recipe};
+use dapple::recipe::{Images, Memory, Recipe};
 use disk::Disk;
 use exports::Exports;
 use files::Folder;
@@ -109,6 +109,8 @@ struct Shared {
     guard: Guard,
     folder: Folder,
     exports: Exports,
+    /// What was drawn for any page.
+    memory: Memory,
     /// Small pictures of recipes, by their texts and sides.
     gallery: Gallery,
     disk: Disk,
@@ -167,6 +169,7 @@ async fn run(
         host,
         guard,
         exports: Exports::default(),
+        memory: Renderer::memory(),
         gallery: Gallery::default(),
         disk,
         folder,

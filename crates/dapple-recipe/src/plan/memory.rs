@@ -39,9 +39,13 @@ struct Pixels {
 struct Kept {
     next: StepId,
     ids: BTreeMap<String, StepId>,
+    /// The bytes of all descriptions.
+    id_bytes: usize,
     /// What changes with time.
     timed: BTreeSet<StepId>,
-    sources: BTreeMap<StepId, Source>,
+    /// Steps that are made of no other, with the plan that used each last.
+    sources: BTreeMap<StepId, (Source, u64)>,
+    n_plans: u64,
     values: BTreeMap<(StepId, Pixels), (Arc<Values>, u64)>,
     /// What was used when, from the longest ago on.
     uses: BTreeMap<u64, (StepId, Pixels)>,
@@ -51,16 +55,15 @@ struct Kept {
 }
 
 /// A step that is made of no other.
-#[derive(Clone)]
 enum Source {
     Field(Arc<dyn Field>),
     Colors(Arc<VectorTexture<3>>),
 }
 
-/// The most descriptions; past that, all is forgotten. They take about a kilobyte each.
-const MAX_IDS: usize = 1 << 16;
-/// The most steps that are made of no other. Each may be a texture with many points.
-const MAX_SOURCES: usize = 256;
+/// The most bytes of descriptions; past that, all is forgotten.
+const MAX_ID_BYTES: usize = 1 << 26;
+/// How many plans ago a step that is made of no other was used at most. It may be a texture with many points.
+const MAX_AGE: u64 = 4;
 /// The most images that are known again.
 const MAX_PICTURES: usize = 64;
 
@@ -88,19 +91,27 @@ impl Memory {
         bytes <= self.max_bytes / 2
     }
 
+    /// Begins a plan, and forgets the textures that the last ones did not use.
+    pub(super) fn begin(&self) {
+        let mut kept = self.lock();
+        kept.n_plans += 1;
+        let now = kept.n_plans;
+        kept.sources.retain(|_, (_, used)| *used + MAX_AGE >= now);
+    }
+
     /// The number of a description.
     pub(super) fn id(&self, description: String) -> StepId {
         let mut kept = self.lock();
-        if kept.ids.len() >= MAX_IDS {
-            // Numbers go on, so that plans that are still there are not mistaken for others.
-            *kept = Kept {
-                next: kept.next,
-                ..Kept::default()
-            };
+        if let Some(&id) = kept.ids.get(&description) {
+            return id;
         }
-        let next = kept.next;
-        let id = *kept.ids.entry(description).or_insert(next);
-        kept.next = next.max(id + 1);
+        if kept.id_bytes + description.len() > MAX_ID_BYTES {
+            kept.forget_all();
+        }
+        kept.id_bytes += description.len();
+        let id = kept.next;
+        kept.next += 1;
+        kept.ids.insert(description, id);
         id
     }
 
@@ -126,10 +137,7 @@ impl Memory {
     pub(super) fn picture_id(&self, picture: &Picture) -> usize {
         let mut kept = self.lock();
         if kept.pictures.len() >= MAX_PICTURES {
-            *kept = Kept {
-                next: kept.next,
-                ..Kept::default()
-            };
+            kept.forget_all();
         }
         // What is kept cannot be replaced by others at the same place in memory.
         let is_it = |other: &Picture| match (other, picture) {
@@ -146,9 +154,13 @@ impl Memory {
 
     /// A step that was made before and is made of no other.
     pub(super) fn source(&self, id: StepId) -> Option<Step> {
-        Some(match self.lock().sources.get(&id)?.clone() {
-            Source::Field(field) => Step::Field(field),
-            Source::Colors(colors) => Step::Colors(colors),
+        let mut kept = self.lock();
+        let now = kept.n_plans;
+        let (source, used) = kept.sources.get_mut(&id)?;
+        *used = now;
+        Some(match source {
+            Source::Field(field) => Step::Field(field.clone()),
+            Source::Colors(colors) => Step::Colors(colors.clone()),
         })
     }
 
@@ -160,11 +172,8 @@ impl Memory {
             _ => return,
         };
         let mut kept = self.lock();
-        kept.sources.insert(id, source);
-        if kept.sources.len() > MAX_SOURCES {
-            // Numbers grow with time.
-            kept.sources.pop_first();
-        }
+        let now = kept.n_plans;
+        kept.sources.insert(id, (source, now));
     }
 
     /// The values of a step at the pixels of a window.
@@ -212,6 +221,15 @@ impl fmt::Debug for Memory {
 }
 
 impl Kept {
+    /// Begins anew. Numbers go on, so that plans that are still there are not mistaken for others.
+    fn forget_all(&mut self) {
+        *self = Self {
+            next: self.next,
+            n_plans: self.n_plans,
+            ..Self::default()
+        };
+    }
+
     fn note_use(&mut self, key: (StepId, Pixels)) -> u64 {
         self.n_uses += 1;
         self.uses.insert(self.n_uses, key);

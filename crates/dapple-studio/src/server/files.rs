@@ -1,5 +1,10 @@
 //! The folder of the recipes: what may be read and written there, and nothing else.
 
+#![expect(
+    clippy::disallowed_methods,
+    reason = "recipes are read here, from their folder alone"
+)]
+
 use super::page::content_type;
 use crate::StudioError;
 use axum::http::StatusCode;

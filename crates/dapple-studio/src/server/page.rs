@@ -33,6 +33,7 @@ pub(super) fn file(path: &str, dist: Option<&Path>) -> Response {
     }
 }
 
+#[expect(clippy::disallowed_methods, reason = "for those who work on the page")]
 fn of_folder(name: &str, dist: &Path) -> Response {
     let is_plain = name
         .split('/')

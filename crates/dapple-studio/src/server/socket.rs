@@ -177,78 +177,80 @@ impl Page {
         &mut self,
         request: Request,
     ) -> Result<Vec<Reply>, (&'static str, StudioError)> {
-        let document = self.session.document().clone();
-        let ask = |what, kind| {
-            self.worker.ask(Task {
-                what,
-                document: document.clone(),
-                kind,
-            });
-            Ok(Vec::new())
-        };
         match request {
             Request::Open {
-                file,
+                file: Some(file),
                 builtin: None,
                 text: None,
-            } => {
-                let file = file.unwrap_or_default();
-                let read = self
-                    .shared
-                    .folder
-                    .read(&file)
-                    .map_err(|error| ("open", error));
-                let (text, hash) = read?;
-                self.file = Some((file.clone(), hash.clone()));
-                Ok(self.session.open(&text, Some((file, hash))))
-            }
-            Request::Seams { size } => ask("seams", TaskKind::Seams { size }),
+            } => self.open(file).map_err(|error| ("open", error)),
+            Request::Seams { size } => Ok(self.ask("seams", TaskKind::Seams { size })),
             Request::Points { node } => {
                 let time = self.session.view().time;
-                ask("points", TaskKind::Points { node, time })
+                Ok(self.ask("points", TaskKind::Points { node, time }))
             }
             Request::Code { kind, size, maps } => {
-                let name = self
-                    .file
-                    .as_ref()
-                    .map_or_else(String::new, |(name, _)| name.clone());
-                ask(
-                    "code",
-                    TaskKind::Code {
-                        kind,
-                        size,
-                        maps,
-                        name,
-                    },
-                )
+                let name = self.file.as_ref().map(|(name, _)| name.clone());
+                let name = name.unwrap_or_default();
+                let code = TaskKind::Code {
+                    kind,
+                    size,
+                    maps,
+                    name,
+                };
+                Ok(self.ask("code", code))
             }
             Request::Gallery { size } => {
                 self.worker.sample(self.samples(size));
                 Ok(Vec::new())
             }
-            Request::Export(export) => ask("export", TaskKind::Export(export)),
+            Request::Export(export) => Ok(self.ask("export", TaskKind::Export(export))),
             Request::Save {
                 text,
                 file,
                 overwrite,
                 seen,
             } => {
-                if self.shared.options.mode != Mode::Studio {
-                    return Err(("save", StudioError::new("here recipes are only looked at")));
-                }
-                let saved = self
-                    .shared
-                    .folder
-                    .save(&file, &text, seen.as_deref(), overwrite);
-                let hash = saved.map_err(|error| ("save", error))?;
-                self.file = Some((file.clone(), hash.clone()));
-                Ok(vec![Reply::Saved { file, hash }])
+                let seen = seen.as_deref();
+                let saved = self.save(file, &text, seen, overwrite);
+                saved.map_err(|error| ("save", error))
             }
             _ => Err((
-                "message",
+                "open",
                 StudioError::new("give one of `builtin`, `file` and `text`"),
             )),
         }
+    }
+
+    /// Has the worker answer.
+    fn ask(&self, what: &'static str, kind: TaskKind) -> Vec<Reply> {
+        let document = self.session.document().clone();
+        self.worker.ask(Task {
+            what,
+            document,
+            kind,
+        });
+        Vec::new()
+    }
+
+    fn open(&mut self, file: String) -> Result<Vec<Reply>, StudioError> {
+        let (text, hash) = self.shared.folder.read(&file)?;
+        self.file = Some((file.clone(), hash.clone()));
+        Ok(self.session.open(&text, Some((file, hash))))
+    }
+
+    fn save(
+        &mut self,
+        file: String,
+        text: &str,
+        seen: Option<&str>,
+        overwrite: bool,
+    ) -> Result<Vec<Reply>, StudioError> {
+        if self.shared.options.mode != Mode::Studio {
+            return Err(StudioError::new("here recipes are only looked at"));
+        }
+        let hash = self.shared.folder.save(&file, text, seen, overwrite)?;
+        self.file = Some((file.clone(), hash.clone()));
+        Ok(vec![Reply::Saved { file, hash }])
     }
 
     /// The recipes of which there are small pictures: the built-in ones, and those of the folder.

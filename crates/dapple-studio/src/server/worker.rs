@@ -83,6 +83,10 @@ struct Loaded {
 const MOST_TASKS: usize = 32;
 
 impl Worker {
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "how long drawing takes is told, and decides on the size of drafts"
+    )]
     pub(super) fn new(
         shared: Arc<Shared>,
         output: UnboundedSender<Output>,
@@ -161,7 +165,7 @@ impl Inside {
     }
 
     fn run(&self) {
-        let mut renderer = Renderer::default();
+        let mut renderer = Renderer::new(&self.shared.memory);
         while let Some(next) = self.next() {
             let what = match &next {
                 Next::Draw(_) => "view",
@@ -175,7 +179,7 @@ impl Inside {
                 Next::Sample(sample) => self.show(&sample),
             }));
             if done.is_err() {
-                renderer = Renderer::default();
+                renderer = Renderer::new(&self.shared.memory);
                 let error = StudioError::new("this failed, which is a defect of dapple");
                 self.put(Reply::refused(what, &error).into());
             }

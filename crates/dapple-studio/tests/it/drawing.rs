@@ -66,7 +66,7 @@ fn joined(pictures: &[Picture], shown: Shown) -> Vec<u8> {
     let mut rows = 0;
     let mut pixels = Vec::new();
     for part in parts {
-        assert_eq!(part.first[1], rows);
+        assert_eq!(part.first[1], rows, "parts come in their order");
         rows += part.size[1];
         pixels.extend(&part.pixels);
     }

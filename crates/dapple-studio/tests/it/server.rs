@@ -79,7 +79,7 @@ impl Server {
         // It ends with the tests.
         std::thread::spawn(move || {
             serve(options, Arc::new(TestHost), |url| {
-                sender.send(url.to_owned()).unwrap()
+                sender.send(url.to_owned()).unwrap();
             })
             .unwrap();
         });
@@ -88,7 +88,8 @@ impl Server {
         let port = address.rsplit_once(':').unwrap().1.parse().unwrap();
         assert_eq!(
             (address, token.len()),
-            (format!("http://127.0.0.1:{port}").as_str(), 32)
+            (format!("http://127.0.0.1:{port}").as_str(), 32),
+            "{url}"
         );
         let token = token.to_owned();
         Self {
@@ -337,6 +338,12 @@ fn files_outside_of_the_folder_are_neither_read_nor_written() {
         fs::read(outside.path().join("other.toml")).unwrap(),
         b"dapple = 1"
     );
+}
+
+#[test]
+fn images_outside_of_the_folder_are_refused() {
+    let server = Server::new(None);
+    let mut page = server.page();
     let text = "dapple = 1\n[nodes.a.image]\nfile = \"../x.png\"\n[material]\nheight = \"a\"\n";
     say(&mut page, &json!({ "type": "doc", "rev": 1, "text": text }));
     say(&mut page, &json!({ "type": "view", "paused": false }));
