@@ -91,6 +91,18 @@ fn until(page: &mut WebSocket<TcpStream>, name: &str) -> Value {
     }
 }
 
+/// The next refusal.
+fn refusal(page: &mut WebSocket<TcpStream>) -> Value {
+    loop {
+        if let Message::Text(text) = page.read().unwrap() {
+            let message: Value = serde_json::from_str(&text).unwrap();
+            if message["type"] == "refused" {
+                return message;
+            }
+        }
+    }
+}
+
 #[test]
 fn exports_are_the_files_of_a_bake() {
     let folder = Folder::new("studio-export");
@@ -156,15 +168,7 @@ fn exports_are_the_files_of_a_bake() {
         json!({ "type": "export", "format": "bmp" }).to_string(),
     ))
     .unwrap();
-    loop {
-        if let Message::Text(text) = page.read().unwrap() {
-            let message: Value = serde_json::from_str(&text).unwrap();
-            if message["type"] == "refused" {
-                assert_eq!(message["what"], "export");
-                break;
-            }
-        }
-    }
+    assert_eq!(refusal(&mut page)["what"], "export");
 }
 
 #[test]
@@ -192,13 +196,7 @@ fn a_watched_recipe_is_shown_where_no_output_is_named() {
         json!({ "type": "save", "file": "mine.toml", "text": "", "overwrite": true }).to_string(),
     ))
     .unwrap();
-    loop {
-        if let Message::Text(text) = page.read().unwrap()
-            && text.contains("\"refused\"")
-        {
-            break;
-        }
-    }
+    assert_eq!(refusal(&mut page)["what"], "save");
     assert_eq!(
         fs::read_to_string(folder.path("mine.toml")).unwrap(),
         "dapple = 1\n[material]\nheight = 0.75\n"
