@@ -2,7 +2,7 @@
 
 use dapple::color::{Code as _, LinearRgb, Normal};
 use dapple::raster::{Raster, parallel};
-use dapple::recipe::{MapKind, MapRows};
+use dapple::recipe::{self, MapKind, MapRows};
 
 /// What a picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -104,9 +104,40 @@ pub(crate) fn of_colors(raster: &Raster<LinearRgb>) -> Vec<u8> {
 }
 
 /// The pixels of numbers, of which a range is spread from black to white.
-pub(crate) fn of_numbers(raster: &Raster<f32>, [min, max]: [f32; 2]) -> Vec<u8> {
+fn of_numbers(raster: &Raster<f32>, [min, max]: [f32; 2]) -> Vec<u8> {
     let width = if max > min { max - min } else { 1.0 };
     pixels(raster, |&value| [u8::from_unit((value - min) / width); 3])
+}
+
+/// The pixels of a node, and the numbers that are black and white in it.
+pub(crate) fn of_values(values: &recipe::Picture) -> (Vec<u8>, Option<[f32; 2]>) {
+    match values {
+        recipe::Picture::Colors(colors) => (of_colors(colors), None),
+        recipe::Picture::Numbers(numbers) => {
+            let range = range_of(numbers);
+            (of_numbers(numbers, range), Some(range))
+        }
+    }
+}
+
+/// From 0 to 1 where all numbers lie there and take up some of it, and from the smallest to the largest otherwise.
+fn range_of(numbers: &Raster<f32>) -> [f32; 2] {
+    let finite = numbers
+        .pixels()
+        .iter()
+        .copied()
+        .filter(|number| number.is_finite());
+    let [min, max] = finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[min, max], number| {
+        [min.min(number), max.max(number)]
+    });
+    if min > max || (min >= 0.0 && max <= 1.0 && max - min >= 0.25) || min == max {
+        return if (0.0..=1.0).contains(&min) || min > max {
+            [0.0, 1.0]
+        } else {
+            [min, max]
+        };
+    }
+    [min, max]
 }
 
 /// The pixels that a thread takes at a time.

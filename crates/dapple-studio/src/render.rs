@@ -1,7 +1,7 @@
 //! Drawing: a plan of the recipe, a draft, the maps, the node that is looked at, and thumbnails, the newest first.
 
 use crate::message::{NodeTime, Output, Reply, Shape, View};
-use crate::picture::{of_colors, of_numbers};
+use crate::picture::{of_colors, of_values};
 use crate::{Document, Graph, Picture, Shown, StudioError, rgba};
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
@@ -574,35 +574,4 @@ pub(crate) fn map_kinds(names: &[String]) -> Result<Vec<MapKind>, StudioError> {
 pub(crate) fn size_of(extent: [f64; 2], longest: u32) -> [u32; 2] {
     let longer = extent[0].max(extent[1]);
     extent.map(|side| (side / longer * f64::from(longest)).round().max(1.0) as u32)
-}
-
-/// The pixels of a node, and the numbers that are black and white in it.
-fn of_values(values: &Values) -> (Vec<u8>, Option<[f32; 2]>) {
-    match values {
-        Values::Colors(colors) => (of_colors(colors), None),
-        Values::Numbers(numbers) => {
-            let range = range_of(numbers);
-            (of_numbers(numbers, range), Some(range))
-        }
-    }
-}
-
-/// From 0 to 1 where all numbers lie there and take up some of it, and from the smallest to the largest otherwise.
-fn range_of(numbers: &Raster<f32>) -> [f32; 2] {
-    let finite = numbers
-        .pixels()
-        .iter()
-        .copied()
-        .filter(|number| number.is_finite());
-    let [min, max] = finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[min, max], number| {
-        [min.min(number), max.max(number)]
-    });
-    if min > max || (min >= 0.0 && max <= 1.0 && max - min >= 0.25) || min == max {
-        return if (0.0..=1.0).contains(&min) || min > max {
-            [0.0, 1.0]
-        } else {
-            [min, max]
-        };
-    }
-    [min, max]
 }
