@@ -1,7 +1,7 @@
 //! The files of the page, which are part of the program if they were there when it was built.
 
 use axum::http::StatusCode;
-use axum::http::header::CONTENT_TYPE;
+use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE};
 use axum::response::{Html, IntoResponse as _, Response};
 use std::path::Path;
 
@@ -14,7 +14,15 @@ const MISSING: &str = "<!doctype html><html lang=en><title>dapple studio</title>
 
 /// Whether the page is part of the program.
 pub(super) fn is_built() -> bool {
-    FILES.iter().any(|(name, _)| *name == "index.html")
+    found(FILES, "index.html").is_some()
+}
+
+/// A file as it is, or compressed under its name with `.gz`, and which of these it is.
+fn found<'a>(files: &[(&str, &'a [u8])], name: &str) -> Option<(&'a [u8], bool)> {
+    files.iter().find_map(|(known, bytes)| {
+        let is_compressed = known.strip_suffix(".gz") == Some(name);
+        (*known == name || is_compressed).then_some((*bytes, is_compressed))
+    })
 }
 
 /// A file of the page.
@@ -27,8 +35,11 @@ pub(super) fn file(path: &str, dist: Option<&Path>) -> Response {
     if name == "index.html" && !is_built() {
         return Html(MISSING).into_response();
     }
-    match FILES.iter().find(|(known, _)| *known == name) {
-        Some((name, bytes)) => ([(CONTENT_TYPE, content_type(name))], *bytes).into_response(),
+    let kind = [(CONTENT_TYPE, content_type(name))];
+    match found(FILES, name) {
+        Some((bytes, false)) => (kind, bytes).into_response(),
+        // Every browser reads it.
+        Some((bytes, true)) => (kind, [(CONTENT_ENCODING, "gzip")], bytes).into_response(),
         None => StatusCode::NOT_FOUND.into_response(),
     }
 }
@@ -70,5 +81,19 @@ pub(super) fn content_type(name: &str) -> &'static str {
         "mtlx" => "application/xml",
         "toml" | "txt" | "md" => "text/plain; charset=utf-8",
         _ => "application/octet-stream",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::found;
+
+    #[test]
+    fn files_may_be_compressed() {
+        let files: [(&str, &[u8]); 2] = [("a.js.gz", &[1]), ("b.js", &[2])];
+        assert_eq!(found(&files, "a.js"), Some((&[1][..], true)));
+        assert_eq!(found(&files, "b.js"), Some((&[2][..], false)));
+        assert_eq!(found(&files, "a.js.gz"), Some((&[1][..], false)));
+        assert_eq!(found(&files, "c.js"), None);
     }
 }
