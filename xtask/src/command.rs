@@ -22,6 +22,7 @@ Usage: cargo xtask <command>
   bench [filter...]     measure beside the peers, and print a table
       --json FILE         write the rows to a file, too
       --check             fail when a row misses its bar
+  studio [argument...]  build the page of the studio with Node, and open it; arguments are those of `dapple studio`
   golden [--bless]      compare the golden images of tests/golden/, or rewrite them
   tidy                  check the house rules: layers, lints, headers, lengths, figures.lock
   ci [step...]          what CI runs, or some of its steps: test fmt clippy doc tidy
@@ -39,6 +40,8 @@ pub(crate) enum Command {
     },
     /// Measure; the arguments are those of the binary `dapple-bench`.
     Bench(Vec<OsString>),
+    /// Build the page of the studio, and open it; the arguments are those of `dapple studio`.
+    Studio(Vec<OsString>),
     /// Compare or rewrite the golden images.
     Golden {
         /// Rewrite them.
@@ -62,6 +65,7 @@ pub(crate) fn parse(mut parser: Parser) -> anyhow::Result<Command> {
     match name.as_str() {
         "gallery" => Ok(Command::Gallery(parser.raw_args()?.collect())),
         "bench" => Ok(Command::Bench(parser.raw_args()?.collect())),
+        "studio" => Ok(Command::Studio(parser.raw_args()?.collect())),
         "docs-images" => Ok(Command::DocsImages {
             check: flag(parser, &name, "check")?,
         }),
@@ -72,7 +76,7 @@ pub(crate) fn parse(mut parser: Parser) -> anyhow::Result<Command> {
         "ci" => ci(parser),
         "help" => nothing_more(parser, Command::Help),
         _ => bail!(
-            "there is no command `{name}`; there are gallery, docs-images, bench, golden, tidy, ci and help"
+            "there is no command `{name}`; there are gallery, docs-images, bench, studio, golden, tidy, ci and help"
         ),
     }
 }

@@ -1,4 +1,4 @@
-//! The chores of the workspace: `cargo xtask gallery`, `docs-images`, `bench`, `golden`, `tidy` and `ci`.
+//! The chores of the workspace: `cargo xtask gallery`, `docs-images`, `bench`, `studio`, `golden`, `tidy` and `ci`.
 //!
 //! It depends on no crate of ours, so that it starts at once; what needs them runs through `cargo run --release`.
 
@@ -31,6 +31,7 @@ fn perform(command: &Command) -> anyhow::Result<()> {
         Command::Gallery(arguments) => run::gallery(&shell, arguments),
         Command::DocsImages { check } => run::docs_images(&shell, *check),
         Command::Bench(arguments) => run::bench(&shell, arguments),
+        Command::Studio(arguments) => run::studio(&shell, arguments),
         Command::Golden { bless } => run::golden(&shell, *bless),
         Command::Tidy => tidy::tidy(&shell),
         Command::Ci(steps) => ci::ci(&shell, steps),

@@ -1,5 +1,6 @@
 //! The commands that run our own crates.
 
+use anyhow::bail;
 use std::ffi::OsString;
 use xshell::{Shell, cmd};
 
@@ -24,6 +25,31 @@ pub(crate) fn bench(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()>
     let run = cmd!(
         shell,
         "cargo run --release --package dapple-bench --features peers -- {arguments...}"
+    );
+    Ok(run.quiet().run()?)
+}
+
+/// Builds the page of the studio, then runs the studio with the page in it.
+pub(crate) fn studio(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()> {
+    let page = shell.push_dir("crates/dapple-studio/web");
+    let npm = if cfg!(windows) { "npm.cmd" } else { "npm" };
+    if cmd!(shell, "{npm} --version")
+        .quiet()
+        .ignore_stdout()
+        .ignore_stderr()
+        .run()
+        .is_err()
+    {
+        bail!(
+            "the page of the studio is built with Node 20 or newer, whose `npm` was not found: see https://nodejs.org"
+        );
+    }
+    cmd!(shell, "{npm} ci --no-audit --no-fund").run()?;
+    cmd!(shell, "{npm} run build").run()?;
+    drop(page);
+    let run = cmd!(
+        shell,
+        "cargo run --quiet --release --package dapple-cli -- studio {arguments...}"
     );
     Ok(run.quiet().run()?)
 }

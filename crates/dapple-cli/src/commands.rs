@@ -13,6 +13,8 @@ mod points;
 mod pups;
 mod recipe;
 mod shards;
+#[cfg(feature = "studio")]
+mod studio;
 mod synth;
 mod tile;
 mod watch;
@@ -29,6 +31,8 @@ use clap::Subcommand;
 pub(crate) enum Command {
     Bake(Box<bake::Args>),
     Watch(Box<watch::Args>),
+    #[cfg(feature = "studio")]
+    Studio(Box<studio::Args>),
     Shards(Box<shards::Args>),
     Join(Box<join::Args>),
     Recipe(Box<recipe::Args>),
@@ -56,6 +60,8 @@ pub(crate) fn run(command: &Command, context: &Context) -> Result<Exit> {
     match command {
         Command::Bake(args) => bake::run(args, context),
         Command::Watch(args) => watch::run(args, context),
+        #[cfg(feature = "studio")]
+        Command::Studio(args) => studio::run(args, context),
         Command::Shards(args) => shards::run(args, context),
         Command::Join(args) => join::run(args, context),
         Command::Recipe(args) => recipe::run(args, context),

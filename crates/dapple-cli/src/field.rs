@@ -151,6 +151,7 @@ pub(crate) fn draw(
         region: args.region.map(Region::of_recipe),
         maps: vec![kind],
         memory: BakeMemory::Banded,
+        ..BakeOptions::default()
     };
     let n_rows = args.region.map_or(args.size.0[1], |region| region.size[1]);
     let n_rows = u64::from(n_rows) * files.len() as u64;

@@ -28,6 +28,17 @@ pub(crate) struct Context {
     pub(crate) arguments: Vec<String>,
 }
 
+#[cfg(feature = "studio")]
+impl Context {
+    /// These settings, for work that nobody reads of.
+    pub(crate) fn silent(&self) -> Self {
+        Self {
+            quiet: true,
+            ..self.clone()
+        }
+    }
+}
+
 /// A run of a subcommand.
 #[derive(Debug)]
 pub(crate) struct Job<'a> {

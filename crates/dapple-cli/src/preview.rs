@@ -1,4 +1,4 @@
-//! A baked material in light: on a plane, seen at a slant, or on a ball.
+//! A baked material in light: on a plane, seen at a slant, on a ball or on a ring.
 
 use crate::baking::advise;
 use anyhow::{Result, bail};
@@ -15,6 +15,9 @@ const SIDE: u32 = 512;
 /// The pixels along the longer side of the maps that it shows.
 const TILE: u32 = 512;
 
+/// The radii of a ring and of its tube.
+const RING: [f64; 2] = [0.9, 0.4];
+
 dapple::raster::named! {
     /// The shape that the material is on.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +26,8 @@ dapple::raster::named! {
         Plane = "plane",
         /// A ball.
         Sphere = "sphere",
+        /// A ring.
+        Torus = "torus",
     }
 }
 
@@ -61,6 +66,13 @@ pub(crate) fn picture(
             // Around a ball is twice as far as from pole to pole; the number of tiles around it is whole.
             let around = (2.0 / aspect).round().max(1.0);
             (Shape::sphere(1.0), camera, DVec2::new(around, 1.0))
+        }
+        Thing::Torus => {
+            let camera = Camera::look_at(DVec3::new(0.0, 2.6, 2.9), DVec3::ZERO);
+            // Around the ring is as far as around its tube, times the ratio of their radii.
+            let around = (RING[0] / RING[1] / aspect).round().max(1.0);
+            let shape = Shape::torus(RING[0], RING[1]);
+            (shape, camera, DVec2::new(around, 1.0))
         }
     };
     let maps = Maps::bake(recipe, images, time, tiles)?;

@@ -29,6 +29,9 @@ pub struct BakeOptions {
     pub maps: Vec<MapKind>,
     /// How much may lie in memory at once.
     pub memory: BakeMemory,
+    /// The pixels of a band, about; 2^20 by default: enough for all cores, and few enough that several values of each are no
+    /// burden. The bits do not depend on it.
+    pub band_pixels: u32,
 }
 
 /// A part of a picture, in pixels.
@@ -57,6 +60,7 @@ impl Default for BakeOptions {
             region: None,
             maps: vec![MapKind::Height],
             memory: BakeMemory::Whole,
+            band_pixels: 1 << 20,
         }
     }
 }
@@ -93,12 +97,10 @@ pub struct Bake<'a> {
     tile: [u32; 2],
     /// The pixels that are made.
     window: Window,
+    band_pixels: u32,
     next_row: u32,
     heights: Heights,
 }
-
-/// The pixels of a band, about: enough for all cores, and few enough that several values of each are no burden.
-const BAND_PIXELS: u32 = 1 << 20;
 
 impl<'a> Bake<'a> {
     /// Prepares a bake; the work is done when bands are asked for.
@@ -112,7 +114,7 @@ impl<'a> Bake<'a> {
         let whole_window = plan.window(options.size)?;
         let window = match options.region {
             None => whole_window,
-            Some(region) => crop(&whole_window, region)?,
+            Some(region) => region.of(&whole_window)?,
         };
         if options.memory == BakeMemory::Banded {
             plan.check_local()?;
@@ -124,6 +126,7 @@ impl<'a> Bake<'a> {
             maps: options.maps.clone(),
             tile: options.size,
             window,
+            band_pixels: options.band_pixels,
             next_row: 0,
             heights,
         })
@@ -158,7 +161,7 @@ impl<'a> Bake<'a> {
     fn band(&mut self) -> Result<Band, RecipeError> {
         let [width, height] = self.window.size;
         let first_row = self.next_row;
-        let rows = (BAND_PIXELS / width).max(16).min(height - first_row);
+        let rows = (self.band_pixels / width).max(16).min(height - first_row);
         self.next_row += rows;
         let band = Window {
             first: [
@@ -189,21 +192,23 @@ impl Iterator for Bake<'_> {
     }
 }
 
-/// The window of a region.
-fn crop(whole: &Window, region: Region) -> Result<Window, RecipeError> {
-    for axis in 0..2 {
-        let end = u64::from(region.first[axis]) + u64::from(region.size[axis]);
-        let fits = region.size[axis] > 0 && end <= u64::from(whole.size[axis]);
-        RecipeError::check(
-            fits,
-            "end of the region",
-            end as f64,
-            "within the tile, past its first pixel",
-        )?;
+impl Region {
+    /// The window of the region of a tile.
+    pub(crate) fn of(self, whole: &Window) -> Result<Window, RecipeError> {
+        for axis in 0..2 {
+            let end = u64::from(self.first[axis]) + u64::from(self.size[axis]);
+            let fits = self.size[axis] > 0 && end <= u64::from(whole.size[axis]);
+            RecipeError::check(
+                fits,
+                "end of the region",
+                end as f64,
+                "within the tile, past its first pixel",
+            )?;
+        }
+        Ok(Window {
+            first: self.first.map(i64::from),
+            size: self.size,
+            ..*whole
+        })
     }
-    Ok(Window {
-        first: region.first.map(i64::from),
-        size: region.size,
-        ..*whole
-    })
 }

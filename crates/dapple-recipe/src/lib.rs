@@ -22,7 +22,7 @@ pub use dapple_raster as raster;
 pub use error::{Place, RecipeError, RecipeErrorKind};
 pub use input::Input;
 pub use nodes::*;
-pub use plan::{Images, NodeColors, NodeField, Picture, Plan, PlanLimits, Whole};
+pub use plan::{Images, Memory, NodeColors, NodeField, Picture, Plan, PlanLimits, Whole};
 pub use recipe::{Material, Recipe, SCHEMA};
 pub use text::MAX_TEXT;
 pub use values::Values;

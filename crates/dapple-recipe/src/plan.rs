@@ -7,6 +7,7 @@
 mod builder;
 mod evaluate;
 mod field;
+mod memory;
 mod order;
 mod step;
 mod whole;
@@ -15,6 +16,8 @@ mod work;
 pub(crate) use builder::{Builder, FREQUENCY};
 pub(crate) use evaluate::Known;
 pub use field::{NodeColors, NodeField};
+pub use memory::Memory;
+use memory::StepId;
 pub(crate) use order::order;
 pub(crate) use step::{Laid, Step};
 pub use whole::Whole;
@@ -27,6 +30,7 @@ use dapple_pups::{Range, range};
 use dapple_raster::{Raster, Window};
 use glam::DVec2;
 use indexmap::IndexMap;
+use std::cell::RefCell;
 use std::sync::Arc;
 use step::ancestors;
 use work::check_steps;
@@ -67,6 +71,9 @@ pub struct Plan {
     channels: Channels,
     material: Material,
     limits: PlanLimits,
+    memory: Option<Memory>,
+    /// For each step the number by which the memory knows it.
+    ids: Arc<[StepId]>,
 }
 
 /// The steps that the maps of the material are made of.
@@ -76,6 +83,13 @@ pub(crate) struct Channels {
     pub(crate) albedo: usize,
     pub(crate) roughness: usize,
     pub(crate) metallic: usize,
+}
+
+impl Channels {
+    /// All of them.
+    pub(crate) fn steps(&self) -> [usize; 4] {
+        [self.height, self.albedo, self.roughness, self.metallic]
+    }
 }
 
 impl Recipe {
@@ -134,11 +148,56 @@ impl Plan {
         time: f64,
         limits: &PlanLimits,
     ) -> Result<Self, RecipeError> {
+        Self::make(recipe, images, time, limits, None)
+    }
+
+    /// Makes everything that the recipe names, and takes from the memory what an earlier plan has made already: what a
+    /// program needs that draws a recipe while it is changed. Bakes and pictures of nodes use it, too.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`new_within`](Self::new_within).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use dapple_recipe::{Images, Memory, Plan, PlanLimits, Recipe};
+    ///
+    /// let (images, limits, memory) = (Images::new(), PlanLimits::default(), Memory::new(1 << 26));
+    /// let mut recipe = Recipe::builtin("flagstone")?;
+    /// let plan = Plan::new_with_memory(&recipe, &images, 0.0, &limits, &memory)?;
+    /// let grain = plan.node_picture("grain", [64, 64], None)?;
+    ///
+    /// recipe.material.relief = 0.5;
+    /// let plan = Plan::new_with_memory(&recipe, &images, 0.0, &limits, &memory)?;
+    /// assert_eq!(plan.node_picture("grain", [64, 64], None)?, grain);
+    /// # Ok::<(), dapple_recipe::RecipeError>(())
+    /// ```
+    pub fn new_with_memory(
+        recipe: &Recipe,
+        images: &Images,
+        time: f64,
+        limits: &PlanLimits,
+        memory: &Memory,
+    ) -> Result<Self, RecipeError> {
+        Self::make(recipe, images, time, limits, Some(memory))
+    }
+
+    fn make(
+        recipe: &Recipe,
+        images: &Images,
+        time: f64,
+        limits: &PlanLimits,
+        memory: Option<&Memory>,
+    ) -> Result<Self, RecipeError> {
         RecipeError::check_in(TIME, "time", time)?;
         for side in recipe.extent {
             RecipeError::check_in(EXTENT, "extent", side)?;
         }
-        let mut builder = Builder::new(recipe, images, time, limits);
+        if let Some(memory) = memory {
+            memory.begin();
+        }
+        let mut builder = Builder::new(recipe, images, time, limits, memory);
         for name in order(recipe)? {
             let added = builder.add(name, &recipe.nodes[name]);
             added.map_err(|error| error.within(name))?;
@@ -152,6 +211,8 @@ impl Plan {
             channels,
             material: recipe.material.clone(),
             limits: *limits,
+            memory: memory.cloned(),
+            ids: builder.ids.into(),
         };
         check_steps(&plan.steps, limits).map_err(|(step, error)| plan.within(step, error))?;
         Ok(plan)
@@ -220,15 +281,40 @@ impl Plan {
         Ok(NodeColors::new(self.steps.clone(), self.find(node)?))
     }
 
+    /// The names of the nodes, each after all that it is made of.
+    pub fn node_names(&self) -> impl Iterator<Item = &str> {
+        self.names.keys().map(String::as_str)
+    }
+
+    /// Whether a node makes a color at every position, not a number. A node that does not exist makes none.
+    #[must_use]
+    pub fn is_color(&self, node: &str) -> bool {
+        self.names
+            .get(node)
+            .is_some_and(|&step| self.steps[step].is_color())
+    }
+
+    /// Whether a node itself sees the whole tile.
+    #[must_use]
+    pub fn is_global(&self, node: &str) -> bool {
+        let step = self.names.get(node).map(|&step| &self.steps[step]);
+        matches!(step, Some(Step::Global(_)))
+    }
+
     /// The step of a node that has a value at a single position.
     fn find(&self, node: &str) -> Result<usize, RecipeError> {
-        let &step = self.names.get(node).ok_or_else(|| {
+        let step = self.step_of(node)?;
+        self.local(step)?;
+        Ok(step)
+    }
+
+    /// The step of a node.
+    fn step_of(&self, node: &str) -> Result<usize, RecipeError> {
+        self.names.get(node).copied().ok_or_else(|| {
             let name = node.to_owned();
             let names = self.names.keys().map(String::as_str);
             RecipeError::new(RecipeErrorKind::UnknownNode { name }).meant(node, names)
-        })?;
-        self.local(step)?;
-        Ok(step)
+        })
     }
 
     /// Refuses a step that is made of what sees the whole tile.
@@ -250,7 +336,53 @@ impl Plan {
         wanted: &[usize],
         known: &Known,
     ) -> Result<Vec<Values>, RecipeError> {
-        evaluate::window(&self.steps, whole, window, wanted, known)
+        match &self.memory {
+            None => evaluate::window(&self.steps, whole, window, wanted, known),
+            Some(memory) => self.values_with(memory, whole, window, wanted, known),
+        }
+    }
+
+    /// The values of steps, as far as they are not in a memory, where they are then.
+    fn values_with(
+        &self,
+        memory: &Memory,
+        whole: &Whole,
+        window: &Window,
+        wanted: &[usize],
+        known: &Known,
+    ) -> Result<Vec<Values>, RecipeError> {
+        let is_kept = |index: usize| {
+            !matches!(
+                self.steps[index],
+                Step::Number(_) | Step::Color(_) | Step::Global(_)
+            )
+        };
+        let mut known = known.to_vec();
+        let found = RefCell::new(Vec::new());
+        let order = step::needed(&self.steps, wanted, |index| {
+            let is_known = known.iter().any(|(known, _)| *known == index);
+            let values = (!is_known && is_kept(index))
+                .then(|| memory.values(self.ids[index], window))
+                .flatten();
+            let is_found = values.is_some();
+            found
+                .borrow_mut()
+                .extend(values.map(|values| (index, values)));
+            is_known || is_found
+        });
+        known.append(&mut found.into_inner());
+        let is_new =
+            |index: &usize| is_kept(*index) && !known.iter().any(|(known, _)| known == index);
+        let fresh: Vec<_> = order.into_iter().filter(is_new).collect();
+        if !memory.has_room(fresh.len(), window) {
+            return evaluate::window(&self.steps, whole, window, wanted, &known);
+        }
+        let all = [wanted, &fresh].concat();
+        let mut values = evaluate::window(&self.steps, whole, window, &all, &known)?;
+        for (&index, values) in fresh.iter().zip(values.drain(wanted.len()..)) {
+            memory.keep(self.ids[index], window, Arc::new(values));
+        }
+        Ok(values)
     }
 
     /// The steps on the way to `wanted` that the height is made of, too. Who knows them needs nothing of what they have in

@@ -97,7 +97,7 @@ pub(crate) struct Args {
     #[arg(long, help_heading = "Output")]
     sheet: bool,
 
-    /// Write a lit preview of the material, too, as `NAME_preview.png`: on a plane of 2 x 2 tiles or on a sphere.
+    /// Write a lit preview of the material, too, as `NAME_preview.png`: on a plane of 2 x 2 tiles, a sphere or a torus.
     #[arg(long, value_name = "THING", value_parser = Word::<Thing>::all(), num_args = 0..=1, require_equals = true, default_missing_value = "plane", help_heading = "Output")]
     preview: Option<Thing>,
 
@@ -156,6 +156,46 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     }
     drop(progress);
     Ok(batch.exit())
+}
+
+/// Bakes a recipe that lies in no file, with options as they are typed after `dapple bake RECIPE`.
+///
+/// # Errors
+///
+/// Options and recipes that are refused.
+#[cfg(feature = "studio")]
+pub(super) fn bake_with(
+    words: &[String],
+    recipe: &Recipe,
+    folder: &Path,
+    context: &Context,
+) -> Result<()> {
+    let command = <Args as clap::Args>::augment_args(clap::Command::new("bake"));
+    let words = ["bake", "recipe"]
+        .into_iter()
+        .chain(words.iter().map(String::as_str));
+    let matches = command.try_get_matches_from(words)?;
+    let args = <Args as clap::FromArgMatches>::from_arg_matches(&matches)?;
+    args.check_document()?;
+    let mut recipe = recipe.clone();
+    args.change(&mut recipe);
+    let (folder, list) = (folder.to_owned(), None);
+    let work = Work {
+        recipe,
+        folder,
+        list,
+    };
+    let files = args.files_for(1)?;
+    let progress = Progress::bar("baking", args.n_rows()?.into(), context);
+    work.bake(&args, &files, Job::new(context, "bake", &files), &progress)
+}
+
+/// The presets with a sentence each.
+#[cfg(feature = "studio")]
+pub(super) fn presets() -> impl Iterator<Item = (&'static str, &'static str)> {
+    presets::PRESETS
+        .iter()
+        .map(|preset| (preset.name, preset.about()))
 }
 
 impl Work {
@@ -249,6 +289,12 @@ impl Args {
         vec![Size(size.0.map(side)), size]
     }
 
+    /// Whether it was said where the files go.
+    #[cfg(feature = "studio")]
+    pub(super) fn has_output(&self) -> bool {
+        self.files.output.is_some()
+    }
+
     /// Whether files that are there are replaced.
     pub(super) fn may_replace(&self) -> bool {
         self.files.force
@@ -313,6 +359,7 @@ impl Args {
             } else {
                 BakeMemory::Whole
             },
+            ..BakeOptions::default()
         })
     }
 }

@@ -141,6 +141,7 @@ fn check(plan: &Plan, args: &Args, region: Option<Region>) -> Result<()> {
         region,
         maps: args.material.map_kinds().to_vec(),
         memory: BakeMemory::Banded,
+        ..BakeOptions::default()
     };
     let bake = Bake::new(plan, &options);
     bake.map_err(|error| advise_shard(error).wrong_value())?;

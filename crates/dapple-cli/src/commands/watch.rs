@@ -13,9 +13,12 @@ use std::time::Duration;
 
 const EXAMPLES: &str = "\
 Examples:
+  dapple watch my-rock.toml
   dapple watch my-rock.toml -o rock/ --size 2048 --preview
 
-Each save is baked small first, so that something can be seen at once, and then as large as
+Without -o a page in the browser shows the maps as they are after each save.
+
+With -o each save is baked small first, so that something can be seen at once, and then as large as
 --size says. Errors of a recipe are printed, and the files stay as they were. Ctrl-C ends it.";
 
 /// The longer side of the first bake after a save, in pixels.
@@ -30,6 +33,10 @@ const QUIET: Duration = Duration::from_millis(60);
 pub(crate) struct Args {
     #[command(flatten)]
     bake: bake::Args,
+
+    #[cfg(feature = "studio")]
+    #[command(flatten)]
+    page: super::studio::PageArgs,
 }
 
 /// Runs it until it is interrupted.
@@ -39,6 +46,13 @@ pub(crate) struct Args {
 /// If there is nothing to watch, or the first files may not be written.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let recipe = args.bake.only_file()?;
+    #[cfg(feature = "studio")]
+    if !args.bake.has_output() {
+        let mode = dapple_studio::Mode::Watch;
+        return args
+            .page
+            .serve(Some(&recipe.to_string_lossy()), mode, context);
+    }
     let (sender, changes) = channel();
     let watcher = notify::recommended_watcher(move |event| {
         // Where nobody waits for it, the process is about to end.

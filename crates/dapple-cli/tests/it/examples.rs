@@ -5,9 +5,10 @@
 use crate::support::{Folder, assert_done, stdout};
 use std::fs;
 
-const SUBCOMMANDS: [&str; 18] = [
+const SUBCOMMANDS: [&str; 19] = [
     "bake",
     "watch",
+    "studio",
     "shards",
     "join",
     "recipe",

@@ -17,6 +17,8 @@ mod outputs;
 mod refusals;
 mod results;
 mod shards;
+#[cfg(feature = "studio")]
+mod studio;
 mod support;
 mod watch;
 mod words;

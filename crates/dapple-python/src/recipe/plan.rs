@@ -11,7 +11,7 @@ use crate::shared::Shared;
 use crate::threads;
 use dapple::color::{LinearRgb, Normal};
 use dapple::recipe::{
-    Bake, BakeMemory, BakeOptions, Images, MapKind, MapRows, Picture, Plan as RustPlan,
+    Bake, BakeOptions, Images, MapKind, MapRows, Picture, Plan as RustPlan,
     Recipe as RustRecipe, Region,
 };
 use pyo3::prelude::*;
@@ -167,7 +167,7 @@ impl Plan {
             size: size_of(size)?,
             region: window.map(|window| region(size, window)).transpose()?,
             maps: maps.map_or(Ok(vec![MapKind::Height]), self::maps)?,
-            memory: BakeMemory::Whole,
+            ..BakeOptions::default()
         };
         let bake = threads::run(py, || Bake::new(&self.plan, &options))??;
         let maps = gather(py, bake, &options.maps)?;

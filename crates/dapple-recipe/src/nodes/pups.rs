@@ -201,7 +201,7 @@ impl Recipe {
         let Some(texture) = node.kind().pups() else {
             return Ok(None);
         };
-        let mut builder = Builder::new(self, images, time, limits);
+        let mut builder = Builder::new(self, images, time, limits, None);
         let field = builder
             .enter(name, node)
             .and_then(|()| texture.build(&builder))
@@ -237,7 +237,7 @@ impl NodeKind for PupsNode {
     fn build(&self, plan: &mut Builder<'_>) -> Result<Step, RecipeError> {
         Ok(match self.texture().build(plan)? {
             PupsField::Numbers(field) => Step::Field(field),
-            PupsField::Colors(texture) => Step::Colors(texture),
+            PupsField::Colors(texture) => Step::Colors(texture.into()),
         })
     }
 }

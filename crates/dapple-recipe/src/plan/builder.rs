@@ -1,5 +1,6 @@
 //! Making steps of nodes: the tile, the seed and the inputs that a node asks for.
 
+use super::memory::{Memory, StepId};
 use super::step::{Global, Local, Step, Tile};
 use super::work::{Work, WorkSum};
 use super::{Images, Picture, PlanLimits, not_a_number, order};
@@ -10,6 +11,8 @@ use dapple_points::Domain;
 use dapple_pups::{Range, range};
 use dapple_raster::Wrap;
 use indexmap::IndexMap;
+use std::cell::Cell;
+use std::fmt::Write as _;
 
 /// Makes steps of nodes, one after the other.
 pub(crate) struct Builder<'a> {
@@ -19,7 +22,12 @@ pub(crate) struct Builder<'a> {
     /// The name of the node that is being made.
     node: &'a str,
     work: WorkSum<'a>,
+    memory: Option<&'a Memory>,
+    /// Whether the node that is being made has asked what time it is.
+    asks_time: Cell<bool>,
     pub(super) steps: Vec<Step>,
+    /// For each step the number of its description, where there is a memory.
+    pub(super) ids: Vec<StepId>,
     pub(super) names: IndexMap<String, usize>,
 }
 
@@ -32,6 +40,7 @@ impl<'a> Builder<'a> {
         images: &'a Images,
         time: f64,
         limits: &'a PlanLimits,
+        memory: Option<&'a Memory>,
     ) -> Self {
         Self {
             recipe,
@@ -39,7 +48,10 @@ impl<'a> Builder<'a> {
             time,
             node: "",
             work: WorkSum::new(limits),
+            memory,
+            asks_time: Cell::new(false),
             steps: Vec::new(),
+            ids: Vec::new(),
             names: IndexMap::new(),
         }
     }
@@ -47,10 +59,55 @@ impl<'a> Builder<'a> {
     /// Adds the step of a node all of whose inputs have steps.
     pub(super) fn add(&mut self, name: &'a str, node: &Node) -> Result<(), RecipeError> {
         self.enter(name, node)?;
-        let step = node.kind().build(self)?;
+        let before = self.memory.and_then(|memory| self.id_in(memory, node));
+        let known = before.and_then(|(id, _)| self.memory?.source(id));
+        self.asks_time.set(false);
+        let is_known = known.is_some();
+        let step = match known {
+            Some(step) => step,
+            None => node.kind().build(self)?,
+        };
+        let id = self.memory.map(|memory| match before {
+            None => memory.new_id(),
+            Some((id, false)) if self.asks_time.get() => memory.at_time(id, self.time),
+            Some((id, _)) => id,
+        });
+        if let (Some(memory), Some(id), false) = (self.memory, id, is_known) {
+            memory.keep_source(id, &step);
+        }
         self.names.insert(name.to_owned(), self.steps.len());
-        self.steps.push(step);
+        self.push(step, id);
         Ok(())
+    }
+
+    fn push(&mut self, step: Step, id: Option<StepId>) {
+        self.steps.push(step);
+        self.ids.extend(id);
+    }
+
+    /// The number of all that the values of the node follow from, and whether the time is known to be a part of that; none
+    /// where it cannot be told.
+    fn id_in(&self, memory: &Memory, node: &Node) -> Option<(StepId, bool)> {
+        // What cannot be written as data, such as a function, cannot be compared.
+        serde_json::to_writer(std::io::sink(), node).ok()?;
+        let Recipe {
+            seed, extent, wrap, ..
+        } = self.recipe;
+        let mut text = format!("{} {extent:?} {wrap:?} {:?} ", seed.0, self.node);
+        for input in node.inputs() {
+            if let Some(name) = input.node() {
+                write!(text, "{} ", self.ids.get(*self.names.get(name)?)?).ok()?;
+            }
+        }
+        if let Some(file) = node.image_file() {
+            write!(text, "image {} ", memory.picture_id(self.images.get(file)?)).ok()?;
+        }
+        write!(text, "{node:?}").ok()?;
+        let id = memory.id(text);
+        Some(match memory.is_timed(id) {
+            true => (memory.at_time(id, self.time), true),
+            false => (id, false),
+        })
     }
 
     /// Goes to a node, if that is no more work than is allowed.
@@ -62,6 +119,7 @@ impl<'a> Builder<'a> {
 
     /// The part of a loop that has passed.
     pub(crate) fn time(&self) -> f64 {
+        self.asks_time.set(true);
         self.time
     }
 
@@ -128,7 +186,8 @@ impl<'a> Builder<'a> {
                 return known.ok_or_else(|| order::unknown(self.recipe, name));
             }
         };
-        self.steps.push(step);
+        let id = self.memory.map(|memory| memory.id(format!("{step:?}")));
+        self.push(step, id);
         Ok(self.steps.len() - 1)
     }
 

@@ -84,8 +84,8 @@ fn last_uses(steps: &[Step], order: &[usize], wanted: &[usize]) -> Vec<usize> {
     last_use
 }
 
-/// The pixels that a thread takes at a time.
-const CHUNK_PIXELS: u32 = 1 << 16;
+/// The most and the fewest pixels that a thread takes at a time.
+const CHUNK_PIXELS: [u32; 2] = [1 << 16, 1 << 11];
 
 /// The positions that a warp asks at a time: what is made for them stays in a cache.
 const CHUNK_POSITIONS: usize = 1 << 12;
@@ -102,7 +102,11 @@ pub(super) fn window(
         return Ok(Vec::new());
     }
     let [width, height] = window.size;
-    let rows = (CHUNK_PIXELS / width.max(1)).max(1);
+    // Small pictures are for all threads, too.
+    let share = window.n_pixels() / (2 * parallel::n_threads());
+    let [most, fewest] = CHUNK_PIXELS;
+    let pixels = u32::try_from(share).map_or(most, |share| share.clamp(fewest, most));
+    let rows = (pixels / width.max(1)).max(1);
     let chunks = parallel::map(height.div_ceil(rows) as usize, |chunk| {
         let first = chunk as u32 * rows;
         let part = Window {

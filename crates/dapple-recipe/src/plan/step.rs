@@ -15,7 +15,7 @@ pub(crate) enum Step {
     Number(f32),
     Color(LinearRgb),
     Field(Arc<dyn Field>),
-    Colors(Box<VectorTexture<3>>),
+    Colors(Arc<VectorTexture<3>>),
     Image(Laid),
     Local(Local),
     Warp {

@@ -4,7 +4,7 @@ use super::builder::wrap;
 use super::evaluate::Places;
 use super::step::{Global, Laid, Step, Tile, ancestors};
 use super::{Picture, Plan};
-use crate::{RecipeError, RecipeErrorKind, Values};
+use crate::{RecipeError, RecipeErrorKind, Region, Values};
 use dapple_raster::{Raster, Window, Wrap};
 use glam::DVec2;
 use std::sync::Arc;
@@ -23,19 +23,12 @@ impl Plan {
     /// Whether a map of the material, or a node, sees the whole tile, so that a picture of it cannot be made in bands.
     #[must_use]
     pub fn sees_whole(&self) -> bool {
-        !self.needed_globals().is_empty()
+        !self.needed_globals(&self.channels().steps()).is_empty()
     }
 
-    /// The steps that see the whole tile and take part in the material, in their order.
-    fn needed_globals(&self) -> Vec<(usize, &Global)> {
-        let channels = self.channels();
-        let wanted = [
-            channels.height,
-            channels.albedo,
-            channels.roughness,
-            channels.metallic,
-        ];
-        let needed = ancestors(self.steps(), &wanted).into_iter();
+    /// The steps that see the whole tile and take part in some steps, in their order.
+    fn needed_globals(&self, wanted: &[usize]) -> Vec<(usize, &Global)> {
+        let needed = ancestors(self.steps(), wanted).into_iter();
         let global = |index: usize| match &self.steps()[index] {
             Step::Global(global) => Some((index, global)),
             _ => None,
@@ -49,7 +42,8 @@ impl Plan {
     ///
     /// [`Global`](RecipeErrorKind::Global), with the node.
     pub fn check_local(&self) -> Result<(), RecipeError> {
-        let Some(&(index, _)) = self.needed_globals().first() else {
+        let globals = self.needed_globals(&self.channels().steps());
+        let Some(&(index, _)) = globals.first() else {
             return Ok(());
         };
         let error = RecipeError::new(RecipeErrorKind::Global {
@@ -73,7 +67,12 @@ impl Plan {
     /// What the crates of the nodes refuse, [`Raster`](RecipeErrorKind::Raster) for a size that is too large, and
     /// [`TooMuch`](RecipeErrorKind::TooMuch) for more pixels in all than the limits of the plan allow.
     pub fn whole(&self, size: [u32; 2]) -> Result<Whole, RecipeError> {
-        let globals = self.needed_globals();
+        self.whole_of(size, &self.channels().steps())
+    }
+
+    /// Evaluates the steps that see the whole tile and that others are made of.
+    fn whole_of(&self, size: [u32; 2], wanted: &[usize]) -> Result<Whole, RecipeError> {
+        let globals = self.needed_globals(wanted);
         let Some(&(first, _)) = globals.first() else {
             return Ok(Whole::default());
         };
@@ -88,33 +87,82 @@ impl Plan {
             pictures: vec![None; self.steps().len()],
         };
         for (index, global) in globals {
-            let picture = self.picture(&whole, &window, global);
+            let picture = self.known_picture(&whole, &window, index, global);
             whole.pictures[index] = Some(picture.map_err(|error| self.within(index, error))?);
         }
         Ok(whole)
     }
 
-    /// The picture of a step that sees the whole tile.
+    /// The values of a node at the pixels of the tile, or of a part of it, whether the material is made of it or not.
+    ///
+    /// # Errors
+    ///
+    /// [`UnknownNode`](RecipeErrorKind::UnknownNode) if there is no such node, and those of [`whole`](Self::whole) and of
+    /// [`Bake::new`](crate::Bake::new).
+    pub fn node_picture(
+        &self,
+        node: &str,
+        size: [u32; 2],
+        region: Option<Region>,
+    ) -> Result<Picture, RecipeError> {
+        let step = self.step_of(node)?;
+        let window = match region {
+            None => self.window(size)?,
+            Some(region) => region.of(&self.window(size)?)?,
+        };
+        let whole = self.whole_of(size, &[step])?;
+        let values = self.values(&whole, &window, &[step], &[])?;
+        values.into_iter().next().map_or_else(
+            || Err(RecipeError::new(RecipeErrorKind::Global { during: "yet" })),
+            |values| values.picture(window.size),
+        )
+    }
+
+    /// The picture of a step that sees the whole tile, from the memory if it is there.
+    fn known_picture(
+        &self,
+        whole: &Whole,
+        window: &Window,
+        index: usize,
+        step: &Global,
+    ) -> Result<Picture, RecipeError> {
+        let Some(memory) = &self.memory else {
+            return self.picture(whole, window, step)?.picture(window.size);
+        };
+        let values = match memory.values(self.ids[index], window) {
+            Some(values) => values,
+            None => {
+                let values = Arc::new(self.picture(whole, window, step)?);
+                memory.keep(self.ids[index], window, values.clone());
+                values
+            }
+        };
+        Values::clone(&values).picture(window.size)
+    }
+
+    /// The values of a step that sees the whole tile.
     fn picture(
         &self,
         whole: &Whole,
         window: &Window,
         step: &Global,
-    ) -> Result<Picture, RecipeError> {
+    ) -> Result<Values, RecipeError> {
         let of_inputs = step.window_of_inputs(window)?;
         let made = self.values(whole, &of_inputs, &step.inputs, &[])?;
-        let values = (step.apply)(&Tile {
+        (step.apply)(&Tile {
             inputs: &made.iter().collect::<Vec<_>>(),
             input_size: of_inputs.size,
             window,
-        })?;
-        Ok(match values {
-            Values::Numbers(numbers) => {
-                Picture::Numbers(Arc::new(Raster::from_vec(window.size, numbers)?))
-            }
-            Values::Colors(colors) => {
-                Picture::Colors(Arc::new(Raster::from_vec(window.size, colors)?))
-            }
+        })
+    }
+}
+
+impl Values {
+    /// The values as a picture of this size.
+    fn picture(self, size: [u32; 2]) -> Result<Picture, RecipeError> {
+        Ok(match self {
+            Self::Numbers(numbers) => Picture::Numbers(Arc::new(Raster::from_vec(size, numbers)?)),
+            Self::Colors(colors) => Picture::Colors(Arc::new(Raster::from_vec(size, colors)?)),
         })
     }
 }

@@ -166,7 +166,7 @@ fn a_wide_bake_in_many_bands_has_the_bits_of_its_regions() {
         size,
         maps,
         memory: BakeMemory::Banded,
-        region: None,
+        ..BakeOptions::default()
     };
     assert!(
         Bake::new(&plan, &wide).unwrap().count() > 1,

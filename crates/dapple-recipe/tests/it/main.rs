@@ -2,6 +2,7 @@
 
 mod bakes;
 mod copies;
+mod memory;
 mod points;
 mod program;
 mod refusals;

@@ -191,6 +191,12 @@ pub(super) static PRESETS: [Preset; 7] = [
 ];
 
 impl Preset {
+    /// A sentence about it.
+    #[cfg(feature = "studio")]
+    pub(super) fn about(&self) -> &'static str {
+        self.about
+    }
+
     /// Reads a preset by its name.
     pub(super) fn parser() -> Word<&'static Self> {
         let presets = PRESETS.iter();

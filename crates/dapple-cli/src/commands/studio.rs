@@ -1,0 +1,245 @@
+//! `dapple studio`: a page to make recipes in.
+
+use super::bake;
+use crate::baking::read_images;
+use crate::error::{Exit, Hint, usage};
+use crate::job::{Context, eprintln_if_possible, say};
+use crate::preview::{self, Thing};
+use crate::words::with_dashes;
+use anyhow::{Error, Result};
+use dapple::color::LinearRgb;
+use dapple::raster::Raster;
+use dapple::recipe::{Images, Recipe};
+use dapple_studio::{
+    Export, ExportedFile, Host, Mode, Named, ServeOptions, Shape, StudioError, has_page, serve,
+};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+const EXAMPLES: &str = "\
+Examples:
+  dapple studio
+  dapple studio flagstone
+  dapple studio my-rock.toml
+  dapple studio --port 7878 --no-open giraffe
+
+The page shows the maps of a recipe while it is changed, as text, by sliders or as a graph. It is
+served to this machine alone, under the address that is printed, and ends with Ctrl-C. Files are
+read from the recipe's folder, and written only when they are saved.";
+
+/// What is said where the page was not built.
+const NO_PAGE: &str = "warning: this program was built without the page: `cargo xtask studio` in the repository of dapple builds \
+    both, with Node";
+
+/// Make recipes on a page in the browser: see each change at once.
+#[derive(clap::Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// A built-in recipe, or a file in TOML; by default a choice of all.
+    #[arg(value_name = "RECIPE")]
+    recipe: Option<String>,
+
+    #[command(flatten)]
+    page: PageArgs,
+}
+
+/// How a page is served.
+#[derive(clap::Args, Clone, Debug)]
+#[group(skip)]
+pub(crate) struct PageArgs {
+    /// The port; by default any free one.
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    port: u16,
+
+    /// Open no browser, only print the address.
+    #[arg(long)]
+    no_open: bool,
+
+    /// End when the last page is closed.
+    #[arg(long)]
+    once: bool,
+
+    /// A folder with another page, for those who work on the page.
+    #[arg(long, value_name = "FOLDER", hide = true)]
+    dist: Option<PathBuf>,
+}
+
+/// Runs it until it is interrupted.
+///
+/// # Errors
+///
+/// If there is no such recipe, or the port is taken.
+pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
+    args.page
+        .serve(args.recipe.as_deref(), Mode::Studio, context)
+}
+
+impl PageArgs {
+    /// Serves the page with a recipe.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such recipe, or the port is taken.
+    pub(crate) fn serve(
+        &self,
+        recipe: Option<&str>,
+        mode: Mode,
+        context: &Context,
+    ) -> Result<Exit> {
+        let (recipe, folder) = match recipe {
+            None => (None, PathBuf::new()),
+            Some(name) => place(name)?,
+        };
+        let has_page = self.dist.is_some() || has_page();
+        let options = ServeOptions {
+            port: self.port,
+            no_open: self.no_open,
+            once: self.once,
+            mode,
+            recipe,
+            folder,
+            dist: self.dist.clone(),
+        };
+        let told = serve(options, Arc::new(Bakes(context.silent())), |url| {
+            if !has_page {
+                eprintln_if_possible(NO_PAGE);
+            }
+            // Where nobody reads it, the browser has it.
+            let _ = say(url);
+        });
+        told.map_err(advise)?;
+        Ok(Exit::Done)
+    }
+}
+
+/// An error of the studio with its hint.
+fn advise(error: StudioError) -> Error {
+    let hint = error.hint().map(str::to_owned);
+    let error = Error::new(error);
+    match hint {
+        Some(hint) => error.hint(hint),
+        None => error,
+    }
+}
+
+/// The name of a recipe as a page opens it, and its folder.
+fn place(name: &str) -> Result<(Option<String>, PathBuf)> {
+    let path = Path::new(name);
+    let builtin = with_dashes(name);
+    if !path.is_file() {
+        return match Recipe::builtin_text(&builtin) {
+            Ok(_) => Ok((Some(builtin), PathBuf::new())),
+            Err(error) => Err(
+                usage(format!("there is no recipe and no file {name}: {error}"))
+                    .hint("`dapple recipe --list` names the built-in recipes"),
+            ),
+        };
+    }
+    let file = path
+        .file_name()
+        .map(|file| file.to_string_lossy().into_owned());
+    if !name.ends_with(".toml") {
+        return Err(usage(format!("{name} is no recipe in TOML"))
+            .hint("`dapple recipe FILE -o my.toml` rewrites one in JSON"));
+    }
+    Ok((file, path.parent().unwrap_or(Path::new("")).to_owned()))
+}
+
+/// Reads images and makes files as the other commands do.
+struct Bakes(Context);
+
+impl Host for Bakes {
+    fn images(&self, recipe: &Recipe, folder: &Path) -> Result<Images, StudioError> {
+        read_images(recipe, folder).map_err(told)
+    }
+
+    fn export(
+        &self,
+        recipe: &Recipe,
+        folder: &Path,
+        export: &Export,
+    ) -> Result<Vec<ExportedFile>, StudioError> {
+        self.files(recipe, folder, export).map_err(told)
+    }
+
+    fn preview(
+        &self,
+        recipe: &Recipe,
+        images: &Images,
+        time: f64,
+        shape: Shape,
+    ) -> Result<Raster<LinearRgb>, StudioError> {
+        let thing = match shape {
+            Shape::Plane => Thing::Plane,
+            Shape::Sphere => Thing::Sphere,
+            Shape::Torus => Thing::Torus,
+        };
+        preview::picture(recipe, images, time, thing).map_err(told)
+    }
+
+    fn presets(&self) -> Vec<Named> {
+        let named = |(name, about): (&str, &str)| Named {
+            name: name.to_owned(),
+            about: about.to_owned(),
+        };
+        bake::presets().map(named).collect()
+    }
+}
+
+impl Bakes {
+    /// The files that `dapple bake` makes of a recipe.
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "what a bake has written is read for the page"
+    )]
+    fn files(&self, recipe: &Recipe, folder: &Path, export: &Export) -> Result<Vec<ExportedFile>> {
+        let mut recipe = recipe.clone();
+        if recipe.name.is_empty() {
+            "recipe".clone_into(&mut recipe.name);
+        }
+        let made = tempfile::tempdir()?;
+        let mut words = words(export);
+        words.push(format!("--output={}/", made.path().display()));
+        bake::bake_with(&words, &recipe, folder, &self.0)?;
+        let mut files = Vec::new();
+        for entry in fs::read_dir(made.path())? {
+            let entry = entry?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let bytes = fs::read(entry.path())?;
+            files.push(ExportedFile { name, bytes });
+        }
+        files.sort_by(|a, b| a.name.cmp(&b.name));
+        Ok(files)
+    }
+}
+
+/// The options of `dapple bake` that an export stands for. Each is one word, whatever it holds.
+fn words(export: &Export) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut add = |name: &str, value: Option<String>| {
+        words.extend(value.map(|value| format!("--{name}={value}")));
+    };
+    add(
+        "size",
+        export
+            .size
+            .map(|[width, height]| format!("{width}x{height}")),
+    );
+    add("maps", export.maps.as_ref().map(|maps| maps.join(",")));
+    add("preset", export.preset.clone());
+    add("format", export.format.clone());
+    add("normal-y", export.normal_y.clone());
+    add(
+        "frame",
+        export
+            .frame
+            .map(|[number, count]| format!("{number}/{count}")),
+    );
+    words
+}
+
+/// An error as a page tells it.
+fn told(error: Error) -> StudioError {
+    StudioError::new(format!("{error:#}"))
+}

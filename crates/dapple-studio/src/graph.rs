@@ -1,0 +1,147 @@
+//! The nodes of a recipe and what each is made of.
+
+use crate::schema::{Found, Role, roles};
+use crate::{Document, Part};
+use dapple::recipe::Plan;
+use serde::Serialize;
+use serde_json::{Map, Value as Json};
+
+/// The nodes of a recipe, in the order of the text.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Graph {
+    nodes: Vec<GraphNode>,
+    /// The inputs of the material by their names.
+    material: Map<String, Json>,
+    /// The names of the nodes, each after all that it is made of; in the order of the text where there is no plan.
+    order: Vec<String>,
+}
+
+/// A node of a recipe.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct GraphNode {
+    name: String,
+    kind: String,
+    /// Whether it makes colors, not numbers.
+    is_color: bool,
+    /// Whether it sees the whole tile.
+    is_global: bool,
+    /// Where it is written, in UTF-16 code units.
+    span: Option<[usize; 2]>,
+    inputs: Vec<GraphInput>,
+    /// The range of its values, if that is known.
+    range: Option<[f64; 2]>,
+}
+
+/// An input of a node.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct GraphInput {
+    label: String,
+    /// The way to it within the node, from its kind on.
+    path: Vec<Part>,
+    /// The node that it is, if it is one.
+    node: Option<String>,
+    /// The input as it is written, or by default.
+    value: Json,
+    is_written: bool,
+}
+
+impl Graph {
+    /// The graph of a document. What only a plan knows is left out without one.
+    #[must_use]
+    pub fn new(document: &Document, plan: Option<&Plan>) -> Option<Self> {
+        let data = document.data()?;
+        let found = roles(&data);
+        let node = |(name, node): (&String, &Json)| {
+            let (kind, _) = node.as_object()?.iter().next()?;
+            let is_here = |found: &&Found<'_>| {
+                found.role == Role::Input
+                    && found
+                        .path
+                        .starts_with(&["nodes".into(), name.as_str().into()])
+            };
+            let inputs = found.iter().filter(is_here).map(|found| input(found, 2));
+            Some(GraphNode {
+                name: name.clone(),
+                kind: kind.clone(),
+                is_color: plan.is_some_and(|plan| plan.is_color(name)),
+                is_global: plan.is_some_and(|plan| plan.is_global(name)),
+                span: document.node_span(name),
+                inputs: inputs.collect(),
+                range: None,
+            })
+        };
+        let names = names_in_order(document, &data);
+        let all = data.get("nodes").and_then(Json::as_object);
+        let nodes = names
+            .iter()
+            .filter_map(|name| node(all?.get_key_value(name)?));
+        let nodes: Vec<_> = nodes.collect();
+        let of_material = |found: &&Found<'_>| {
+            found.role == Role::Input && found.path.first() == Some(&"material".into())
+        };
+        let material = found.iter().filter(of_material).map(|found| {
+            let input = input(found, 1);
+            (
+                input.label.clone(),
+                serde_json::json!({ "node": input.node, "value": input.value }),
+            )
+        });
+        Some(Self {
+            material: material.collect(),
+            order: match plan {
+                Some(plan) => plan.node_names().map(str::to_owned).collect(),
+                None => names,
+            },
+            nodes,
+        })
+    }
+
+    /// The names of the nodes, in the order of the text.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.nodes.iter().map(|node| node.name.as_str())
+    }
+}
+
+/// The names of the nodes in the order of the text.
+fn names_in_order(document: &Document, data: &Json) -> Vec<String> {
+    let nodes = document
+        .table()
+        .and_then(|root| root.get("nodes")?.as_table_like());
+    match nodes {
+        Some(nodes) => nodes.iter().map(|(name, _)| name.to_owned()).collect(),
+        None => data
+            .get("nodes")
+            .and_then(Json::as_object)
+            .into_iter()
+            .flatten()
+            .map(|(name, _)| name.clone())
+            .collect(),
+    }
+}
+
+/// An input whose path is cut to what is after a number of parts.
+fn input(found: &Found<'_>, skipped: usize) -> GraphInput {
+    let path = found.path[skipped..].to_vec();
+    let is_node = |text: &&str| !text.starts_with('#');
+    GraphInput {
+        label: label(&path),
+        path,
+        node: found
+            .value
+            .and_then(Json::as_str)
+            .filter(is_node)
+            .map(str::to_owned),
+        value: found.value.cloned().unwrap_or(Json::Null),
+        is_written: found.is_written,
+    }
+}
+
+/// A short name of an input: its key, and the number of each list that it is in, from 1.
+fn label(path: &[Part]) -> String {
+    let parts = if path.len() > 1 { &path[1..] } else { path };
+    let words = parts.iter().map(|part| match part {
+        Part::Index(index) => (index + 1).to_string(),
+        Part::Key(key) => key.clone(),
+    });
+    words.collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,59 @@
+//! A page to look at recipes while they are made: what it asks, what it gets, and the local server that serves it.
+//!
+//! The text of a recipe, in TOML, is the document. A [`Document`] holds it with what is read in it or wrong with it; an
+//! [`Op`] is a small change of the recipe, which [`apply`] makes as a small change of the text; a [`Graph`] is the nodes
+//! with what each is made of. A [`Session`] is the state of one page, and a [`Renderer`] draws what it shows. None of these
+//! touches files, sockets or threads. [`serve`] does, behind the feature `server`.
+//!
+//! ```
+//! use dapple_studio::{Document, Op, apply};
+//!
+//! let text = "dapple = 1 # the first\nseed = 7\n\n[material]\nheight = 0.25 # low\n";
+//! let op = Op::Set { path: vec!["material".into(), "height".into()], value: 0.75.into() };
+//! let text = apply(text, &[op])?;
+//! assert_eq!(text, "dapple = 1 # the first\nseed = 7\n\n[material]\nheight = 0.75 # low\n");
+//! assert!(Document::new(text).recipe().is_ok());
+//! # Ok::<(), dapple_studio::StudioError>(())
+//! ```
+#![forbid(unsafe_code)]
+
+mod change;
+#[cfg(feature = "server")]
+mod code;
+mod data;
+mod diagnose;
+mod document;
+mod error;
+mod graph;
+mod message;
+mod patch;
+mod picture;
+mod points;
+mod render;
+#[cfg(feature = "server")]
+mod sample;
+mod schema;
+
+#[cfg(feature = "server")]
+mod seams;
+#[cfg(feature = "server")]
+mod server;
+mod session;
+mod utf16;
+
+pub use change::Change;
+pub use diagnose::Diagnostic;
+pub use document::Document;
+pub use error::StudioError;
+pub use graph::Graph;
+pub use message::{
+    Area, CodeKind, Exact, Export, FileSize, Hello, MapSeams, Mode, Named, NodeTime, Output, Reply,
+    Request, Shape, View,
+};
+pub use patch::{Op, Part, apply};
+pub use picture::{Picture, Shown, rgba};
+pub use render::{Job, MAX_SIDE, Renderer, World};
+
+#[cfg(feature = "server")]
+pub use server::{ExportedFile, Host, ServeOptions, has_page, serve};
+pub use session::{ImagesOf, Session};

@@ -1,0 +1,233 @@
+//! Changes of whole nodes.
+
+use super::{Op, Part, Place, apply_one};
+use crate::StudioError;
+use crate::data::{json_of_table, table_of};
+use crate::schema::roles;
+use dapple::recipe::KINDS;
+use serde_json::{Map, Value as Json, json};
+use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, Value};
+
+/// Adds a node after all others.
+pub(super) fn add(
+    document: &mut DocumentMut,
+    name: &str,
+    kind: &str,
+    value: &Json,
+) -> Result<(), StudioError> {
+    check_new(document, name)?;
+    if !KINDS.contains(&kind) {
+        return Err(StudioError::new(format!(
+            "there is no kind of node `{kind}`"
+        )));
+    }
+    let path = ["nodes".into(), name.into()];
+    Place::Table(document.as_table_mut()).set(&path, &json!({ kind: value }))?;
+    // A blank line before it, as before all others.
+    if let Some(Item::Table(node)) = document
+        .get_mut("nodes")
+        .and_then(|nodes| nodes.get_mut(name))
+    {
+        set_blank_line(node);
+    }
+    Ok(())
+}
+
+/// Puts one blank line before the first header of a node, and none before the others.
+fn set_blank_line(node: &mut Table) {
+    if !node.is_implicit() {
+        node.decor_mut().set_prefix("\n");
+        return;
+    }
+    for (_, item) in node.iter_mut() {
+        if let Item::Table(kind) = item {
+            kind.decor_mut().set_prefix("\n");
+        }
+    }
+}
+
+/// Gives a node another name, and all inputs and seeds that name it, too.
+pub(super) fn rename(document: &mut DocumentMut, name: &str, to: &str) -> Result<(), StudioError> {
+    if name == to {
+        return Ok(());
+    }
+    check_new(document, to)?;
+    let data = json_of_table(document);
+    match document.get_mut("nodes") {
+        Some(Item::Table(nodes)) if nodes.contains_key(name) => rename_in_table(nodes, name, to),
+        Some(Item::Value(Value::InlineTable(nodes))) if nodes.contains_key(name) => {
+            let entries: Vec<_> = nodes
+                .iter()
+                .map(|(key, value)| (key.to_owned(), value.clone()))
+                .collect();
+            nodes.clear();
+            for (key, value) in entries {
+                nodes.insert(if key == name { to } else { &key }, value);
+            }
+        }
+        _ => return Err(no_node(name)),
+    }
+    for found in roles(&data) {
+        let names_it = found.is_written && found.value.and_then(Json::as_str) == Some(name);
+        if !names_it {
+            continue;
+        }
+        let mut path = found.path;
+        if let [first, node, ..] = &mut path[..]
+            && *first == Part::from("nodes")
+            && *node == Part::from(name)
+        {
+            *node = Part::from(to);
+        }
+        let value = to.into();
+        apply_one(document, &Op::Set { path, value })?;
+    }
+    Ok(())
+}
+
+/// Gives an entry of a table another name, at the same place.
+fn rename_in_table(table: &mut Table, name: &str, to: &str) {
+    let keys: Vec<_> = table.iter().map(|(key, _)| key.to_owned()).collect();
+    let entries: Vec<_> = keys
+        .iter()
+        .filter_map(|key| table.remove_entry(key))
+        .collect();
+    for (key, item) in entries {
+        let key = if key.get() == name {
+            Key::new(to)
+                .with_leaf_decor(key.leaf_decor().clone())
+                .with_dotted_decor(key.dotted_decor().clone())
+        } else {
+            key
+        };
+        table.insert_formatted(&key, item);
+    }
+}
+
+/// Adds a copy of a node.
+pub(super) fn duplicate(
+    document: &mut DocumentMut,
+    name: &str,
+    to: &str,
+) -> Result<(), StudioError> {
+    check_new(document, to)?;
+    let data = json_of_table(document);
+    let node = data
+        .get("nodes")
+        .and_then(|nodes| nodes.get(name))
+        .and_then(Json::as_object);
+    let (kind, value) = node
+        .and_then(|node| node.iter().next())
+        .ok_or_else(|| no_node(name))?;
+    add(document, to, kind, value)
+}
+
+/// Gives a node an input.
+pub(super) fn connect(
+    document: &mut DocumentMut,
+    node: &str,
+    input: &[Part],
+    from: &Json,
+) -> Result<(), StudioError> {
+    if !(from.is_string() || from.is_number()) {
+        return Err(StudioError::new(
+            "an input is a number, a color, or the name of a node",
+        ));
+    }
+    let data = json_of_table(document);
+    if data
+        .get("nodes")
+        .and_then(|nodes| nodes.get(node))
+        .is_none()
+    {
+        return Err(no_node(node));
+    }
+    let mut path: Vec<Part> = vec!["nodes".into(), node.into()];
+    path.extend_from_slice(input);
+    let root = Place::Table(document.as_table_mut());
+    if let Some((Part::Index(index), list)) = path.split_last() {
+        let n_inputs = data
+            .pointer(&pointer(list))
+            .and_then(Json::as_array)
+            .map_or(0, Vec::len);
+        if *index == n_inputs {
+            return root.insert(list, *index, from);
+        }
+    }
+    root.set(&path, from)
+}
+
+/// Makes a PUPs texture one of points, each on a line of its own.
+pub(super) fn make_points(
+    document: &mut DocumentMut,
+    node: &str,
+    options: &Map<String, Json>,
+) -> Result<(), StudioError> {
+    let mut table = table_of(options)?;
+    if let Some(Item::Value(Value::Array(points))) = table.get_mut("points") {
+        for point in points.iter_mut() {
+            point.decor_mut().set_prefix("\n    ");
+        }
+        points.set_trailing("\n");
+        points.set_trailing_comma(true);
+    }
+    let pups = document
+        .get_mut("nodes")
+        .and_then(|nodes| nodes.get_mut(node)?.get_mut("pups"));
+    let pups = pups.ok_or_else(|| no_node(node))?;
+    match pups {
+        Item::Table(old) if !old.is_dotted() => {
+            // The comments before the old header stay before the new one.
+            let header = if old.is_implicit() {
+                old.iter().find_map(|(_, item)| item.as_table())
+            } else {
+                Some(&*old)
+            };
+            if let Some(header) = header {
+                *table.decor_mut() = header.decor().clone();
+                table.set_position(header.position());
+            }
+            old.clear();
+            old.set_implicit(true);
+            old.insert("points", Item::Table(table));
+        }
+        _ => {
+            let mut inline = InlineTable::new();
+            inline.insert("points", Value::InlineTable(table.into_inline_table()));
+            *pups = Item::Value(Value::InlineTable(inline));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses the name of a node that is there, or that no node can have.
+fn check_new(document: &DocumentMut, name: &str) -> Result<(), StudioError> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    let is_name = name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(is_plain);
+    if !is_name || name.len() > 200 {
+        let message = format!(
+            "the name `{name}` is not made of letters, digits, `_` and `-`, beginning with a letter"
+        );
+        return Err(StudioError::new(message));
+    }
+    let nodes = document.get("nodes").and_then(Item::as_table_like);
+    if nodes.is_some_and(|nodes| nodes.contains_key(name)) {
+        return Err(StudioError::new(format!(
+            "there is a node `{name}` already"
+        )));
+    }
+    Ok(())
+}
+
+fn no_node(name: &str) -> StudioError {
+    StudioError::new(format!("there is no node `{name}`"))
+}
+
+/// A path as a pointer of JSON.
+pub(crate) fn pointer(path: &[Part]) -> String {
+    let parts = path.iter().map(|part| match part {
+        Part::Index(index) => format!("/{index}"),
+        Part::Key(key) => format!("/{}", key.replace('~', "~0").replace('/', "~1")),
+    });
+    parts.collect()
+}

@@ -1,0 +1,90 @@
+//! The control points of textures, to be looked at and to be edited.
+
+use crate::StudioError;
+#[cfg(feature = "server")]
+use crate::message::Points;
+use crate::render::LIMITS;
+#[cfg(feature = "server")]
+use dapple::pups::ControlNet;
+#[cfg(feature = "server")]
+use dapple::recipe::{ControlPoint, Node};
+use dapple::recipe::{ControlPoints, Images, PupsNode, Recipe};
+use serde_json::Value as Json;
+
+/// The most points that are shown.
+const MOST_POINTS: usize = 20_000;
+
+/// The control points of a node, and the edges of their graph.
+#[cfg(feature = "server")]
+pub(crate) fn report(
+    recipe: &Recipe,
+    images: &Images,
+    node: &str,
+    time: f64,
+) -> Result<Points, StudioError> {
+    let nets = recipe.control_nets(node, images, time, &LIMITS)?;
+    let nets = nets.ok_or_else(|| no_points(node))?;
+    let net = nets.nets.first().ok_or_else(|| no_points(node))?;
+    let n_points = net.pups.n_points();
+    if n_points > MOST_POINTS {
+        let message = format!("`{node}` has {n_points} control points, too many to be shown");
+        return Err(StudioError::new(message));
+    }
+    let graph = net
+        .graph()
+        .map_err(|error| StudioError::new(error.to_string()))?;
+    let edge = |(from, axis): (dapple::points::PointIdx, dapple::graph::Axis)| {
+        (from.0, axis.to.0, axis.vector.x, axis.vector.y)
+    };
+    Ok(Points {
+        node: node.to_owned(),
+        editable: matches!(
+            recipe.nodes.get(node),
+            Some(Node::Pups(PupsNode::Points(_)))
+        ),
+        can_be_editable: nets.points.is_some(),
+        layers: nets.nets.len(),
+        extent: recipe.extent,
+        wrap: recipe.wrap,
+        points: points(net),
+        edges: graph.edges().map(edge).collect(),
+    })
+}
+
+#[cfg(feature = "server")]
+fn points(net: &ControlNet) -> Vec<ControlPoint> {
+    let (numbers, orientations) = (net.numbers(), net.orientations());
+    let positions = net.pups.points().positions().iter().enumerate();
+    let point = |(index, position): (usize, &dapple::raster::glam::DVec2)| ControlPoint {
+        x: position.x,
+        y: position.y,
+        value: numbers.as_ref().map_or(0.5, |numbers| numbers[index]),
+        orientation: orientations
+            .as_ref()
+            .map(|orientations| orientations[index]),
+    };
+    positions.map(point).collect()
+}
+
+/// The options of a node of points with the picture of a node.
+pub(crate) fn editable(recipe: &Recipe, images: &Images, node: &str) -> Result<Json, StudioError> {
+    let nets = recipe.control_nets(node, images, 0.0, &LIMITS)?;
+    let nets = nets.ok_or_else(|| no_points(node))?;
+    let points: ControlPoints = nets.points.ok_or_else(|| {
+        let message = format!("the points of `{node}` cannot be edited: it has layers or colors");
+        StudioError::new(message)
+    })?;
+    if points.points.len() > MOST_POINTS {
+        let message = format!(
+            "`{node}` has {} control points, too many to be edited",
+            points.points.len()
+        );
+        return Err(StudioError::new(message));
+    }
+    let options = PupsNode::Points(points).to_json()?;
+    Ok(options.get("points").cloned().unwrap_or(options))
+}
+
+fn no_points(node: &str) -> StudioError {
+    StudioError::new(format!("there is no node `{node}` with control points"))
+}

@@ -1,0 +1,48 @@
+//! A small picture of a recipe, to know it by: its color in light from the upper left.
+
+use crate::StudioError;
+use crate::picture::of_colors;
+use crate::render::{planned, size_of};
+use dapple::color::{Normal, NormalY};
+use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Recipe};
+
+/// Where the light comes from: a unit vector to the right, up, and towards the eye.
+const LIGHT: [f32; 3] = [-0.48, 0.6, 0.64];
+/// The light from everywhere, and that from one side.
+const LIGHTS: [f32; 2] = [0.35, 1.0];
+
+/// The size and the pixels of a picture whose longer side has so many pixels.
+pub(crate) fn lit(
+    recipe: &Recipe,
+    images: &Images,
+    side: u32,
+) -> Result<([u32; 2], Vec<u8>), StudioError> {
+    let mut recipe = recipe.clone();
+    recipe.material.normal_y = NormalY::OpenGl;
+    let plan = planned(&recipe, images, 0.0)?;
+    let size = size_of(recipe.extent, side);
+    let maps = vec![MapKind::Albedo, MapKind::Normal];
+    let options = BakeOptions {
+        size,
+        maps,
+        ..BakeOptions::default()
+    };
+    let mut maps = Bake::new(&plan, &options)?
+        .whole_maps()?
+        .into_iter()
+        .map(|(_, rows)| rows);
+    let (Some(MapRows::Color(colors)), Some(MapRows::Normal(normals))) = (maps.next(), maps.next())
+    else {
+        return Err(StudioError::new("a map was not baked"));
+    };
+    let lit = colors.zip_map(&normals, |&color, normal| color * light(normal));
+    let lit = lit.map_err(|error| StudioError::new(error.to_string()))?;
+    Ok((size, of_colors(&lit)))
+}
+
+/// How bright a place with this normal is.
+fn light(normal: &Normal) -> f32 {
+    let parts = normal.to_array().into_iter().zip(LIGHT);
+    let facing: f32 = parts.map(|(a, b)| a * b).sum();
+    LIGHTS[0] + LIGHTS[1] * facing.max(0.0)
+}

@@ -1,0 +1,308 @@
+//! What the schema of recipes says of a recipe: where inputs and seeds are, and which kinds of nodes there are.
+
+use crate::Part;
+use dapple::recipe::{KINDS, Recipe};
+use serde::Serialize;
+use serde_json::Value as Json;
+use std::sync::OnceLock;
+
+/// The role of a value of a recipe.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// An input: a number, a color or the name of a node.
+    Input,
+    /// A seed, or a name to draw by.
+    Seed,
+}
+
+/// A place of a recipe that has a role, with its value, or the one by default where nothing is written.
+#[derive(Clone, Debug)]
+pub(crate) struct Found<'a> {
+    pub(crate) path: Vec<Part>,
+    pub(crate) role: Role,
+    pub(crate) value: Option<&'a Json>,
+    pub(crate) is_written: bool,
+}
+
+/// A kind of node, for a list to choose from.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Kind {
+    name: &'static str,
+    /// What it is for, such as `color`.
+    group: &'static str,
+    about: String,
+    /// The names of its inputs; `*` for any number of them.
+    inputs: Vec<String>,
+    /// What a new node of this kind begins with.
+    value: Json,
+}
+
+/// The schema of recipes.
+pub(crate) fn schema() -> &'static Json {
+    static SCHEMA: OnceLock<Json> = OnceLock::new();
+    SCHEMA.get_or_init(Recipe::schema)
+}
+
+/// Where a recipe has inputs and seeds, written or not.
+pub(crate) fn roles(recipe: &Json) -> Vec<Found<'_>> {
+    let mut walk = Walk::default();
+    walk.value(schema(), recipe);
+    walk.found
+}
+
+#[derive(Default)]
+struct Walk<'a> {
+    path: Vec<Part>,
+    found: Vec<Found<'a>>,
+}
+
+impl<'a> Walk<'a> {
+    fn value(&mut self, schema: &'a Json, value: &'a Json) {
+        if let Some(role) = role(schema) {
+            let is_used = |found: &Found<'_>| found.path == self.path;
+            if !self.found.iter().rev().take(8).any(is_used) {
+                self.note(role, Some(value), true);
+            }
+            return;
+        }
+        let schema = resolved(schema);
+        // A type that is nothing but an input.
+        if schema.get("$ref").is_some() {
+            return self.value(schema, value);
+        }
+        for branch in branches(schema) {
+            self.value(branch, value);
+        }
+        match value {
+            Json::Object(entries) => {
+                let properties = schema.get("properties");
+                let others = schema.get("additionalProperties");
+                for (key, value) in entries {
+                    if let Some(inner) = properties.and_then(|all| all.get(key)).or(others) {
+                        self.within(Part::Key(key.clone()), |walk| walk.value(inner, value));
+                    }
+                }
+                // A variant of another name says nothing of what is missing here.
+                let is_this = requirements(schema).all(|key| entries.contains_key(key));
+                if is_this {
+                    self.missing(schema, entries);
+                }
+            }
+            Json::Array(list) => {
+                if let Some(inner) = schema.get("items") {
+                    for (index, value) in list.iter().enumerate() {
+                        self.within(Part::Index(index), |walk| walk.value(inner, value));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Notes the inputs of a table that are not written.
+    fn missing(&mut self, schema: &'a Json, entries: &serde_json::Map<String, Json>) {
+        let Some(Json::Object(properties)) = schema.get("properties") else {
+            return;
+        };
+        for (key, inner) in properties {
+            let is_old = inner.get("deprecated").is_some();
+            if let Some(role) = optional_role(inner)
+                && !is_old
+                && !entries.contains_key(key)
+            {
+                let default = inner.get("default").filter(|value| !value.is_null());
+                self.within(Part::Key(key.clone()), |walk| {
+                    walk.note(role, default, false);
+                });
+            }
+        }
+    }
+
+    fn note(&mut self, role: Role, value: Option<&'a Json>, is_written: bool) {
+        let path = self.path.clone();
+        self.found.push(Found {
+            path,
+            role,
+            value,
+            is_written,
+        });
+    }
+
+    fn within(&mut self, part: Part, visit: impl FnOnce(&mut Self)) {
+        self.path.push(part);
+        visit(self);
+        self.path.pop();
+    }
+}
+
+/// The role of values of a schema that is nothing but a reference.
+fn role(schema: &Json) -> Option<Role> {
+    match schema.get("$ref")?.as_str()? {
+        "#/$defs/Input" => Some(Role::Input),
+        "#/$defs/NodeSeed" => Some(Role::Seed),
+        _ => None,
+    }
+}
+
+/// The role of values that may be left out.
+fn optional_role(schema: &Json) -> Option<Role> {
+    role(schema).or_else(|| schema.get("anyOf")?.as_array()?.iter().find_map(role))
+}
+
+fn resolved(schema_or_reference: &Json) -> &Json {
+    let name = schema_or_reference.get("$ref").and_then(Json::as_str);
+    let definition = name.and_then(|name| schema().pointer(name.strip_prefix('#')?));
+    definition.unwrap_or(schema_or_reference)
+}
+
+fn branches(schema: &Json) -> impl Iterator<Item = &Json> {
+    let all = ["anyOf", "oneOf", "allOf"].into_iter();
+    all.filter_map(|key| schema.get(key)?.as_array()).flatten()
+}
+
+fn requirements(schema: &Json) -> impl Iterator<Item = &str> {
+    let all = schema.get("required").and_then(Json::as_array);
+    all.into_iter().flatten().filter_map(Json::as_str)
+}
+
+/// What kinds of nodes are for, and what a new node begins with. An input called `?` is to be chosen.
+const GROUPS: [(&str, &str, &str); 28] = [
+    ("worley", "cells and noise", "{}"),
+    ("pups", "cells and noise", r#"{"cells":{}}"#),
+    ("wavelet", "cells and noise", "{}"),
+    ("noise", "cells and noise", "{}"),
+    ("coordinate", "position", r#"{"along":[1.0,0.0]}"#),
+    ("distance", "position", r#"{"center":[0.5,0.5]}"#),
+    ("image", "color and images", r#"{"file":"image.png"}"#),
+    ("color", "color and images", r##""#c08040""##),
+    ("add", "arithmetic", "[0.0,0.0]"),
+    ("subtract", "arithmetic", "[0.0,0.0]"),
+    ("multiply", "arithmetic", "[1.0,1.0]"),
+    ("divide", "arithmetic", "[1.0,1.0]"),
+    ("minimum", "arithmetic", "[0.0,1.0]"),
+    ("maximum", "arithmetic", "[0.0,1.0]"),
+    ("absolute", "arithmetic", "0.0"),
+    ("power", "arithmetic", r#"{"input":0.5,"exponent":2.0}"#),
+    ("wave", "shape", r#"{"input":0.5}"#),
+    ("levels", "shape", r#"{"input":0.5}"#),
+    (
+        "profile",
+        "shape",
+        r#"{"input":0.5,"shape":{"spots":{"radius":0.5}}}"#,
+    ),
+    ("mix", "shape", r#"{"from":0.0,"to":1.0,"by":0.5}"#),
+    ("warp", "shape", r#"{"input":0.5,"x":0.0,"y":0.0}"#),
+    (
+        "ramp",
+        "color and images",
+        r##"{"input":0.5,"colors":["#202020","#f0f0f0"]}"##,
+    ),
+    ("tile", "whole tile", r#"{"input":0.5}"#),
+    ("disturb", "whole tile", r#"{"input":0.5}"#),
+    (
+        "match_borders",
+        "whole tile",
+        r#"{"input":0.5,"border":0.5}"#,
+    ),
+    ("corner_tiles", "whole tile", r#"{"inputs":[0.25,0.75]}"#),
+    (
+        "blend_map",
+        "whole tile",
+        r#"{"input":0.5,"feature_size":0.5}"#,
+    ),
+    ("blend", "whole tile", r#"{"layers":[{"input":0.5}]}"#),
+];
+
+/// All kinds of nodes, in the order of the reader.
+pub(crate) fn kinds() -> Vec<Kind> {
+    KINDS.into_iter().map(kind).collect()
+}
+
+fn kind(name: &'static str) -> Kind {
+    let variant = resolved(&schema()["properties"]["nodes"]["additionalProperties"]);
+    let mut variants = branches(variant);
+    let variant = variants.find(|variant| variant["properties"].get(name).is_some());
+    let variant = variant.unwrap_or(&Json::Null);
+    let options = resolved(&variant["properties"][name]);
+    let inputs = match options.get("properties").and_then(Json::as_object) {
+        _ if role(options) == Some(Role::Input) => vec!["input".to_owned()],
+        None if options.get("items").and_then(role).is_some() => vec!["*".to_owned()],
+        None => Vec::new(),
+        Some(properties) => {
+            let inputs = properties
+                .iter()
+                .filter(|(_, inner)| is_input_or_list(inner));
+            inputs.map(|(key, _)| key.clone()).collect()
+        }
+    };
+    let known = GROUPS.iter().find(|(other, ..)| *other == name);
+    let (_, group, example) = known.copied().unwrap_or((name, "other", "{}"));
+    Kind {
+        name,
+        group,
+        about: variant["description"]
+            .as_str()
+            .unwrap_or_default()
+            .to_owned(),
+        inputs,
+        value: serde_json::from_str(example).unwrap_or_default(),
+    }
+}
+
+fn is_input_or_list(schema: &Json) -> bool {
+    optional_role(schema) == Some(Role::Input)
+        || schema.get("items").and_then(role) == Some(Role::Input)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{GROUPS, KINDS, Role, kinds, roles};
+    use crate::data::json_of_table;
+    use dapple::recipe::{Images, Input, Plan, Recipe};
+    use serde_json::json;
+    use toml_edit::DocumentMut;
+
+    #[test]
+    fn inputs_of_the_builtin_recipes_are_those_of_their_nodes() {
+        for name in Recipe::builtin_names() {
+            let text = Recipe::builtin_text(name).unwrap();
+            let data = json_of_table(&text.parse::<DocumentMut>().unwrap());
+            let found = roles(&data);
+            for (name, node) in &Recipe::from_toml(text).unwrap().nodes {
+                let of_node = found.iter().filter(|found| {
+                    found.role == Role::Input
+                        && found.path[0] == "nodes".into()
+                        && found.path[1] == name.as_str().into()
+                });
+                let mut found: Vec<_> = of_node.filter_map(|found| found.value?.as_str()).collect();
+                let inputs = node.inputs();
+                let names = inputs.iter().filter_map(|input| match input {
+                    Input::Node(name) => Some(name.clone()),
+                    _ => None,
+                });
+                let mut names: Vec<_> = names.collect();
+                found.retain(|text| !text.starts_with('#'));
+                found.sort_unstable();
+                names.sort();
+                assert_eq!(found, names, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_kind_begins_with_a_node_that_can_be_read() {
+        assert_eq!(GROUPS.map(|(name, ..)| name), KINDS);
+        for kind in kinds() {
+            let recipe = json!({
+                "dapple": 1, "extent": [4, 4], "material": {}, "nodes": { "a": { kind.name: kind.value } },
+            });
+            let recipe = Recipe::from_json(&recipe.to_string());
+            let recipe = recipe.unwrap_or_else(|error| panic!("{}: {error}", kind.name));
+            if kind.name != "image" {
+                Plan::new(&recipe, &Images::new(), 0.0)
+                    .unwrap_or_else(|error| panic!("{}: {error}", kind.name));
+            }
+            assert!(!kind.about.is_empty(), "{}", kind.name);
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! How well the maps of a recipe repeat.
+
+use crate::StudioError;
+use crate::message::MapSeams;
+use crate::render::{MAX_SIDE, planned};
+use dapple::raster::Raster;
+use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Recipe};
+use dapple::tile::{SeamOptions, SeamReport, TileError};
+use serde_json::{Value as Json, json};
+
+/// The maps that are looked at: all others are made of these.
+const MAPS: [MapKind; 4] = [
+    MapKind::Height,
+    MapKind::Normal,
+    MapKind::Albedo,
+    MapKind::Roughness,
+];
+
+/// The reports of the maps of a recipe.
+pub(crate) fn report(
+    recipe: &Recipe,
+    images: &Images,
+    size: [u32; 2],
+) -> Result<Vec<MapSeams>, StudioError> {
+    if size.iter().any(|&side| side == 0 || side > MAX_SIDE) {
+        return Err(StudioError::new(format!(
+            "a side of a picture is from 1 to {MAX_SIDE} pixels"
+        )));
+    }
+    let plan = planned(recipe, images, 0.0)?;
+    let options = BakeOptions {
+        size,
+        maps: MAPS.to_vec(),
+        ..BakeOptions::default()
+    };
+    let maps = Bake::new(&plan, &options)?.whole_maps()?;
+    let axes = SeamOptions {
+        axes: recipe.wrap,
+        ..SeamOptions::default()
+    };
+    let report = |(kind, rows): &(MapKind, MapRows)| {
+        let worst = channels(rows)?
+            .into_iter()
+            .map(|channel| SeamReport::of(&channel, &axes));
+        let reports = worst.collect::<Result<Vec<_>, _>>()?;
+        let ratio = |report: &SeamReport| {
+            let sides = [&report.seams[0].x, &report.seams[0].y];
+            sides
+                .into_iter()
+                .flatten()
+                .fold(0.0, |worst: f64, seam| worst.max(seam.ratio))
+        };
+        let worst = reports.iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+        Ok(worst.map(|report| map_seams(*kind, report)))
+    };
+    let maps = maps
+        .iter()
+        .map(report)
+        .collect::<Result<Vec<_>, TileError>>();
+    let maps = maps.map_err(|error| StudioError::new(error.to_string()))?;
+    Ok(maps.into_iter().flatten().collect())
+}
+
+fn map_seams(kind: MapKind, report: &SeamReport) -> MapSeams {
+    let side = |seam: Option<dapple::tile::SeamRatio>| -> Option<Json> {
+        let seam = seam?;
+        Some(json!({ "ratio": seam.ratio }))
+    };
+    let seam = &report.seams[0];
+    MapSeams {
+        name: kind.name().to_owned(),
+        x: side(seam.x),
+        y: side(seam.y),
+        text: report.to_string(),
+    }
+}
+
+/// The numbers of a map, a raster for each channel.
+fn channels(rows: &MapRows) -> Result<Vec<Raster<f32>>, TileError> {
+    Ok(match rows {
+        MapRows::Gray(raster) => vec![raster.clone()],
+        MapRows::Color(raster) => split(raster, |color| color.to_array()),
+        MapRows::Normal(raster) => split(raster, |normal| normal.to_array()),
+        MapRows::Packed(raster) => split(raster, |parts| *parts),
+    })
+}
+
+fn split<T: Sync>(
+    raster: &Raster<T>,
+    parts: impl Fn(&T) -> [f32; 3] + Copy + Sync,
+) -> Vec<Raster<f32>> {
+    (0..3)
+        .map(|index| raster.map(|pixel| parts(pixel)[index]))
+        .collect()
+}

@@ -1,0 +1,238 @@
+//! The local server of the page.
+//!
+//! It answers on 127.0.0.1 alone, and only to a page that was opened with the secret of this run: see `guard.rs`. Each page
+//! has a session, which answers at once, and a thread that draws, of which only the newest state is kept.
+
+mod disk;
+mod exports;
+mod files;
+mod flow;
+mod gallery;
+mod guard;
+mod page;
+mod socket;
+mod worker;
+
+use crate::message::{Export, Mode, Named, Shape};
+use crate::{Renderer, StudioError};
+use axum::Router;
+use axum::extract::{Request, State};
+use axum::http::{Method, StatusCode};
+use axum::response::{IntoResponse as _, Response};
+use axum::serve::ListenerExt as _;
+use dapple::color::LinearRgb;
+use dapple::raster::Raster;
+use dapple::recipe::{Images, Memory, Recipe};
+use disk::Disk;
+use exports::Exports;
+use files::Folder;
+use gallery::Gallery;
+use guard::Guard;
+use std::net::Ipv4Addr;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+use tokio::net::TcpListener;
+use tokio::sync::Notify;
+
+/// What the program around the server does: it reads images and makes files, so that they are those of its other commands.
+pub trait Host: Send + Sync {
+    /// The images that a recipe names, from its folder. The names have been checked.
+    ///
+    /// # Errors
+    ///
+    /// If one of them cannot be read.
+    fn images(&self, recipe: &Recipe, folder: &std::path::Path) -> Result<Images, StudioError>;
+
+    /// The files of a bake, by their names.
+    ///
+    /// # Errors
+    ///
+    /// What the bake refuses.
+    fn export(
+        &self,
+        recipe: &Recipe,
+        folder: &std::path::Path,
+        export: &Export,
+    ) -> Result<Vec<ExportedFile>, StudioError>;
+
+    /// A lit picture of a recipe on a thing.
+    ///
+    /// # Errors
+    ///
+    /// What the bake refuses.
+    fn preview(
+        &self,
+        recipe: &Recipe,
+        images: &Images,
+        time: f64,
+        shape: Shape,
+    ) -> Result<Raster<LinearRgb>, StudioError>;
+
+    /// The programs that files can be made for.
+    fn presets(&self) -> Vec<Named>;
+}
+
+/// A file of an export.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExportedFile {
+    /// Its name, without a folder.
+    pub name: String,
+    /// What is in it.
+    pub bytes: Vec<u8>,
+}
+
+/// How the server is run.
+#[derive(Clone, Debug, Default)]
+pub struct ServeOptions {
+    /// The port; any free one for 0, which is the default.
+    pub port: u16,
+    /// Whether the browser is left alone.
+    pub no_open: bool,
+    /// Whether the server ends when the last page is closed.
+    pub once: bool,
+    /// What pages may do.
+    pub mode: Mode,
+    /// The recipe that a page begins with: a built-in one, or a file in the folder.
+    pub recipe: Option<String>,
+    /// The folder of the recipes and their images; the current one by default.
+    pub folder: PathBuf,
+    /// A folder with another page than the one that is part of the program, for those who work on the page.
+    pub dist: Option<PathBuf>,
+}
+
+/// What all pages share.
+struct Shared {
+    options: ServeOptions,
+    host: Arc<dyn Host>,
+    guard: Guard,
+    folder: Folder,
+    exports: Exports,
+    /// What was drawn for any page.
+    memory: Memory,
+    /// Small pictures of recipes, by their texts and sides.
+    gallery: Gallery,
+    disk: Disk,
+    n_pages: AtomicUsize,
+    closed: Notify,
+}
+
+/// How long a page may be gone before a server with `once` ends: a page that is loaded again comes back.
+const GRACE: Duration = Duration::from_secs(2);
+
+/// Whether the page is part of this program. Without it the server answers, and its page says how to build it.
+#[must_use]
+pub fn has_page() -> bool {
+    page::is_built()
+}
+
+/// Serves the page until the process ends or, with [`once`](ServeOptions::once), until the last page is closed. Gives the
+/// address to `tell` as soon as it can be opened.
+///
+/// # Errors
+///
+/// If the port is taken, or the folder cannot be read.
+pub fn serve(
+    options: ServeOptions,
+    host: Arc<dyn Host>,
+    tell: impl FnOnce(&str),
+) -> Result<(), StudioError> {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build();
+    let runtime = runtime
+        .map_err(|error| StudioError::new(format!("the server cannot be started: {error}")))?;
+    runtime.block_on(run(options, host, tell))
+}
+
+async fn run(
+    options: ServeOptions,
+    host: Arc<dyn Host>,
+    tell: impl FnOnce(&str),
+) -> Result<(), StudioError> {
+    let port = options.port;
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
+        .await
+        .map_err(|error| {
+            StudioError::new(format!("port {port} cannot be had: {error}"))
+                .with_hint("leave --port out for any free one")
+        })?;
+    let port = listener.local_addr().map_or(port, |address| address.port());
+    let guard = Guard::new(port)?;
+    let url = guard.url();
+    let folder = Folder::new(&options.folder)?;
+    let disk = Disk::new(folder.path());
+    let no_open = options.no_open;
+    let shared = Arc::new(Shared {
+        options,
+        host,
+        guard,
+        exports: Exports::default(),
+        memory: Renderer::memory(),
+        gallery: Gallery::default(),
+        disk,
+        folder,
+        n_pages: AtomicUsize::new(0),
+        closed: Notify::new(),
+    });
+    tell(&url);
+    if !no_open {
+        // Where no browser can be opened, the address was told.
+        let _ = open::that_detached(&url);
+    }
+    let end = shared.clone();
+    let router = Router::new().fallback(answer).with_state(shared);
+    // Small messages do not wait for others.
+    let listener = listener.tap_io(|socket| {
+        let _ = socket.set_nodelay(true);
+    });
+    let served =
+        axum::serve(listener, router).with_graceful_shutdown(async move { end.ended().await });
+    served
+        .await
+        .map_err(|error| StudioError::new(format!("the server has ended: {error}")))
+}
+
+impl Shared {
+    /// Waits until the last page is closed, where the server ends then.
+    async fn ended(&self) {
+        loop {
+            self.closed.notified().await;
+            if !self.options.once {
+                continue;
+            }
+            tokio::time::sleep(GRACE).await;
+            if self.n_pages.load(Ordering::SeqCst) == 0 {
+                return;
+            }
+        }
+    }
+}
+
+/// Answers a request.
+async fn answer(State(shared): State<Arc<Shared>>, request: Request) -> Response {
+    let mut response = match shared.guard.check(&request) {
+        Err(refusal) => (StatusCode::FORBIDDEN, refusal).into_response(),
+        Ok(()) => route(shared.clone(), request).await,
+    };
+    shared.guard.protect(response.headers_mut());
+    response
+}
+
+async fn route(shared: Arc<Shared>, request: Request) -> Response {
+    if request.method() != Method::GET {
+        return StatusCode::METHOD_NOT_ALLOWED.into_response();
+    }
+    let path = request.uri().path().to_owned();
+    if path == "/ws" {
+        return socket::upgrade(shared, request).await;
+    }
+    if let Some(name) = path.strip_prefix("/export/") {
+        return shared.exports.get(name);
+    }
+    if let Some(name) = path.strip_prefix("/image/") {
+        return shared.folder.image(name);
+    }
+    page::file(&path, shared.options.dist.as_deref())
+}

@@ -1,0 +1,322 @@
+//! The socket of a page: messages in, messages and pictures out.
+
+use super::Shared;
+use super::disk::QUIET;
+use super::flow::Flow;
+use super::worker::{Sample, Task, TaskKind, Worker};
+use crate::message::{Hello, Mode, Output, Reply, Request};
+use crate::{Session, Shown, StudioError};
+use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
+use axum::extract::{FromRequestParts as _, Request as HttpRequest};
+use axum::http::StatusCode;
+use axum::response::{IntoResponse as _, Response};
+use dapple::recipe::{MAX_TEXT, Recipe};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use tokio::sync::mpsc::unbounded_channel;
+
+/// The most bytes of a message: a text of the largest recipe, with the signs that JSON adds.
+const MAX_MESSAGE: usize = 2 * MAX_TEXT;
+/// The most pages at once.
+const MOST_PAGES: usize = 16;
+
+/// Makes a socket of a request.
+pub(super) async fn upgrade(shared: Arc<Shared>, request: HttpRequest) -> Response {
+    let (mut parts, _) = request.into_parts();
+    match WebSocketUpgrade::from_request_parts(&mut parts, &()).await {
+        Err(refusal) => refusal.into_response(),
+        Ok(_) if shared.n_pages.load(Ordering::SeqCst) >= MOST_PAGES => {
+            StatusCode::SERVICE_UNAVAILABLE.into_response()
+        }
+        Ok(upgrade) => {
+            let upgrade = upgrade
+                .max_message_size(MAX_MESSAGE)
+                .max_frame_size(MAX_MESSAGE);
+            upgrade.on_upgrade(move |socket| async move {
+                shared.n_pages.fetch_add(1, Ordering::SeqCst);
+                // A page that has gone says so by its socket, and there is nobody to tell.
+                let _ = Page::serve(shared.clone(), socket).await;
+                shared.n_pages.fetch_sub(1, Ordering::SeqCst);
+                shared.closed.notify_one();
+            })
+        }
+    }
+}
+
+/// A page with its socket.
+struct Page {
+    shared: Arc<Shared>,
+    socket: WebSocket,
+    session: Session,
+    worker: Worker,
+    flow: Flow,
+    /// The file that is open, with the hash of what was read or written last.
+    file: Option<(String, String)>,
+}
+
+/// The socket has ended.
+struct Ended;
+
+impl From<axum::Error> for Ended {
+    fn from(_: axum::Error) -> Self {
+        Self
+    }
+}
+
+impl From<StudioError> for Ended {
+    fn from(_: StudioError) -> Self {
+        Self
+    }
+}
+
+impl Page {
+    async fn serve(shared: Arc<Shared>, socket: WebSocket) -> Result<(), Ended> {
+        let (sender, mut outputs) = unbounded_channel();
+        let mut changes = shared.disk.changes();
+        let mut page = Self {
+            worker: Worker::new(shared.clone(), sender)?,
+            session: Session::new(),
+            flow: Flow::default(),
+            file: None,
+            shared,
+            socket,
+        };
+        page.greet().await?;
+        loop {
+            tokio::select! {
+                message = page.socket.recv() => match message {
+                    Some(message) => page.hear(message?).await?,
+                    None => return Ok(()),
+                },
+                Some(output) = outputs.recv() => page.pass_on(output).await?,
+                Ok(()) = changes.changed() => {
+                    tokio::time::sleep(QUIET).await;
+                    changes.mark_unchanged();
+                    page.compare_with_disk().await?;
+                }
+            }
+        }
+    }
+
+    /// Says what there is, and opens what the command was given.
+    async fn greet(&mut self) -> Result<(), Ended> {
+        let options = &self.shared.options;
+        let mut hello = Hello::new();
+        hello.mode = options.mode;
+        hello.files = self.shared.folder.recipes();
+        hello.presets = self.shared.host.presets();
+        hello.open = options.recipe.clone();
+        let first = options.recipe.clone();
+        self.say(Reply::Hello(Box::new(hello))).await?;
+        if let Some(name) = first {
+            let is_builtin = Recipe::builtin_text(&name).is_ok();
+            let (builtin, file) = if is_builtin {
+                (Some(name), None)
+            } else {
+                (None, Some(name))
+            };
+            self.answer(Request::Open {
+                builtin,
+                file,
+                text: None,
+            })
+            .await?;
+        }
+        Ok(())
+    }
+
+    async fn hear(&mut self, message: Message) -> Result<(), Ended> {
+        match message {
+            Message::Text(text) => match serde_json::from_str(&text) {
+                Ok(request) => self.answer(request).await,
+                Err(error) => {
+                    let error = StudioError::new(format!("the message cannot be read: {error}"));
+                    self.say(Reply::refused("message", &error)).await
+                }
+            },
+            Message::Binary(_) => {
+                let error = StudioError::new("messages are text");
+                self.say(Reply::refused("message", &error)).await
+            }
+            Message::Close(_) => Err(Ended),
+            Message::Ping(_) | Message::Pong(_) => Ok(()),
+        }
+    }
+
+    async fn answer(&mut self, request: Request) -> Result<(), Ended> {
+        if let Request::Ack { map, .. } = request {
+            return match self.flow.drawn(map) {
+                Some(picture) => self.show(&picture).await,
+                None => Ok(()),
+            };
+        }
+        let images = |recipe: &Recipe| self.worker.images(recipe);
+        let replies = match self.session.handle(&request, &images) {
+            Some(replies) => {
+                if let Request::Open { .. } = request {
+                    self.file = None;
+                }
+                replies
+            }
+            None => match self.answer_with_files(request) {
+                Ok(replies) => replies,
+                Err((what, error)) => vec![Reply::refused(what, &error)],
+            },
+        };
+        for reply in replies {
+            self.say(reply).await?;
+        }
+        if let Some(job) = self.session.job() {
+            self.worker.draw(job);
+        }
+        Ok(())
+    }
+
+    /// Answers a request that needs files or takes long.
+    fn answer_with_files(
+        &mut self,
+        request: Request,
+    ) -> Result<Vec<Reply>, (&'static str, StudioError)> {
+        match request {
+            Request::Open {
+                file: Some(file),
+                builtin: None,
+                text: None,
+            } => self.open(file).map_err(|error| ("open", error)),
+            Request::Seams { size } => Ok(self.ask("seams", TaskKind::Seams { size })),
+            Request::Points { node } => {
+                let time = self.session.view().time;
+                Ok(self.ask("points", TaskKind::Points { node, time }))
+            }
+            Request::Code { kind, size, maps } => {
+                let name = self.file.as_ref().map(|(name, _)| name.clone());
+                let name = name.unwrap_or_default();
+                let code = TaskKind::Code {
+                    kind,
+                    size,
+                    maps,
+                    name,
+                };
+                Ok(self.ask("code", code))
+            }
+            Request::Gallery { size } => {
+                self.worker.sample(self.samples(size));
+                Ok(Vec::new())
+            }
+            Request::Export(export) => Ok(self.ask("export", TaskKind::Export(export))),
+            Request::Save {
+                text,
+                file,
+                overwrite,
+                seen,
+            } => {
+                let seen = seen.as_deref();
+                let saved = self.save(file, &text, seen, overwrite);
+                saved.map_err(|error| ("save", error))
+            }
+            _ => Err((
+                "open",
+                StudioError::new("give one of `builtin`, `file` and `text`"),
+            )),
+        }
+    }
+
+    /// Has the worker answer.
+    fn ask(&self, what: &'static str, kind: TaskKind) -> Vec<Reply> {
+        let document = self.session.document().clone();
+        self.worker.ask(Task {
+            what,
+            document,
+            kind,
+        });
+        Vec::new()
+    }
+
+    fn open(&mut self, file: String) -> Result<Vec<Reply>, StudioError> {
+        let (text, hash) = self.shared.folder.read(&file)?;
+        self.file = Some((file.clone(), hash.clone()));
+        Ok(self.session.open(&text, Some((file, hash))))
+    }
+
+    fn save(
+        &mut self,
+        file: String,
+        text: &str,
+        seen: Option<&str>,
+        overwrite: bool,
+    ) -> Result<Vec<Reply>, StudioError> {
+        if self.shared.options.mode != Mode::Studio {
+            return Err(StudioError::new("here recipes are only looked at"));
+        }
+        let hash = self.shared.folder.save(&file, text, seen, overwrite)?;
+        self.file = Some((file.clone(), hash.clone()));
+        Ok(vec![Reply::Saved { file, hash }])
+    }
+
+    /// The recipes of which there are small pictures: the built-in ones, and those of the folder.
+    fn samples(&self, side: u32) -> Vec<Sample> {
+        let builtin = |(index, name): (u16, &str)| Sample {
+            shown: Shown::Builtin(index),
+            text: Recipe::builtin_text(name).unwrap_or_default().to_owned(),
+            side,
+        };
+        let folder = &self.shared.folder;
+        let file = |(index, name): (u16, String)| {
+            let (text, _) = folder.read(&name).ok()?;
+            let shown = Shown::File(index);
+            Some(Sample { shown, text, side })
+        };
+        let files = (0..).zip(folder.recipes()).filter_map(file);
+        (0..)
+            .zip(Recipe::builtin_names())
+            .map(builtin)
+            .chain(files)
+            .collect()
+    }
+
+    /// Tells the page if the file or an image of it has changed.
+    async fn compare_with_disk(&mut self) -> Result<(), Ended> {
+        if let Some((file, known)) = &mut self.file
+            && let Ok((text, hash)) = self.shared.folder.read(file)
+            && *known != hash
+        {
+            known.clone_from(&hash);
+            let file = file.clone();
+            self.say(Reply::Disk { text, hash, file }).await?;
+        }
+        if self
+            .session
+            .document()
+            .recipe()
+            .is_ok_and(|recipe| !recipe.image_files().is_empty())
+        {
+            self.session.renew();
+            if let Some(job) = self.session.job() {
+                self.worker.draw(job);
+            }
+        }
+        Ok(())
+    }
+
+    async fn pass_on(&mut self, output: Output) -> Result<(), Ended> {
+        match output {
+            Output::Reply(reply) => self.say(reply).await,
+            Output::Picture(picture) => match self.flow.put(picture) {
+                Some(picture) => self.show(&picture).await,
+                None => Ok(()),
+            },
+        }
+    }
+
+    async fn show(&mut self, picture: &crate::Picture) -> Result<(), Ended> {
+        Ok(self
+            .socket
+            .send(Message::Binary(picture.to_bytes().into()))
+            .await?)
+    }
+
+    async fn say(&mut self, reply: Reply) -> Result<(), Ended> {
+        let text = serde_json::to_string(&reply).map_err(|_| Ended)?;
+        Ok(self.socket.send(Message::Text(text.into())).await?)
+    }
+}

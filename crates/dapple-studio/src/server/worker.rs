@@ -1,0 +1,322 @@
+//! The thread that draws what one page shows. What is drawn is always the newest; what was asked for besides comes before.
+
+use super::Shared;
+use crate::message::{CodeKind, Export, Output, Reply, Shape};
+use crate::render::{Job, Renderer, World};
+use crate::{Document, Picture, Shown, StudioError, code, points, seams};
+use dapple::color::LinearRgb;
+use dapple::raster::Raster;
+use dapple::recipe::{Images, Recipe};
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Instant, SystemTime};
+use tokio::sync::mpsc::UnboundedSender;
+
+/// Something that a page asked for besides pictures.
+pub(super) struct Task {
+    /// The type of the request.
+    pub(super) what: &'static str,
+    pub(super) document: Arc<Document>,
+    pub(super) kind: TaskKind,
+}
+
+pub(super) enum TaskKind {
+    Seams {
+        size: [u32; 2],
+    },
+    Points {
+        node: String,
+        time: f64,
+    },
+    Code {
+        kind: CodeKind,
+        size: Option<[u32; 2]>,
+        maps: Option<Vec<String>>,
+        name: String,
+    },
+    Export(Export),
+}
+
+/// What the thread has to do.
+#[derive(Default)]
+struct Queue {
+    job: Option<Job>,
+    tasks: VecDeque<Task>,
+    /// Small pictures for which there is time when nothing else is to be done.
+    samples: VecDeque<Sample>,
+    is_over: bool,
+}
+
+/// A small picture of a recipe.
+pub(super) struct Sample {
+    pub(super) shown: Shown,
+    pub(super) text: String,
+    pub(super) side: u32,
+}
+
+/// The end of the thread that a page holds.
+pub(super) struct Worker {
+    inside: Arc<Inside>,
+}
+
+struct Inside {
+    shared: Arc<Shared>,
+    queue: Mutex<Queue>,
+    changed: Condvar,
+    /// The newest generation that is wanted.
+    newest: AtomicU32,
+    start: Instant,
+    output: UnboundedSender<Output>,
+    images: Mutex<Loaded>,
+}
+
+/// The images of the last recipe, and when their files were written.
+#[derive(Default)]
+struct Loaded {
+    times: Vec<(String, Option<SystemTime>)>,
+    images: Images,
+}
+
+/// The most tasks that wait.
+const MOST_TASKS: usize = 32;
+
+impl Worker {
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "how long drawing takes is told, and decides on the size of drafts"
+    )]
+    pub(super) fn new(
+        shared: Arc<Shared>,
+        output: UnboundedSender<Output>,
+    ) -> Result<Self, StudioError> {
+        let inside = Arc::new(Inside {
+            shared,
+            queue: Mutex::default(),
+            changed: Condvar::new(),
+            newest: AtomicU32::new(0),
+            start: Instant::now(),
+            output,
+            images: Mutex::default(),
+        });
+        let of_thread = inside.clone();
+        let thread = std::thread::Builder::new().name("studio".to_owned());
+        let spawned = thread.spawn(move || of_thread.run());
+        spawned.map_err(|error| StudioError::new(format!("no thread can be started: {error}")))?;
+        Ok(Self { inside })
+    }
+
+    /// Draws this next, in place of what waits and of what is being drawn.
+    pub(super) fn draw(&self, job: Job) {
+        self.inside.newest.store(job.generation, Ordering::SeqCst);
+        self.inside.lock().job = Some(job);
+        self.inside.changed.notify_one();
+    }
+
+    /// Makes small pictures when there is time.
+    pub(super) fn sample(&self, samples: Vec<Sample>) {
+        self.inside.lock().samples = samples.into();
+        self.inside.changed.notify_one();
+    }
+
+    /// The images of a recipe.
+    pub(super) fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
+        World::images(&*self.inside, recipe)
+    }
+
+    /// Does this as well.
+    pub(super) fn ask(&self, task: Task) {
+        let mut queue = self.inside.lock();
+        if queue.tasks.len() >= MOST_TASKS {
+            drop(queue);
+            let error = StudioError::new("too much is asked for at once");
+            self.inside.put(Reply::refused(task.what, &error).into());
+            return;
+        }
+        queue.tasks.push_back(task);
+        drop(queue);
+        self.inside.changed.notify_one();
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        let mut queue = self.inside.lock();
+        *queue = Queue {
+            is_over: true,
+            ..Queue::default()
+        };
+        drop(queue);
+        self.inside.changed.notify_one();
+    }
+}
+
+/// What the thread does next.
+enum Next {
+    Draw(Job),
+    Do(Task),
+    Sample(Sample),
+}
+
+impl Inside {
+    fn lock(&self) -> MutexGuard<'_, Queue> {
+        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn run(&self) {
+        let mut renderer = Renderer::new(&self.shared.memory);
+        while let Some(next) = self.next() {
+            let what = match &next {
+                Next::Draw(_) => "view",
+                Next::Do(task) => task.what,
+                Next::Sample(_) => "gallery",
+            };
+            // A defect in a method must not end the server while somebody works.
+            let done = catch_unwind(AssertUnwindSafe(|| match next {
+                Next::Draw(job) => renderer.draw(&job, self),
+                Next::Do(task) => self.perform(task),
+                Next::Sample(sample) => self.show(&sample),
+            }));
+            if done.is_err() {
+                renderer = Renderer::new(&self.shared.memory);
+                let error = StudioError::new("this failed, which is a defect of dapple");
+                self.put(Reply::refused(what, &error).into());
+            }
+        }
+    }
+
+    fn next(&self) -> Option<Next> {
+        let mut queue = self.lock();
+        loop {
+            if queue.is_over {
+                return None;
+            }
+            if let Some(task) = queue.tasks.pop_front() {
+                return Some(Next::Do(task));
+            }
+            if let Some(job) = queue.job.take() {
+                return Some(Next::Draw(job));
+            }
+            if let Some(sample) = queue.samples.pop_front() {
+                return Some(Next::Sample(sample));
+            }
+            queue = self
+                .changed
+                .wait(queue)
+                .unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Shows a small picture of a recipe. One that cannot be baked has none.
+    fn show(&self, sample: &Sample) {
+        let folder = &self.shared.folder;
+        let images = |recipe: &Recipe| {
+            folder.check_images(recipe)?;
+            self.shared.host.images(recipe, folder.path())
+        };
+        let made = self.shared.gallery.of(&sample.text, sample.side, images);
+        if let Ok(made) = made {
+            self.put(Output::Picture(Picture {
+                generation: 0,
+                shown: sample.shown,
+                first: [0; 2],
+                size: made.size,
+                scale: 1,
+                is_draft: false,
+                is_last: true,
+                pixels: made.pixels.clone(),
+            }));
+        }
+    }
+
+    fn perform(&self, task: Task) {
+        let reply = self.reply(&task);
+        let reply = reply.unwrap_or_else(|error| Reply::refused(task.what, &error));
+        self.put(reply.into());
+    }
+
+    fn reply(&self, task: &Task) -> Result<Reply, StudioError> {
+        let recipe = task
+            .document
+            .recipe()
+            .map_err(|error| StudioError::from(error.clone()))?;
+        Ok(match &task.kind {
+            TaskKind::Seams { size } => {
+                let images = self.images(recipe)?;
+                Reply::Seams {
+                    maps: seams::report(recipe, &images, *size)?,
+                }
+            }
+            TaskKind::Points { node, time } => {
+                let images = self.images(recipe)?;
+                let points = points::report(recipe, &images, node, *time)?;
+                Reply::Points(Box::new(points))
+            }
+            TaskKind::Code {
+                kind,
+                size,
+                maps,
+                name,
+            } => {
+                let code = code::Code {
+                    kind: *kind,
+                    size: *size,
+                    maps: maps.as_deref(),
+                    name,
+                };
+                Reply::Code {
+                    kind: *kind,
+                    text: code.text(&task.document, recipe)?,
+                }
+            }
+            TaskKind::Export(export) => {
+                let folder = &self.shared.folder;
+                folder.check_images(recipe)?;
+                let files = self.shared.host.export(recipe, folder.path(), export)?;
+                let (id, files) = self.shared.exports.keep(files);
+                Reply::Exported { id, files }
+            }
+        })
+    }
+}
+
+impl World for Inside {
+    fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
+        if recipe.image_files().is_empty() {
+            return Ok(Images::new());
+        }
+        let folder = &self.shared.folder;
+        folder.check_images(recipe)?;
+        let times = folder.image_times(recipe);
+        let mut loaded = self.images.lock().unwrap_or_else(PoisonError::into_inner);
+        if loaded.times != times {
+            let images = self.shared.host.images(recipe, folder.path())?;
+            *loaded = Loaded { times, images };
+        }
+        Ok(loaded.images.clone())
+    }
+
+    fn preview(
+        &self,
+        recipe: &Recipe,
+        images: &Images,
+        time: f64,
+        shape: Shape,
+    ) -> Result<Raster<LinearRgb>, StudioError> {
+        self.shared.host.preview(recipe, images, time, shape)
+    }
+
+    fn now(&self) -> f64 {
+        self.start.elapsed().as_secs_f64() * 1e3
+    }
+
+    fn is_wanted(&self, generation: u32) -> bool {
+        self.newest.load(Ordering::SeqCst) == generation
+    }
+
+    fn put(&self, output: Output) {
+        // Where the page is gone, the thread ends soon.
+        let _ = self.output.send(output);
+    }
+}

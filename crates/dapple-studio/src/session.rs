@@ -1,0 +1,214 @@
+//! The state of one page: the text, what is to be seen, and which picture of it is the newest.
+
+use crate::change::changes;
+use crate::message::{Reply, Request, View};
+use crate::patch::{Op, apply};
+use crate::render::Job;
+use crate::{Document, StudioError, points};
+use dapple::recipe::{Images, Recipe};
+use std::sync::Arc;
+
+/// Gives the images that a recipe names.
+pub type ImagesOf<'a> = &'a dyn Fn(&Recipe) -> Result<Images, StudioError>;
+
+/// The state of one page. It answers at once what needs no drawing; what is to be drawn is a [`Job`].
+#[derive(Debug)]
+pub struct Session {
+    document: Arc<Document>,
+    rev: u64,
+    view: View,
+    generation: u32,
+    /// Whether something has changed since the last job.
+    is_new: bool,
+}
+
+impl Default for Session {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Session {
+    /// A page that shows nothing yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            document: Arc::new(Document::new("")),
+            rev: 0,
+            view: View::default(),
+            generation: 0,
+            is_new: false,
+        }
+    }
+
+    /// The text as it is now.
+    #[must_use]
+    pub fn document(&self) -> &Arc<Document> {
+        &self.document
+    }
+
+    /// What is to be seen.
+    #[must_use]
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// Begins with another text.
+    pub fn open(&mut self, text: &str, file: Option<(String, String)>) -> Vec<Reply> {
+        self.rev = 0;
+        let mut replies = self.put(Document::new(text));
+        let name = match self.document.recipe() {
+            Ok(recipe) if !recipe.name.is_empty() => recipe.name.clone(),
+            _ => file
+                .as_ref()
+                .map_or_else(String::new, |(file, _)| stem(file).to_owned()),
+        };
+        let (file, hash) = file.unzip();
+        let text = self.document.text().to_owned();
+        replies.insert(
+            0,
+            Reply::Document {
+                rev: 0,
+                text,
+                name,
+                file,
+                hash,
+            },
+        );
+        replies
+    }
+
+    /// The text of a recipe that a page asks for, if that needs no file.
+    fn text_of(builtin: Option<&str>, text: Option<String>) -> Result<String, StudioError> {
+        match (builtin, text) {
+            (Some(name), None) => Ok(Recipe::builtin_text(name)?.to_owned()),
+            (None, Some(text)) => Ok(text),
+            _ => Err(StudioError::new("open one of `builtin`, `file` and `text`")),
+        }
+    }
+
+    /// Takes the whole text after a change.
+    fn doc(&mut self, rev: u64, text: &str) -> Vec<Reply> {
+        self.rev = rev;
+        if self.document.text() == text {
+            return Vec::new();
+        }
+        self.put(Document::new(text))
+    }
+
+    /// Makes small changes of the text.
+    fn patch(&mut self, rev: u64, ops: &[Op], drag: bool, images: ImagesOf<'_>) -> Vec<Reply> {
+        if rev != self.rev {
+            return vec![Reply::Stale { rev: self.rev }];
+        }
+        let old = self.document.text();
+        let ops = self.with_points(ops, images);
+        let new = match ops.and_then(|ops| apply(old, &ops)) {
+            Ok(new) if new.len() > dapple::recipe::MAX_TEXT => {
+                let error = StudioError::new("the text would be longer than 4 MiB");
+                return vec![Reply::refused("patch", &error)];
+            }
+            Ok(new) => new,
+            Err(error) => return vec![Reply::refused("patch", &error)],
+        };
+        let changes = changes(old, &new);
+        self.rev += 1;
+        let mut replies = vec![Reply::Edits {
+            rev: self.rev,
+            changes,
+            drag,
+        }];
+        if new != old {
+            replies.extend(self.put(Document::new(new)));
+        }
+        replies
+    }
+
+    /// Shows something else.
+    fn look(&mut self, view: View) {
+        self.is_new |= self.view != view;
+        self.view = view;
+        if self.is_new {
+            self.generation = self.generation.wrapping_add(1);
+        }
+    }
+
+    /// Answers a request that needs no file and no drawing; none for others.
+    pub fn handle(&mut self, request: &Request, images: ImagesOf<'_>) -> Option<Vec<Reply>> {
+        Some(match request {
+            Request::Open {
+                builtin,
+                file: None,
+                text,
+            } => match Self::text_of(builtin.as_deref(), text.clone()) {
+                Ok(text) => self.open(&text, None),
+                Err(error) => vec![Reply::refused("open", &error)],
+            },
+            Request::Doc { rev, text } => self.doc(*rev, text),
+            Request::Patch { rev, ops, drag } => self.patch(*rev, ops, *drag, images),
+            Request::View(view) => {
+                self.look(view.clone());
+                Vec::new()
+            }
+            _ => return None,
+        })
+    }
+
+    /// What is to be drawn, if that is something else than before.
+    pub fn job(&mut self) -> Option<Job> {
+        core::mem::take(&mut self.is_new).then(|| Job {
+            generation: self.generation,
+            rev: self.rev,
+            document: self.document.clone(),
+            view: self.view.clone(),
+        })
+    }
+
+    /// Draws again, since something beside the text has changed.
+    pub fn renew(&mut self) {
+        self.generation = self.generation.wrapping_add(1);
+        self.is_new = true;
+    }
+
+    /// The changes, with the points of the nodes whose points are to be editable.
+    fn with_points(&self, ops: &[Op], images: ImagesOf<'_>) -> Result<Vec<Op>, StudioError> {
+        let with_points = |op: &Op| {
+            let Op::MakePoints { node, points: None } = op else {
+                return Ok(op.clone());
+            };
+            let recipe = self
+                .document
+                .recipe()
+                .map_err(|error| StudioError::from(error.clone()))?;
+            let points = Some(points::editable(recipe, &images(recipe)?, node)?);
+            let node = node.clone();
+            Ok(Op::MakePoints { node, points })
+        };
+        ops.iter().map(with_points).collect()
+    }
+
+    fn put(&mut self, document: Document) -> Vec<Reply> {
+        self.document = Arc::new(document);
+        self.renew();
+        let mut replies = Vec::new();
+        let items = self.document.diagnostics();
+        if !items.is_empty() {
+            // What a plan refuses is found while it is drawn.
+            replies.push(Reply::Diagnostics {
+                rev: self.rev,
+                items,
+            });
+        } else if let Some(recipe) = self.document.data() {
+            replies.push(Reply::Values {
+                rev: self.rev,
+                recipe,
+            });
+        }
+        replies
+    }
+}
+
+/// The name of a file without its ending.
+fn stem(file: &str) -> &str {
+    file.rsplit_once('.').map_or(file, |(stem, _)| stem)
+}

@@ -1,0 +1,12 @@
+//! The studio through its public doors: sessions without a socket, and the server with one.
+
+#![expect(
+    clippy::disallowed_methods,
+    reason = "tests look at the files of the server, and at the clock"
+)]
+
+mod drawing;
+mod messages;
+#[cfg(feature = "server")]
+mod server;
+mod world;

@@ -1,0 +1,545 @@
+//! The server, over sockets.
+
+use dapple::color::LinearRgb;
+use dapple::raster::Raster;
+use dapple::recipe::{Images, Recipe};
+use dapple_studio::{Export, ExportedFile, Host, Named, ServeOptions, Shape, StudioError, serve};
+use serde_json::{Value, json};
+use std::fs;
+use std::io::{Read as _, Write as _};
+use std::net::TcpStream;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::channel;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+use tungstenite::{Message, WebSocket};
+
+/// A program around the server that makes files with nothing in them.
+struct TestHost;
+
+impl Host for TestHost {
+    fn images(&self, _: &Recipe, _: &Path) -> Result<Images, StudioError> {
+        Ok(Images::new())
+    }
+
+    fn export(
+        &self,
+        recipe: &Recipe,
+        _: &Path,
+        _: &Export,
+    ) -> Result<Vec<ExportedFile>, StudioError> {
+        let name = format!("{} 1.txt", recipe.name);
+        Ok(vec![ExportedFile {
+            name,
+            bytes: b"made".to_vec(),
+        }])
+    }
+
+    fn preview(
+        &self,
+        _: &Recipe,
+        _: &Images,
+        _: f64,
+        _: Shape,
+    ) -> Result<Raster<LinearRgb>, StudioError> {
+        Ok(Raster::filled([2, 1], LinearRgb::WHITE).unwrap())
+    }
+
+    fn presets(&self) -> Vec<Named> {
+        Vec::new()
+    }
+}
+
+/// A server in a folder of its own.
+struct Server {
+    folder: TempDir,
+    port: u16,
+    token: String,
+}
+
+type Page = WebSocket<TcpStream>;
+
+impl Server {
+    fn new(recipe: Option<&str>) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(
+            folder.path().join("my.toml"),
+            "dapple = 1\nname = \"mine\"\n[material]\nheight = 0.25\n",
+        )
+        .unwrap();
+        fs::write(folder.path().join("secret.txt"), "secret").unwrap();
+        let options = ServeOptions {
+            no_open: true,
+            recipe: recipe.map(str::to_owned),
+            folder: folder.path().to_owned(),
+            ..ServeOptions::default()
+        };
+        let (sender, urls) = channel();
+        // It ends with the tests.
+        std::thread::spawn(move || {
+            serve(options, Arc::new(TestHost), |url| {
+                sender.send(url.to_owned()).unwrap();
+            })
+            .unwrap();
+        });
+        let url = urls.recv_timeout(Duration::from_secs(20)).unwrap();
+        let (address, token) = url.split_once("/#t=").unwrap();
+        let port = address.rsplit_once(':').unwrap().1.parse().unwrap();
+        assert_eq!(
+            (address, token.len()),
+            (format!("http://127.0.0.1:{port}").as_str(), 32),
+            "{url}"
+        );
+        let token = token.to_owned();
+        Self {
+            folder,
+            port,
+            token,
+        }
+    }
+
+    fn stream(&self) -> TcpStream {
+        let stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
+        stream
+            .set_read_timeout(Some(Duration::from_secs(30)))
+            .unwrap();
+        stream
+    }
+
+    /// The answer to a request with these headers; `HOST` and `ORIGIN` are the right ones.
+    fn get(&self, path: &str, headers: &[&str]) -> String {
+        let mut stream = self.stream();
+        let mut request = format!("GET {path} HTTP/1.1\r\nConnection: close\r\n");
+        for header in headers {
+            let header = header
+                .replace("HOST", &format!("127.0.0.1:{}", self.port))
+                .replace("ORIGIN", &format!("http://127.0.0.1:{}", self.port));
+            request += &format!("{header}\r\n");
+        }
+        stream
+            .write_all(format!("{request}\r\n").as_bytes())
+            .unwrap();
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).unwrap();
+        String::from_utf8_lossy(&answer).into_owned()
+    }
+
+    fn status(&self, path: &str, headers: &[&str]) -> u16 {
+        let answer = self.get(path, headers);
+        answer
+            .split(' ')
+            .nth(1)
+            .unwrap_or_default()
+            .parse()
+            .unwrap_or(0)
+    }
+
+    /// A page that has been greeted.
+    fn page(&self) -> Page {
+        self.greeted().0
+    }
+
+    /// A page with its greeting.
+    fn greeted(&self) -> (Page, Value) {
+        let request = tungstenite::http::Request::builder()
+            .uri(format!("ws://127.0.0.1:{}/ws?t={}", self.port, self.token))
+            .header("Host", format!("127.0.0.1:{}", self.port))
+            .header("Origin", format!("http://127.0.0.1:{}", self.port))
+            .header("Connection", "Upgrade")
+            .header("Upgrade", "websocket")
+            .header("Sec-WebSocket-Version", "13")
+            .header("Sec-WebSocket-Key", "AAAAAAAAAAAAAAAAAAAAAA==")
+            .body(())
+            .unwrap();
+        let (mut page, _) = tungstenite::client(request, self.stream()).unwrap();
+        let hello = until(&mut page, "hello");
+        (page, hello)
+    }
+}
+
+fn say(page: &mut Page, message: &Value) {
+    page.send(Message::text(message.to_string())).unwrap();
+}
+
+/// The next message; pictures are acknowledged, and come as their headers.
+fn next(page: &mut Page) -> Value {
+    loop {
+        match page.read().unwrap() {
+            Message::Text(text) => return serde_json::from_str(&text).unwrap(),
+            Message::Binary(bytes) => {
+                let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+                let map = u16::from_le_bytes([bytes[8], bytes[9]]);
+                say(
+                    page,
+                    &json!({ "type": "ack", "generation": number(4), "map": map }),
+                );
+                return json!({ "type": "picture", "generation": number(4), "size": [number(20), number(24)], "bytes": bytes.len() });
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The next message of a type.
+fn until(page: &mut Page, name: &str) -> Value {
+    loop {
+        let message = next(page);
+        if message["type"] == name {
+            return message;
+        }
+        assert_ne!(message["type"], "refused", "{message}");
+    }
+}
+
+/// The next refusal.
+fn refusal(page: &mut Page) -> Value {
+    loop {
+        let message = next(page);
+        if message["type"] == "refused" {
+            return message;
+        }
+    }
+}
+
+#[test]
+fn only_our_own_page_is_answered() {
+    let server = Server::new(None);
+    let ws = format!("/ws?t={}", server.token);
+    let upgrade = [
+        "Connection: Upgrade",
+        "Upgrade: websocket",
+        "Sec-WebSocket-Version: 13",
+        "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==",
+    ];
+    let with = |more: &[&'static str]| [more, &upgrade[..]].concat();
+    for (path, headers, status) in [
+        ("/", vec!["Host: HOST"], 200),
+        (
+            "/",
+            vec![
+                "Host: HOST",
+                "Origin: ORIGIN",
+                "Sec-Fetch-Site: same-origin",
+            ],
+            200,
+        ),
+        ("/", vec![], 400),
+        ("/", vec!["Host: evil.example"], 403),
+        ("/", vec!["Host: 127.0.0.1"], 403),
+        ("/", vec!["Host: HOST", "Origin: http://evil.example"], 403),
+        ("/", vec!["Host: HOST", "Origin: null"], 403),
+        ("/", vec!["Host: HOST", "Sec-Fetch-Site: cross-site"], 403),
+        ("/", vec!["Host: HOST", "Sec-Fetch-Site: same-site"], 403),
+        ("/ws", with(&["Host: HOST", "Origin: ORIGIN"]), 403),
+        ("/ws?t=00", with(&["Host: HOST", "Origin: ORIGIN"]), 403),
+        (&ws, with(&["Host: HOST"]), 403),
+        (
+            &ws,
+            with(&["Host: HOST", "Origin: http://localhost:1"]),
+            403,
+        ),
+        (&ws, with(&["Host: evil.example", "Origin: ORIGIN"]), 403),
+        ("/export/1/a.png", vec!["Host: HOST"], 403),
+        (
+            "/image/a.png",
+            vec!["Host: HOST", "x-dapple-token: wrong"],
+            403,
+        ),
+        ("/nothing.js", vec!["Host: HOST"], 404),
+    ] {
+        let found = server.status(path, &headers);
+        assert!(
+            found == status || (status == 400 && found == 403),
+            "{path} {headers:?}: {found}"
+        );
+    }
+    let answer = server.get("/", &["Host: HOST"]);
+    let answer = answer.to_lowercase();
+    for part in [
+        "content-security-policy: default-src 'self'",
+        "frame-ancestors 'none'",
+        "nosniff",
+        "no-referrer",
+    ] {
+        assert!(answer.contains(part), "{part} in {answer}");
+    }
+    assert!(!answer.contains("access-control"), "{answer}");
+}
+
+#[test]
+fn files_outside_of_the_folder_are_neither_read_nor_written() {
+    let server = Server::new(None);
+    let outside = tempfile::tempdir().unwrap();
+    fs::write(outside.path().join("other.png"), "image").unwrap();
+    fs::write(outside.path().join("other.toml"), "dapple = 1").unwrap();
+    fs::write(server.folder.path().join("in.png"), "image").unwrap();
+    #[cfg(unix)]
+    for name in ["other.png", "other.toml"] {
+        let link = server.folder.path().join(name);
+        std::os::unix::fs::symlink(outside.path().join(name), link).unwrap();
+    }
+    let token = format!("x-dapple-token: {}", server.token);
+    for (path, status) in [
+        ("/image/in.png", 200),
+        ("/image/other.png", 404),
+        ("/image/secret.txt", 404),
+        ("/image/../in.png", 404),
+        ("/image/%2e%2e%2fin.png", 404),
+        ("/image//etc/passwd", 404),
+        ("/image/%00.png", 404),
+        ("/image/%ff.png", 404),
+        ("/image/%", 404),
+    ] {
+        assert_eq!(
+            server.status(path, &["Host: HOST", &token]),
+            status,
+            "{path}"
+        );
+    }
+    let mut page = server.page();
+    for file in [
+        "other.toml",
+        "../my.toml",
+        "/etc/passwd",
+        "",
+        ".",
+        "secret.txt\0",
+    ] {
+        say(&mut page, &json!({ "type": "open", "file": file }));
+        assert_eq!(refusal(&mut page)["what"], "open", "{file}");
+    }
+    for file in [
+        "../new.toml",
+        "a/b.toml",
+        "new.txt",
+        ".new.toml",
+        "other.toml",
+        "a\\b.toml",
+    ] {
+        say(
+            &mut page,
+            &json!({ "type": "save", "file": file, "text": "dapple = 1", "overwrite": true }),
+        );
+        assert_eq!(refusal(&mut page)["what"], "save", "{file}");
+    }
+    let mut names: Vec<_> = fs::read_dir(server.folder.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    names.sort();
+    assert!(
+        !names
+            .iter()
+            .any(|name| name.to_string_lossy().contains("new")),
+        "{names:?}"
+    );
+    assert_eq!(
+        fs::read(outside.path().join("other.toml")).unwrap(),
+        b"dapple = 1"
+    );
+}
+
+#[test]
+fn images_outside_of_the_folder_are_refused() {
+    let server = Server::new(None);
+    let mut page = server.page();
+    let text = "dapple = 1\n[nodes.a.image]\nfile = \"../x.png\"\n[material]\nheight = \"a\"\n";
+    say(&mut page, &json!({ "type": "doc", "rev": 1, "text": text }));
+    say(&mut page, &json!({ "type": "view", "paused": false }));
+    let message = refusal(&mut page);
+    assert!(
+        message["message"]
+            .as_str()
+            .unwrap()
+            .contains("not in the folder"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_saved_file_is_never_one_that_was_not_seen() {
+    let server = Server::new(Some("my.toml"));
+    let mut page = server.page();
+    let document = until(&mut page, "document");
+    let path = server.folder.path().join("my.toml");
+    let save = |text: &str, seen: &Value| json!({ "type": "save", "file": "my.toml", "text": text, "seen": seen });
+    say(
+        &mut page,
+        &save("dapple = 1\n[material]\n", &document["hash"]),
+    );
+    let saved = until(&mut page, "saved");
+    assert_eq!(
+        fs::read_to_string(&path).unwrap(),
+        "dapple = 1\n[material]\n"
+    );
+    fs::write(&path, "dapple = 1\n[material]\nheight = 0.75\n").unwrap();
+    let disk = until(&mut page, "disk");
+    assert_eq!(disk["text"], "dapple = 1\n[material]\nheight = 0.75\n");
+    say(&mut page, &save("lost", &saved["hash"]));
+    let refused = refusal(&mut page);
+    assert_eq!(
+        (&refused["what"], &refused["reason"]),
+        (&json!("save"), &json!("changed_on_disk"))
+    );
+    say(
+        &mut page,
+        &json!({ "type": "save", "file": "my.toml", "text": "new", "overwrite": true }),
+    );
+    until(&mut page, "saved");
+    assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+}
+
+#[test]
+fn hostile_messages_do_not_end_the_server() {
+    let server = Server::new(Some("cow"));
+    let mut page = server.page();
+    until(&mut page, "values");
+    for message in [
+        "",
+        "{",
+        "null",
+        "[]",
+        "7",
+        "{\"type\":\"nothing\"}",
+        "{\"type\":\"view\",\"size\":[-1,2]}",
+        "{\"type\":\"patch\",\"rev\":0,\"ops\":[{\"op\":\"set\",\"path\":[\"a\",1.5],\"value\":1}]}",
+        "{\"type\":\"doc\",\"rev\":1e99,\"text\":\"\"}",
+        "{\"type\":\"export\",\"args\":[\"--force\"]}",
+    ] {
+        page.send(Message::text(message)).unwrap();
+        assert_eq!(refusal(&mut page)["what"], "message", "{message}");
+    }
+    page.send(Message::text("[".repeat(100_000))).unwrap();
+    assert_eq!(refusal(&mut page)["what"], "message");
+    page.send(Message::binary(vec![0; 10])).unwrap();
+    assert_eq!(refusal(&mut page)["what"], "message");
+    let deep = format!("x = {}{}", "[".repeat(10_000), "]".repeat(10_000));
+    say(&mut page, &json!({ "type": "doc", "rev": 1, "text": deep }));
+    until(&mut page, "diagnostics");
+    // What asks for more work than a page may.
+    let text = "dapple = 1\n[nodes.a.noise]\nfrequency = 100000\n[material]\nheight = \"a\"\n";
+    say(&mut page, &json!({ "type": "doc", "rev": 2, "text": text }));
+    say(&mut page, &json!({ "type": "view", "paused": false }));
+    until(&mut page, "diagnostics");
+    // Longer than any recipe.
+    let mut other = server.page();
+    let _ = other.send(Message::text("x".repeat(9 << 20)));
+    let _ = other.read();
+    drop(other);
+    say(&mut page, &json!({ "type": "open", "builtin": "ice" }));
+    assert_eq!(until(&mut page, "document")["name"], "ice");
+}
+
+#[test]
+fn many_changes_in_a_moment_end_in_the_last_one_with_few_pictures() {
+    let server = Server::new(Some("flagstone"));
+    let mut page = server.page();
+    until(&mut page, "values");
+    say(
+        &mut page,
+        &json!({ "type": "view", "size": [512, 512], "maps": ["height", "normal", "albedo"], "draft": false, "paused": false }),
+    );
+    until(&mut page, "rendered");
+    let start = Instant::now();
+    for rev in 0..200_u32 {
+        let value = 0.2 + f64::from(rev) / 1000.0;
+        let op =
+            json!({ "op": "set", "path": ["nodes", "plate", "levels", "from", 1], "value": value });
+        say(
+            &mut page,
+            &json!({ "type": "patch", "rev": rev, "ops": [op], "drag": true }),
+        );
+    }
+    let mut rendered = Vec::new();
+    loop {
+        let message = next(&mut page);
+        if message["type"] == "rendered" {
+            rendered.push(message["rev"].as_u64().unwrap());
+            if message["rev"] == 200 {
+                break;
+            }
+        }
+    }
+    let most = 6.0 * start.elapsed().as_secs_f64().max(1.0);
+    assert!(
+        rendered.len() as f64 <= most,
+        "{rendered:?} in {:?}",
+        start.elapsed()
+    );
+    say(&mut page, &json!({ "type": "code", "kind": "toml" }));
+    assert!(
+        until(&mut page, "code")["text"]
+            .as_str()
+            .unwrap()
+            .contains("[0.06, 0.399]")
+    );
+}
+
+#[test]
+fn exports_are_fetched_with_the_secret() {
+    let server = Server::new(Some("my.toml"));
+    let mut page = server.page();
+    until(&mut page, "values");
+    say(
+        &mut page,
+        &json!({ "type": "export", "size": [16, 16], "maps": ["height"] }),
+    );
+    let exported = until(&mut page, "exported");
+    assert_eq!(
+        exported["files"],
+        json!([{ "name": "mine 1.txt", "bytes": 4 }])
+    );
+    let path = format!("/export/{}/mine%201.txt", exported["id"].as_str().unwrap());
+    let token = format!("x-dapple-token: {}", server.token);
+    assert!(
+        server
+            .get(&path, &["Host: HOST", &token])
+            .ends_with("\r\n\r\nmade")
+    );
+    assert_eq!(server.status(&path, &["Host: HOST"]), 403);
+    assert_eq!(
+        server.status("/export/1/other", &["Host: HOST", &token]),
+        404
+    );
+}
+
+#[test]
+fn recipes_of_the_folder_are_listed() {
+    let server = Server::new(None);
+    fs::write(server.folder.path().join("Cargo.toml"), "[package]").unwrap();
+    let (mut page, hello) = server.greeted();
+    assert_eq!(hello["files"], json!(["my.toml"]));
+    say(&mut page, &json!({ "type": "open", "file": "my.toml" }));
+    let document = until(&mut page, "document");
+    assert_eq!(
+        (&document["name"], &document["file"]),
+        (&json!("mine"), &json!("my.toml"))
+    );
+}
+
+#[test]
+fn a_lit_picture_is_that_of_the_program_around_it() {
+    let server = Server::new(Some("cow"));
+    let mut page = server.page();
+    say(
+        &mut page,
+        &json!({ "type": "view", "size": [16, 16], "maps": [], "paused": false, "exact": { "shape": "torus" } }),
+    );
+    assert_eq!(until(&mut page, "picture")["size"], json!([2, 1]));
+}
+
+#[test]
+fn all_recipes_have_small_pictures() {
+    let server = Server::new(None);
+    let (mut page, hello) = server.greeted();
+    say(&mut page, &json!({ "type": "gallery", "size": 24 }));
+    let n_recipes = hello["builtins"].as_array().unwrap().len() + 1;
+    for _ in 0..n_recipes {
+        let picture = until(&mut page, "picture");
+        assert!(
+            picture["size"].as_array().unwrap().contains(&json!(24)),
+            "{picture}"
+        );
+    }
+}

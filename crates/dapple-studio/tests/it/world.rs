@@ -1,0 +1,107 @@
+//! A world in which sessions are tested.
+
+use dapple::color::LinearRgb;
+use dapple::raster::Raster;
+use dapple::recipe::{Images, Recipe};
+use dapple_studio::{
+    Output, Picture, Renderer, Reply, Request, Session, Shape, StudioError, World,
+};
+use serde_json::{Value, json};
+use std::cell::{Cell, RefCell};
+
+/// Takes what is made. A job may become unwanted after a number of outputs.
+#[derive(Default)]
+pub(crate) struct TestWorld {
+    pub(crate) outputs: RefCell<Vec<Output>>,
+    pub(crate) wanted: Cell<Option<usize>>,
+    ticks: Cell<f64>,
+}
+
+impl World for TestWorld {
+    fn images(&self, _: &Recipe) -> Result<Images, StudioError> {
+        Ok(Images::new())
+    }
+
+    fn preview(
+        &self,
+        _: &Recipe,
+        _: &Images,
+        _: f64,
+        _: Shape,
+    ) -> Result<Raster<LinearRgb>, StudioError> {
+        Err(StudioError::new("there is no light here"))
+    }
+
+    fn now(&self) -> f64 {
+        self.ticks.set(self.ticks.get() + 1.0);
+        self.ticks.get()
+    }
+
+    fn is_wanted(&self, _: u32) -> bool {
+        self.wanted
+            .get()
+            .is_none_or(|most| self.outputs.borrow().len() < most)
+    }
+
+    fn put(&self, output: Output) {
+        self.outputs.borrow_mut().push(output);
+    }
+}
+
+/// A page with its renderer.
+#[derive(Default)]
+pub(crate) struct Page {
+    pub(crate) session: Session,
+    pub(crate) renderer: Renderer,
+}
+
+impl Page {
+    /// The answers to a message.
+    pub(crate) fn ask(&mut self, message: Value) -> Vec<Value> {
+        let request: Request = serde_json::from_value(message).unwrap();
+        let replies = self
+            .session
+            .handle(&request, &|_| Ok(Images::new()))
+            .unwrap();
+        replies.iter().map(json_of).collect()
+    }
+
+    /// Opens a built-in recipe.
+    pub(crate) fn open(name: &str) -> Self {
+        let mut page = Self::default();
+        page.ask(json!({ "type": "open", "builtin": name }));
+        page
+    }
+
+    /// Draws what is new.
+    pub(crate) fn draw(&mut self) -> (Vec<Value>, Vec<Picture>) {
+        let world = TestWorld::default();
+        if let Some(job) = self.session.job() {
+            self.renderer.draw(&job, &world);
+        }
+        split(world.outputs.into_inner())
+    }
+}
+
+pub(crate) fn split(outputs: Vec<Output>) -> (Vec<Value>, Vec<Picture>) {
+    let (mut replies, mut pictures) = (Vec::new(), Vec::new());
+    for output in outputs {
+        match output {
+            Output::Reply(reply) => replies.push(json_of(&reply)),
+            Output::Picture(picture) => pictures.push(picture),
+        }
+    }
+    (replies, pictures)
+}
+
+pub(crate) fn json_of(reply: &Reply) -> Value {
+    serde_json::to_value(reply).unwrap()
+}
+
+/// The messages of a type.
+pub(crate) fn of_type<'a>(replies: &'a [Value], name: &str) -> Vec<&'a Value> {
+    replies
+        .iter()
+        .filter(|reply| reply["type"] == name)
+        .collect()
+}
