@@ -29,10 +29,13 @@ pub(crate) fn bench(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()>
     Ok(run.quiet().run()?)
 }
 
+/// The program that gets the packages of the studio's page, and builds it.
+pub(crate) const NPM: &str = if cfg!(windows) { "npm.cmd" } else { "npm" };
+
 /// Builds the page of the studio, then runs the studio with the page in it.
 pub(crate) fn studio(shell: &Shell, arguments: &[OsString]) -> anyhow::Result<()> {
     let page = shell.push_dir("crates/dapple-studio/web");
-    let npm = if cfg!(windows) { "npm.cmd" } else { "npm" };
+    let npm = NPM;
     if cmd!(shell, "{npm} --version")
         .quiet()
         .ignore_stdout()
