@@ -1,0 +1,278 @@
+// The state of the page: what was told by whatever computes, what is selected, and what a person asked for.
+import type { Editor } from './core/editor';
+import { newGesture, StudioDocument } from './core/document';
+import { Pictures, type Picture } from './core/pictures';
+import type { Began, Frame, Graph, Hello, Json, Op, Path, Points, Problem, Rendered, Reply, Request, Seam } from './core/protocol';
+import { MAP } from './core/protocol';
+import { at, Schemas } from './core/schema';
+import type { Transport } from './core/transport';
+import { Looking } from './looking.svelte';
+
+/** A dialog or a sheet over the page. */
+export type Sheet = 'none' | 'keys' | 'export' | 'save' | 'copy' | 'add' | 'start' | 'leave' | 'disk' | 'rename';
+
+/** Everything that the page shows. */
+export class Studio {
+  readonly looking = new Looking();
+  readonly pictures = new Pictures();
+  hello = $state.raw<Hello | null>(null);
+  connection = $state<'waiting' | 'open' | 'closed' | 'refused'>('waiting');
+  recipe = $state.raw<Json>(null);
+  graph = $state.raw<Graph | null>(null);
+  problems = $state.raw<Problem[]>([]);
+  rendered = $state.raw<Rendered | null>(null);
+  took = $state.raw<Map<string, number>>(new Map());
+  seams = $state.raw<Seam[] | null>(null);
+  points = $state.raw<Points | null>(null);
+  selected = $state<string | null>(null);
+  sheet = $state<Sheet>('none');
+  said = $state('');
+  refusal = $state.raw<{ what: string; message: string; hint: string | null } | null>(null);
+  name = $state('');
+  file = $state.raw<string | null>(null);
+  changed = $state(false);
+  history = $state.raw<[number, number]>([0, 0]);
+  schemas = $derived(this.hello ? new Schemas(this.hello.schema) : null);
+  readonly document: StudioDocument;
+  /** The pictures that the newer ones are compared with. */
+  mark = $state.raw<Map<string, Picture>>(new Map());
+  /** A node to be selected as soon as it is there. */
+  wanted: string | null = null;
+  #editor: Editor | null = null;
+  #began = new Map<number, Began>();
+  #size: [number, number] = [512, 512];
+  #listeners = new Set<(message: Reply) => void>();
+  #marking = true;
+
+  constructor(readonly transport: Transport) {
+    const host = {
+      text: () => this.#editor?.text() ?? '',
+      apply: (...given: Parameters<Editor['apply']>) => this.#editor?.apply(...given),
+      reset: (text: string) => this.#editor?.reset(text),
+    };
+    this.document = new StudioDocument(host, (message) => this.send(message));
+    transport.onmessage = (message) => this.#receive(message);
+    transport.onpicture = (picture) => this.#picture(picture);
+    transport.onstate = (state) => (this.connection = state);
+  }
+
+  get reading(): boolean {
+    return this.hello?.mode === 'watch';
+  }
+
+  get valid(): boolean {
+    return this.problems.length === 0;
+  }
+
+  send(message: Request): void {
+    if (message.type === 'view') this.#size = message.size;
+    this.transport.send(message);
+  }
+
+  /** Calls `then` with each message, until the answer is called. */
+  listen(then: (message: Reply) => void): () => void {
+    this.#listeners.add(then);
+    return () => this.#listeners.delete(then);
+  }
+
+  /** Gives the document its editor. */
+  attach(editor: Editor): void {
+    this.#editor = editor;
+    editor.lock(this.reading);
+  }
+
+  /** Called when the text changed, by whatever. */
+  textChanged(): void {
+    this.changed = this.document.changed;
+    this.history = this.#editor?.depth() ?? [0, 0];
+  }
+
+  undo(): void {
+    this.#editor?.undo();
+  }
+
+  redo(): void {
+    this.#editor?.redo();
+  }
+
+  /** The value at a path of the recipe, if it is written there. */
+  value(path: Path): Json | undefined {
+    return at(this.recipe, path);
+  }
+
+  /** Changes the recipe by a widget. */
+  patch(ops: Op[], gesture: number | null = null, drag = false): void {
+    if (this.reading) return;
+    this.looking.dragging = drag;
+    this.document.patch(ops, gesture, drag);
+  }
+
+  set(path: Path, value: Json, gesture: number | null = null, drag = false): void {
+    this.patch([{ op: 'set', path, value }], gesture, drag);
+  }
+
+  /** Another seed by chance. */
+  shuffle(): void {
+    this.set(['seed'], Math.floor(Math.random() * 10_000), newGesture());
+  }
+
+  /** Selects a node, or the recipe; the caret follows unless it led here. */
+  select(name: string | null, follow = true): void {
+    this.selected = name;
+    const span = this.graph?.nodes.find((node) => node.name === name)?.span;
+    if (follow && span) this.#editor?.goTo(span[0]);
+  }
+
+  /** Selects the node that the caret is in. */
+  caret(position: number): void {
+    const node = this.graph?.nodes.find(({ span }) => span[0] <= position && position <= span[1]);
+    if (node) this.selected = node.name;
+  }
+
+  /** Shows where a problem is. */
+  goTo(position: number): void {
+    this.#editor?.goTo(position, true);
+  }
+
+  /** Opens a recipe; the sheet asks first where changes would be lost. */
+  open(what: { builtin?: string; file?: string; text?: string }): void {
+    this.sheet = 'none';
+    this.selected = null;
+    this.send({ type: 'open', ...what });
+  }
+
+  /** Tells people who cannot see it. */
+  say(text: string): void {
+    this.said = text;
+  }
+
+  /** Keeps the pictures of now, to be compared with later ones. */
+  markNow(): void {
+    this.mark = this.pictures.snapshot();
+    this.say('Marked: hold B to compare with what is seen now');
+  }
+
+  /** A name for a node that no other has. */
+  freeName(wanted: string): string {
+    const taken = new Set(this.graph?.order ?? []);
+    const names = [wanted, ...Array.from({ length: 999 }, (_, i) => `${wanted}_${i + 2}`)];
+    return names.find((name) => !taken.has(name)) ?? `${wanted}_${Date.now()}`;
+  }
+
+  #receive(message: Reply): void {
+    this.document.receive(message);
+    this.#take(message);
+    for (const then of this.#listeners) then(message);
+  }
+
+  #take(message: Reply): void {
+    switch (message.type) {
+      case 'hello':
+        return this.#hello(message);
+      case 'document':
+        this.looking.window = null;
+        this.pictures.forget((name) => !/^(builtin|file):/.test(name));
+        this.#marking = true;
+        return this.#named();
+      case 'diagnostics':
+        return this.#problems(message.rev, message.items);
+      case 'graph':
+        this.graph = message;
+        if (this.wanted !== null && message.order.includes(this.wanted)) {
+          this.select(this.wanted);
+          this.wanted = null;
+        }
+        if (this.selected !== null && !message.order.includes(this.selected)) this.selected = null;
+        return;
+      case 'values':
+        this.recipe = message.recipe;
+        this.looking.extent = extentOf(message.recipe);
+        return;
+      case 'began':
+        this.#began.set(message.generation, message);
+        if (this.#began.size > 8) this.#began.delete([...this.#began.keys()][0] ?? 0);
+        return;
+      case 'rendered':
+        return this.#rendered(message);
+      case 'seams':
+        this.seams = message.maps;
+        return;
+      case 'points':
+        this.points = message;
+        return;
+      case 'saved':
+        Object.assign(this.document, { file: message.file, hash: message.hash, kept: this.document.text });
+        this.say(`Saved ${message.file}`);
+        return this.#named();
+      case 'refused':
+        this.refusal = message;
+        this.say(message.message);
+        return;
+      default:
+        return;
+    }
+  }
+
+  #hello(message: Hello): void {
+    const again = this.hello !== null;
+    this.hello = message;
+    this.looking.limit = message.limits.size;
+    this.looking.whole = message.limits.whole ?? message.limits.size;
+    this.#editor?.lock(this.reading);
+    if (again && this.document.text !== '') this.document.resume();
+    else if (message.open === null) this.sheet = 'start';
+    this.send({ type: 'gallery', size: 128 });
+  }
+
+  #named(): void {
+    this.name = this.document.name;
+    this.file = this.document.file;
+    this.textChanged();
+  }
+
+  #problems(rev: number, items: Problem[]): void {
+    if (rev !== this.document.rev) return;
+    const before = this.problems.length;
+    this.problems = items;
+    this.#editor?.problems(items);
+    const [first] = items;
+    if (first) this.say(`Error: ${first.message}`);
+    else if (before > 0) this.say('The recipe is valid again');
+  }
+
+  #rendered(message: Rendered): void {
+    this.rendered = message;
+    if (message.nodes) this.took = new Map(message.nodes.map(({ name, ms }) => [name, ms]));
+    if (message.draft) return;
+    if (this.#marking && this.pictures.names().length > 0) {
+      this.mark = this.pictures.snapshot();
+      this.#marking = false;
+    }
+    if (!this.looking.playing && !this.looking.dragging) this.say(`Rendered in ${Math.round(message.ms)} ms`);
+  }
+
+  #picture(picture: Frame): void {
+    const name = this.#pictureName(picture.map);
+    if (name === null) return;
+    const size = this.#began.get(picture.generation)?.size ?? this.#size;
+    const alone = picture.map === MAP.preview || picture.map >= MAP.thumbnail;
+    this.pictures.add(name, picture, alone ? [picture.w * picture.scale, picture.h * picture.scale] : size);
+    const acknowledge = () => this.send({ type: 'ack', generation: picture.generation, map: name });
+    if (picture.map < MAP.thumbnail && !document.hidden) requestAnimationFrame(acknowledge);
+    else if (picture.map < MAP.builtin) acknowledge();
+  }
+
+  #pictureName(map: number): string | null {
+    if (map === MAP.node) return 'node';
+    if (map === MAP.preview) return 'preview';
+    if (map >= MAP.file) return `file:${this.hello?.files[map - MAP.file]}`;
+    if (map >= MAP.builtin) return `builtin:${this.hello?.builtins[map - MAP.builtin]?.name}`;
+    if (map >= MAP.thumbnail) return `thumb:${this.graph?.nodes[map - MAP.thumbnail]?.name}`;
+    return this.hello?.maps[map]?.name ?? null;
+  }
+}
+
+function extentOf(recipe: Json): [number, number] {
+  const [w, h] = (at(recipe, ['extent']) ?? [1, 1]) as number[];
+  return typeof w === 'number' && typeof h === 'number' && w > 0 && h > 0 ? [w, h] : [1, 1];
+}
