@@ -36,6 +36,10 @@ export class Studio {
   readonly document: StudioDocument;
   /** The pictures that the newer ones are compared with. */
   mark = $state.raw<Map<string, Picture>>(new Map());
+  /** What is to be opened once a person agrees to lose changes. */
+  leaving: { builtin?: string; file?: string } | null = null;
+  /** A file that was changed by somebody else. */
+  disk = $state.raw<{ text: string; hash: string; file: string } | null>(null);
   /** A node to be selected as soon as it is there. */
   wanted: string | null = null;
   #editor: Editor | null = null;
@@ -123,6 +127,13 @@ export class Studio {
     if (follow && span) this.#editor?.goTo(span[0]);
   }
 
+  /** Selects the node after or before. */
+  step(way: number): void {
+    const order = this.graph?.order ?? [];
+    const now = this.selected === null ? (way > 0 ? -1 : 0) : order.indexOf(this.selected);
+    this.select(order[(now + way + order.length) % order.length] ?? null);
+  }
+
   /** Selects the node that the caret is in. */
   caret(position: number): void {
     const node = this.graph?.nodes.find(({ span }) => span[0] <= position && position <= span[1]);
@@ -139,6 +150,12 @@ export class Studio {
     this.sheet = 'none';
     this.selected = null;
     this.send({ type: 'open', ...what });
+  }
+
+  /** Asks before changes are lost, then opens. */
+  leave(what: { builtin?: string; file?: string }): void {
+    this.leaving = what;
+    this.sheet = 'leave';
   }
 
   /** Tells people who cannot see it. */
@@ -204,7 +221,10 @@ export class Studio {
         Object.assign(this.document, { file: message.file, hash: message.hash, kept: this.document.text });
         this.say(`Saved ${message.file}`);
         return this.#named();
+      case 'disk':
+        return this.#onDisk(message);
       case 'refused':
+        if (message.what === 'save' && this.sheet === 'save') return;
         this.refusal = message;
         this.say(message.message);
         return;
@@ -222,6 +242,27 @@ export class Studio {
     if (again && this.document.text !== '') this.document.resume();
     else if (message.open === null) this.sheet = 'start';
     this.send({ type: 'gallery', size: 128 });
+  }
+
+  /** The file changed on disk: it is followed where nothing here would be lost, else a person is asked. */
+  #onDisk(message: { text: string; hash: string; file: string }): void {
+    if (message.text === this.document.text) {
+      Object.assign(this.document, { hash: message.hash, kept: message.text });
+      return this.textChanged();
+    }
+    this.disk = message;
+    if (this.reading || !this.changed) this.takeDisk();
+    else this.sheet = 'disk';
+  }
+
+  /** Takes the text of the file as it is on disk; undo brings back what was here. */
+  takeDisk(): void {
+    if (!this.disk) return;
+    Object.assign(this.document, { hash: this.disk.hash, kept: this.disk.text });
+    this.document.replace(this.disk.text);
+    this.disk = null;
+    this.sheet = 'none';
+    this.textChanged();
   }
 
   #named(): void {

@@ -161,7 +161,7 @@ export interface ControlPoint {
   y: number;
   value: number;
   label?: number | null;
-  orientation?: [number, number] | null;
+  orientation?: number[] | null;
 }
 
 /** The control points of a node. */
@@ -200,7 +200,7 @@ export type Reply =
   | { type: 'exported'; id: string; files: { name: string; bytes: number }[] }
   | { type: 'saved'; file: string; hash: string }
   | { type: 'disk'; text: string; hash: string; file: string }
-  | { type: 'refused'; what: string; message: string; hint: string | null };
+  | { type: 'refused'; what: string; message: string; hint: string | null; reason?: string };
 
 /** The pictures of a generation follow: what they show. */
 export interface Began {
