@@ -80,6 +80,12 @@ const named: Record<string, Shape> = {
 /** Names of numbers that are looked at by their ratio, such as frequencies. */
 const RATIOS = /^(frequency|spacing|density|distance|distances|count|relief|feature_size|extent)$/;
 
+/** Parts that come first, in this order. */
+const FIRST = [
+  'input', 'inputs', 'from', 'to', 'by', 'x', 'y', 'height', 'albedo', 'roughness', 'metallic', 'relief', 'value',
+  'basis', 'spacing', 'frequency', 'octaves', 'gain', 'lacunarity', 'scatter', 'metric', 'name', 'extent', 'wrap',
+];
+
 /** Reads schemas with the definitions of one document. */
 export class Schemas {
   constructor(readonly root: JsonSchema) {}
@@ -133,7 +139,8 @@ export class Schemas {
         schema: part,
         required: all.required?.includes(key) ?? false,
         fallback: entry(given, key) ?? part.default ?? this.plain(part).default,
-      }));
+      }))
+      .sort((a, b) => rank(a) - rank(b));
   }
 
   /** The variants of a union. */
@@ -211,7 +218,7 @@ export class Schemas {
     const all = this.plain(one);
     const about = one.description ?? all.description ?? '';
     if (all.const !== undefined) return [{ label: String(all.const), about, key: null, schema: all }];
-    if (all.enum && all.enum.length <= 3) {
+    if (all.enum) {
       return all.enum.map((value) => ({ label: String(value), about, key: null, schema: { const: value } }));
     }
     const keys = Object.keys(all.properties ?? {}).filter((key) => all.required?.includes(key));
@@ -248,6 +255,13 @@ export function at(value: Json | undefined, path: (string | number)[]): Json | u
 /** A key as words. */
 export function words(key: string): string {
   return key.replaceAll('_', ' ');
+}
+
+/** The order of parts: what goes in, what is told of most often, the rest by name, what is rarely given. */
+function rank({ key, required, fallback }: Part): number {
+  const first = FIRST.indexOf(key);
+  if (first >= 0) return first;
+  return key === 'seed' ? 400 : required ? 100 : fallback === undefined || fallback === null ? 300 : 200;
 }
 
 function definition(schema: JsonSchema): string | null {

@@ -17,11 +17,11 @@ export function reachable(graph: Graph, from: string): Set<string> {
 }
 
 /** The size of a node in the drawing, and the gaps between nodes. */
-export const NODE = { width: 132, height: 92, row: 17 };
+export const NODE = { width: 150, height: 50, row: 11 };
 
 /** How high a node with so many inputs is. */
 export function heightOf(inputs: number): number {
-  return Math.max(NODE.height, 40 + inputs * NODE.row);
+  return Math.max(NODE.height, 8 + inputs * NODE.row);
 }
 
 /** The name of the node that stands for the material. */
@@ -30,7 +30,7 @@ export const MATERIAL = '#material';
 /** Where nodes lie, from left to right; the same graph always lies the same. */
 export function layout(graph: Graph): Map<string, { x: number; y: number }> {
   const drawing = new dagre.graphlib.Graph();
-  drawing.setGraph({ rankdir: 'LR', nodesep: 18, ranksep: 44, marginx: 8, marginy: 8 });
+  drawing.setGraph({ rankdir: 'LR', nodesep: 12, ranksep: 40, marginx: 8, marginy: 8 });
   drawing.setDefaultEdgeLabel(() => ({}));
   for (const node of graph.nodes) drawing.setNode(node.name, { width: NODE.width, height: heightOf(node.inputs.length) });
   const maps = Object.entries(graph.material);
