@@ -27,6 +27,8 @@ export class Studio {
   selected = $state<string | null>(null);
   sheet = $state<Sheet>('none');
   said = $state('');
+  /** Whether the full pictures are those of the text. */
+  settled = $state(false);
   refusal = $state.raw<{ what: string; message: string; hint: string | null } | null>(null);
   name = $state('');
   file = $state.raw<string | null>(null);
@@ -47,6 +49,9 @@ export class Studio {
   #size: [number, number] = [512, 512];
   #listeners = new Set<(message: Reply) => void>();
   #marking = true;
+  /** Whether the newest view was drawn, and the newest revision that was drawn in full. */
+  #seen = false;
+  #full = -1;
 
   constructor(readonly transport: Transport) {
     const host = {
@@ -70,6 +75,8 @@ export class Studio {
 
   send(message: Request): void {
     if (message.type === 'view') this.#size = message.size;
+    if (message.type === 'view') this.#seen = false;
+    if (message.type === 'view' || message.type === 'doc' || message.type === 'patch') this.settled = false;
     this.transport.send(message);
   }
 
@@ -179,6 +186,7 @@ export class Studio {
   #receive(message: Reply): void {
     this.document.receive(message);
     this.#take(message);
+    this.settled = this.#seen && !this.document.busy && this.#full >= this.document.made;
     for (const then of this.#listeners) then(message);
   }
 
@@ -190,6 +198,7 @@ export class Studio {
         this.looking.window = null;
         this.pictures.forget((name) => !/^(builtin|file):/.test(name));
         this.#marking = true;
+        this.#full = -1;
         return this.#named();
       case 'diagnostics':
         return this.#problems(message.rev, message.items);
@@ -272,7 +281,7 @@ export class Studio {
   }
 
   #problems(rev: number, items: Problem[]): void {
-    if (rev !== this.document.rev) return;
+    if (rev < this.document.made) return;
     const before = this.problems.length;
     this.problems = items;
     this.#editor?.problems(items);
@@ -285,6 +294,8 @@ export class Studio {
     this.rendered = message;
     if (message.nodes) this.took = new Map(message.nodes.map(({ name, ms }) => [name, ms]));
     if (message.draft) return;
+    this.#seen = true;
+    this.#full = message.rev ?? this.document.rev;
     if (this.#marking && this.pictures.names().length > 0) {
       this.mark = this.pictures.snapshot();
       this.#marking = false;
@@ -298,7 +309,7 @@ export class Studio {
     const size = this.#began.get(picture.generation)?.size ?? this.#size;
     const alone = picture.map === MAP.preview || picture.map >= MAP.thumbnail;
     this.pictures.add(name, picture, alone ? [picture.w * picture.scale, picture.h * picture.scale] : size);
-    const acknowledge = () => this.send({ type: 'ack', generation: picture.generation, map: name });
+    const acknowledge = () => this.send({ type: 'ack', generation: picture.generation, map: picture.map });
     if (picture.map < MAP.thumbnail && !document.hidden) requestAnimationFrame(acknowledge);
     else if (picture.map < MAP.builtin) acknowledge();
   }

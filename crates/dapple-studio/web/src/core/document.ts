@@ -31,6 +31,8 @@ export function newGesture(): number {
 /** A text with its revision, kept the same here and on the other side. */
 export class StudioDocument {
   rev = 0;
+  /** The revision at which the text last changed; patches that change nothing count up, too. */
+  made = 0;
   name = '';
   file: string | null = null;
   /** The hash of the file as it was read or written. */
@@ -54,9 +56,15 @@ export class StudioDocument {
     return this.text !== this.kept;
   }
 
+  /** Whether patches are on their way. */
+  get busy(): boolean {
+    return this.#flight !== null || this.#waiting.length > 0;
+  }
+
   /** Called by the editor when its text changed by typing, undo or redo. */
   typed(): void {
     this.rev += 1;
+    this.made = this.rev;
     this.sendText();
   }
 
@@ -79,7 +87,7 @@ export class StudioDocument {
       case 'document':
         this.#flight = null;
         this.#waiting = [];
-        Object.assign(this, { rev: message.rev, name: message.name, file: message.file, hash: message.hash });
+        Object.assign(this, { rev: message.rev, made: message.rev, name: message.name, file: message.file, hash: message.hash });
         this.kept = message.text;
         this.host.reset(message.text);
         return true;
@@ -100,8 +108,7 @@ export class StudioDocument {
   /** Replaces the whole text, as one step of undo. */
   replace(text: string): void {
     this.host.apply([{ from: 0, to: this.text.length, insert: text }], null);
-    this.rev += 1;
-    this.sendText();
+    this.typed();
   }
 
   /** After the way to the other side was lost and found. */
@@ -114,8 +121,9 @@ export class StudioDocument {
   #edited(rev: number, changes: Change[]): void {
     const flight = this.#flight;
     if (!flight || this.rev !== flight.base || rev !== flight.base + 1) return this.#again(rev);
-    if (changes.length > 0) this.host.apply(changes, flight.gesture);
     this.rev = rev;
+    if (changes.length > 0) this.made = rev;
+    if (changes.length > 0) this.host.apply(changes, flight.gesture);
     this.#done();
   }
 

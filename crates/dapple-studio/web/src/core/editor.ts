@@ -145,7 +145,7 @@ export class Editor implements TextHost {
       StreamLanguage.define(toml),
       syntaxHighlighting(colors),
       theme,
-      EditorView.contentAttributes.of({ 'aria-label': 'Recipe, as TOML' }),
+      EditorView.contentAttributes.of({ 'aria-label': 'Recipe, as TOML', tabindex: '0' }),
       keymap.of([...defaultKeymap, ...historyKeymap, ...searchKeymap, ...completionKeymap]),
       this.#locked.of([]),
       EditorView.updateListener.of((update) => {

@@ -52,7 +52,7 @@ export type Request =
   | { type: 'doc'; rev: number; text: string }
   | { type: 'patch'; rev: number; ops: Op[]; drag: boolean }
   | ({ type: 'view' } & View)
-  | { type: 'ack'; generation: number; map: string }
+  | { type: 'ack'; generation: number; map: number }
   | { type: 'gallery'; size: number }
   | { type: 'seams'; size: [number, number] }
   | { type: 'points'; node: string }
