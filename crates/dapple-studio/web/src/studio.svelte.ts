@@ -22,6 +22,8 @@ export class Studio {
   problems = $state.raw<Problem[]>([]);
   rendered = $state.raw<Rendered | null>(null);
   took = $state.raw<Map<string, number>>(new Map());
+  /** The numbers that are black and white in the pictures of nodes. */
+  ranges = $state.raw<Map<string, [number, number] | null>>(new Map());
   seams = $state.raw<Seam[] | null>(null);
   points = $state.raw<Points | null>(null);
   selected = $state<string | null>(null);
@@ -292,7 +294,7 @@ export class Studio {
 
   #rendered(message: Rendered): void {
     this.rendered = message;
-    if (message.nodes) this.took = new Map(message.nodes.map(({ name, ms }) => [name, ms]));
+    if (message.nodes) this.#cost(message.nodes);
     if (message.draft) return;
     this.#seen = true;
     this.#full = message.rev ?? this.document.rev;
@@ -301,6 +303,13 @@ export class Studio {
       this.#marking = false;
     }
     if (!this.looking.playing && !this.looking.dragging) this.say(`Rendered in ${Math.round(message.ms)} ms`);
+  }
+
+  /** Milliseconds of nodes: those of the last time they were computed, where they come from a cache now. */
+  #cost(nodes: NonNullable<Rendered['nodes']>): void {
+    const cost = ({ name, ms }: { name: string; ms: number }) => (ms < 0.05 ? Math.max(ms, this.took.get(name) ?? 0) : ms);
+    this.took = new Map(nodes.map((node) => [node.name, cost(node)]));
+    this.ranges = new Map(nodes.map(({ name, range }) => [name, range ?? null]));
   }
 
   #picture(picture: Frame): void {

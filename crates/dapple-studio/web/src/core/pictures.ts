@@ -12,12 +12,29 @@ export interface Rect {
   h: number;
 }
 
-/** A piece of a picture. */
-export interface Piece {
-  rect: Rect;
-  canvas: HTMLCanvasElement;
-  pixels: Uint8ClampedArray<ArrayBuffer>;
+/** A piece of a picture. It becomes a canvas when it is first drawn: while a slider is dragged, many never are. */
+export class Piece {
+  #canvas: HTMLCanvasElement | null = null;
+
+  constructor(
+    readonly rect: Rect,
+    readonly width: number,
+    readonly height: number,
+    readonly pixels: Uint8ClampedArray<ArrayBuffer>,
+  ) {}
+
+  get canvas(): HTMLCanvasElement {
+    if (this.#canvas) return this.#canvas;
+    const canvas = Object.assign(document.createElement('canvas'), { width: this.width, height: this.height });
+    const context = canvas.getContext('2d', { willReadFrequently: this.width <= SMALL });
+    context?.putImageData(new ImageData(this.pixels, this.width, this.height), 0, 0);
+    this.#canvas = canvas;
+    return canvas;
+  }
 }
+
+/** Up to this width a canvas is kept in plain memory, which is faster for many small ones. */
+const SMALL = 128;
 
 /** A picture: the last one of all of the tile, the last whole one, and what is there of the next. */
 export interface Picture {
@@ -95,12 +112,8 @@ export class Pictures {
 }
 
 function pieceOf(frame: Frame, [width, height]: [number, number]): Piece {
-  const canvas = document.createElement('canvas');
-  canvas.width = frame.w;
-  canvas.height = frame.h;
-  canvas.getContext('2d')?.putImageData(new ImageData(frame.pixels, frame.w, frame.h), 0, 0);
   const rect = { x: frame.x / width, y: frame.y / height, w: frame.w / width, h: frame.h / height };
-  return { rect, canvas, pixels: frame.pixels };
+  return new Piece(rect, frame.w, frame.h, frame.pixels);
 }
 
 /** The window of the tile that is seen: its middle, and how many CSS pixels wide the tile is. */
@@ -134,8 +147,8 @@ function place(context: CanvasRenderingContext2D, piece: Piece, tile: Rect): voi
   const y = Math.round(tile.y + piece.rect.y * tile.h);
   const w = Math.round(tile.x + (piece.rect.x + piece.rect.w) * tile.w) - x;
   const h = Math.round(tile.y + (piece.rect.y + piece.rect.h) * tile.h) - y;
-  context.imageSmoothingEnabled = w !== piece.canvas.width && w < 3 * piece.canvas.width;
-  context.imageSmoothingQuality = w < piece.canvas.width ? 'high' : 'low';
+  context.imageSmoothingEnabled = w !== piece.width && w < 3 * piece.width;
+  context.imageSmoothingQuality = w < piece.width ? 'high' : 'low';
   context.drawImage(piece.canvas, x, y, w, h);
 }
 

@@ -219,7 +219,7 @@ export interface Rendered {
   rev?: number;
   ms: number;
   draft: boolean;
-  nodes: { name: string; ms: number }[] | null;
+  nodes: { name: string; ms: number; range?: [number, number] | null }[] | null;
 }
 
 /** Numbers of maps that are none of `hello.maps`. */

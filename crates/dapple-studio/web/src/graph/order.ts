@@ -48,8 +48,8 @@ export function layout(graph: Graph): Map<string, { x: number; y: number }> {
   );
 }
 
-/** Nodes and edges, without values: what the layout depends on. */
+/** Nodes and edges, without values: what the drawing depends on. */
 export function topology(graph: Graph): string {
-  const edges = graph.nodes.map((node) => [node.name, node.inputs.map((input) => input.node)]);
+  const edges = graph.nodes.map((node) => [node.name, node.kind, node.inputs.map((input) => [input.label, input.node])]);
   return JSON.stringify([edges, Object.entries(graph.material).map(([map, input]) => [map, input.node])]);
 }

@@ -176,14 +176,14 @@ export class LitScene {
 function joined(picture: Picture): Uint8ClampedArray<ArrayBuffer> | null {
   const [w, h] = picture.size;
   const pieces = picture.whole;
-  if (pieces.reduce((sum, piece) => sum + piece.canvas.width * piece.canvas.height, 0) !== w * h) return null;
+  if (pieces.reduce((sum, piece) => sum + piece.width * piece.height, 0) !== w * h) return null;
   const [only] = pieces;
   if (only && pieces.length === 1) return only.pixels;
   const all = new Uint8ClampedArray(w * h * 4);
-  for (const { rect, canvas, pixels } of pieces) {
+  for (const { rect, width, height, pixels } of pieces) {
     const [x, y] = [Math.round(rect.x * w), Math.round(rect.y * h)];
-    for (let row = 0; row < canvas.height; row += 1) {
-      all.set(pixels.subarray(row * canvas.width * 4, (row + 1) * canvas.width * 4), ((y + row) * w + x) * 4);
+    for (let row = 0; row < height; row += 1) {
+      all.set(pixels.subarray(row * width * 4, (row + 1) * width * 4), ((y + row) * w + x) * 4);
     }
   }
   return all;
