@@ -6,6 +6,7 @@ import type { Began, Frame, Graph, Hello, Json, Op, Path, Points, Problem, Rende
 import { MAP } from './core/protocol';
 import { at, Schemas } from './core/schema';
 import type { Transport } from './core/transport';
+import { recall, remember, type Unsaved } from './core/unsaved';
 import { Looking } from './looking.svelte';
 
 /** A dialog or a sheet over the page. */
@@ -44,6 +45,8 @@ export class Studio {
   leaving: { builtin?: string; file?: string } | null = null;
   /** A file that was changed by somebody else. */
   disk = $state.raw<{ text: string; hash: string; file: string } | null>(null);
+  /** Counts connections, so that views are asked for again. */
+  again = $state(0);
   /** A node to be selected as soon as it is there. */
   wanted: string | null = null;
   #editor: Editor | null = null;
@@ -51,6 +54,7 @@ export class Studio {
   #size: [number, number] = [512, 512];
   #listeners = new Set<(message: Reply) => void>();
   #marking = true;
+  #kept: Unsaved | null = null;
   /** Whether the newest view was drawn, and the newest revision that was drawn in full. */
   #seen = false;
   #full = -1;
@@ -97,6 +101,8 @@ export class Studio {
   /** Called when the text changed, by whatever. */
   textChanged(): void {
     this.changed = this.document.changed;
+    const { name, file, text } = this.document;
+    if (!this.reading) remember(() => (this.document.changed ? { name, file, text } : null));
     this.history = this.#editor?.depth() ?? [0, 0];
   }
 
@@ -201,7 +207,8 @@ export class Studio {
         this.pictures.forget((name) => !/^(builtin|file):/.test(name));
         this.#marking = true;
         this.#full = -1;
-        return this.#named();
+        this.#named();
+        return this.#restore();
       case 'diagnostics':
         return this.#problems(message.rev, message.items);
       case 'graph':
@@ -252,6 +259,9 @@ export class Studio {
     this.#editor?.lock(this.reading);
     if (again && this.document.text !== '') this.document.resume();
     else if (message.open === null) this.sheet = 'start';
+    if (!again && !this.reading) this.#kept = recall();
+    this.#seen = false;
+    this.again += 1;
     this.send({ type: 'gallery', size: 128 });
   }
 
@@ -274,6 +284,15 @@ export class Studio {
     this.disk = null;
     this.sheet = 'none';
     this.textChanged();
+  }
+
+  /** Brings back what was not saved before a reload; undo takes it away again. */
+  #restore(): void {
+    const kept = this.#kept;
+    this.#kept = null;
+    if (!kept || kept.name !== this.document.name || kept.file !== this.document.file) return;
+    this.document.replace(kept.text);
+    this.say('Changes from before the reload are back');
   }
 
   #named(): void {

@@ -68,7 +68,8 @@ export interface ExportOptions {
   size: [number, number];
   maps?: string[];
   preset?: string;
-  depth?: string;
+  /** Such as `png8`; not beside a preset. */
+  format?: string;
 }
 
 /** A node that recipes may have. */
