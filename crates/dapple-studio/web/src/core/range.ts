@@ -11,7 +11,7 @@ export interface Slide {
 
 /** Ranges for numbers by their names, where the schema allows far more than anybody wants. */
 const USUAL: [RegExp, number, number][] = [
-  [/^(gain|persistence|jitter|strength|probability|probabilities|width|contrast|opacity)$/, 0, 1],
+  [/^(roughness|metallic|height|by|mask|fade|weight|radius|gain|persistence|jitter|strength|probability|probabilities|width|contrast|opacity)$/, 0, 1],
   [/^frequency$/, 0.25, 64],
   [/^octaves$|^count$|^layers$|^iterations$/, 1, 12],
   [/^lacunarity$/, 1, 4],

@@ -34,7 +34,7 @@ export class LitScene {
   readonly #camera = new PerspectiveCamera(35, 1, 0.01, 100);
   readonly #controls: OrbitControls;
   readonly #material = new MeshStandardMaterial({ roughness: 1, metalness: 1, envMapIntensity: 0.9 });
-  readonly #mesh = new Mesh<BufferGeometry, MeshStandardMaterial>(new SphereGeometry(1, 256, 128), this.#material);
+  readonly #mesh = new Mesh<BufferGeometry, MeshStandardMaterial>(new SphereGeometry(1, 64, 32), this.#material);
   readonly #light = new DirectionalLight(0xfff4e2, 2.2);
   readonly #textures = new Map<string, DataTexture>();
   #model: BufferGeometry | null = null;
@@ -154,7 +154,7 @@ export class LitScene {
 
   #build(lay: Lay): void {
     this.#mesh.geometry.dispose();
-    const fine = lay.displaced ? 512 : 64;
+    const fine = lay.displaced ? 256 : 64;
     if (lay.shape === 'model' && this.#model) this.#mesh.geometry = this.#model.clone();
     else if (lay.shape === 'plane') this.#mesh.geometry = new PlaneGeometry(2, 2 * lay.aspect, fine, fine);
     else this.#mesh.geometry = new SphereGeometry(1, Math.max(128, fine), Math.max(64, fine / 2));
