@@ -2,7 +2,7 @@
 import type { Editor } from './core/editor';
 import { newGesture, StudioDocument } from './core/document';
 import { Pictures, type Picture } from './core/pictures';
-import type { Began, Frame, Graph, Hello, Json, Op, Path, Points, Problem, Rendered, Reply, Request, Seam } from './core/protocol';
+import type { Began, Frame, Graph, Hello, Json, Op, Path, Points, Problem, Rendered, Reply, Request, Seam, View } from './core/protocol';
 import { MAP } from './core/protocol';
 import { at, Schemas } from './core/schema';
 import type { Transport } from './core/transport';
@@ -57,6 +57,7 @@ export class Studio {
   #kept: Unsaved | null = null;
   /** Whether the newest view was drawn, and the newest revision that was drawn in full. */
   #seen = false;
+  #wanted: View | null = null;
   #full = -1;
 
   constructor(readonly transport: Transport) {
@@ -81,6 +82,7 @@ export class Studio {
 
   send(message: Request): void {
     if (message.type === 'view') this.#size = message.size;
+    if (message.type === 'view') this.#wanted = message;
     if (message.type === 'view') this.#seen = false;
     if (message.type === 'view' || message.type === 'doc' || message.type === 'patch') this.settled = false;
     this.transport.send(message);
@@ -315,13 +317,20 @@ export class Studio {
     this.rendered = message;
     if (message.nodes) this.#cost(message.nodes);
     if (message.draft) return;
-    this.#seen = true;
+    this.#seen ||= this.#shows(message.generation);
     this.#full = message.rev ?? this.document.rev;
     if (this.#marking && this.pictures.names().length > 0) {
       this.mark = this.pictures.snapshot();
       this.#marking = false;
     }
     if (!this.looking.playing && !this.looking.dragging) this.say(`Rendered in ${Math.round(message.ms)} ms`);
+  }
+
+  /** Whether a generation shows what was asked for last. */
+  #shows(generation: number): boolean {
+    const began = this.#began.get(generation);
+    const [has, wants] = [began, this.#wanted].map((one) => one && JSON.stringify([one.size, one.region, one.node]));
+    return began === undefined || has === wants;
   }
 
   /** Milliseconds of nodes: those of the last time they were computed, where they come from a cache now. */

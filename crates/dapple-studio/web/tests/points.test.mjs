@@ -38,6 +38,16 @@ describe('control points', { skip, timeout: 120_000 }, () => {
     studio?.end();
   });
 
+  /** The point nearest to a place, in pixels from the middle of the picture. */
+  const nearest = (x, y) =>
+    page.evaluate(([x, y]) => {
+      const box = document.querySelector('canvas[data-map=node]').getBoundingClientRect();
+      const far = [...document.querySelectorAll('svg .point')].map((one) => {
+        const at = one.getBoundingClientRect();
+        return Math.hypot(at.x + at.width / 2 - box.x - box.width / 2 - x, at.y + at.height / 2 - box.y - box.height / 2 - y);
+      });
+      return far.indexOf(Math.min(...far));
+    }, [x, y]);
   const count = () => page.locator('svg .point').count();
 
   test('a texture becomes its points with the same picture', async () => {
@@ -52,14 +62,15 @@ describe('control points', { skip, timeout: 120_000 }, () => {
 
   test('a dragged point moves, and one undo brings it back', async () => {
     const [before, old] = [await hash(page, 'node'), await text(page)];
-    const box = await page.locator('svg .point').nth(2).boundingBox();
+    const middle = await nearest(0, 0);
+    const box = await page.locator('svg .point').nth(middle).boundingBox();
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await page.mouse.down();
     for (let i = 1; i <= 20; i += 1) await page.mouse.move(box.x + box.width / 2 + i * 2, box.y + box.height / 2 + i);
     await page.mouse.up();
     await settled(page);
     assert.notEqual(await hash(page, 'node'), before);
-    const now = await page.locator('svg .point').nth(2).boundingBox();
+    const now = await page.locator('svg .point').nth(middle).boundingBox();
     assert.ok(Math.abs(now.x - box.x - 40) < 2 && Math.abs(now.y - box.y - 20) < 2, `${now.x - box.x}, ${now.y - box.y}`);
     await page.keyboard.press('Control+z');
     await settled(page);
@@ -69,8 +80,9 @@ describe('control points', { skip, timeout: 120_000 }, () => {
 
   test('points are added by a double-click, moved by arrows and deleted', async () => {
     const many = await count();
-    const box = await page.locator('canvas[data-map=node]').boundingBox();
-    await page.mouse.dblclick(box.x + box.width / 2 + 33, box.y + box.height / 2 + 21);
+    // Beside a point, but not on it.
+    const near = await page.locator('svg .point').nth(await nearest(0, 0)).boundingBox();
+    await page.mouse.dblclick(near.x + near.width / 2 + 24, near.y + near.height / 2 - 3);
     await settled(page);
     await page.waitForFunction((n) => document.querySelectorAll('svg .point').length === n, many + 1);
     const last = page.locator('svg .point').nth(many);

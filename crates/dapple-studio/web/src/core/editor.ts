@@ -2,7 +2,7 @@
 //
 // It lives in a shadow root, so that its styles are adopted sheets, which a strict content security policy allows.
 import { autocompletion, closeBrackets, completionKeymap } from '@codemirror/autocomplete';
-import { defaultKeymap, history, historyKeymap, isolateHistory, redo, redoDepth, undo, undoDepth } from '@codemirror/commands';
+import { defaultKeymap, history, historyKeymap, redo, redoDepth, undo, undoDepth } from '@codemirror/commands';
 import { bracketMatching, HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/language';
 import { toml } from '@codemirror/legacy-modes/mode/toml';
 import { lintGutter, setDiagnostics } from '@codemirror/lint';
@@ -22,7 +22,7 @@ export interface EditorEvents {
   caret(position: number): void;
 }
 
-const gestureOf = Annotation.define<number>();
+const joined = Annotation.define<boolean>();
 const remote = Annotation.define<boolean>();
 
 /** Milliseconds between keys up to which they are one step of undo. */
@@ -79,9 +79,7 @@ export class Editor implements TextHost {
   apply(changes: Change[], gesture: number | null): void {
     const goesOn = gesture !== null && gesture === this.#gesture;
     this.#gesture = gesture;
-    this.#last = 0;
-    const notes = [remote.of(true), ...(gesture === null ? [] : [gestureOf.of(gesture)])];
-    this.view.dispatch({ changes, annotations: goesOn ? notes : [...notes, isolateHistory.of('before')] });
+    this.view.dispatch({ changes, annotations: [remote.of(true), joined.of(goesOn)] });
   }
 
   reset(text: string): void {
@@ -135,7 +133,7 @@ export class Editor implements TextHost {
     return [
       lineNumbers(),
       lintGutter(),
-      history({ newGroupDelay: Number.MAX_SAFE_INTEGER, joinToEvent: (tr, near) => this.#joins(tr.annotation(gestureOf), near) }),
+      history({ newGroupDelay: Number.MAX_SAFE_INTEGER, joinToEvent: (tr, near) => this.#joins(tr.annotation(joined), near) }),
       drawSelection(),
       bracketMatching(),
       closeBrackets(),
@@ -163,8 +161,9 @@ export class Editor implements TextHost {
   }
 
   /** Whether a change joins the last step of undo: of the same gesture, or typed soon after beside it. */
-  #joins(gesture: number | undefined, near: boolean): boolean {
-    if (gesture !== undefined) return true;
+  #joins(goesOn: boolean | undefined, near: boolean): boolean {
+    if (goesOn !== undefined) this.#last = 0;
+    if (goesOn !== undefined) return goesOn;
     const now = performance.now();
     const soon = now - this.#last < TYPING;
     this.#last = now;
