@@ -235,7 +235,7 @@ export class Studio {
         this.seams = message.maps;
         return;
       case 'points':
-        this.points = message;
+        this.points = settle(message, this.points);
         return;
       case 'saved':
         Object.assign(this.document, { file: message.file, hash: message.hash, kept: this.document.text });
@@ -359,6 +359,16 @@ export class Studio {
     if (map >= MAP.thumbnail) return `thumb:${this.graph?.nodes[map - MAP.thumbnail]?.name}`;
     return this.hello?.maps[map]?.name ?? null;
   }
+}
+
+/** The points, with those of before where they are the same: what did not change is not drawn again. */
+function settle(now: Points, before: Points | null): Points {
+  if (before?.node !== now.node) return now;
+  const points = now.points.map((point, index) => {
+    const old = before.points[index];
+    return old && JSON.stringify(old) === JSON.stringify(point) ? old : point;
+  });
+  return { ...now, points };
 }
 
 function extentOf(recipe: Json): [number, number] {
