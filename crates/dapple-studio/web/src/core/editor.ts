@@ -10,6 +10,7 @@ import { highlightSelectionMatches, searchKeymap } from '@codemirror/search';
 import { Annotation, Compartment, EditorState, type Extension } from '@codemirror/state';
 import { drawSelection, EditorView, highlightActiveLine, keymap, lineNumbers } from '@codemirror/view';
 import { tags } from '@lezer/highlight';
+import { complete, type Known } from './complete';
 import type { TextHost } from './document';
 import type { Change, Problem } from './protocol';
 
@@ -18,6 +19,8 @@ export interface EditorEvents {
   typed(): void;
   /** The text changed, by whatever. */
   changed(): void;
+  /** What completion may offer. */
+  known(): Known;
   /** The caret was moved by a person. */
   caret(position: number): void;
 }
@@ -49,6 +52,8 @@ const theme = EditorView.theme({
   },
   '.cm-selectionMatch': { backgroundColor: 'var(--match)' },
   '.cm-tooltip': { backgroundColor: 'var(--panel)', border: '1px solid var(--line)', color: 'var(--ink)' },
+  '.cm-tooltip-autocomplete > ul > li[aria-selected]': { background: 'var(--accent-soft)', color: 'var(--accent)' },
+  '.cm-completionInfo': { maxWidth: '320px', padding: '6px 10px', fontFamily: 'var(--sans)' },
   '.cm-panels': { backgroundColor: 'var(--panel)', color: 'var(--ink)', borderColor: 'var(--line)' },
   '.cm-textfield, .cm-button': { color: 'var(--ink)', background: 'var(--field)', borderColor: 'var(--line)' },
   '.cm-lintRange-error': { backgroundImage: 'none', borderBottom: '2px solid var(--error)' },
@@ -139,7 +144,7 @@ export class Editor implements TextHost {
       closeBrackets(),
       highlightActiveLine(),
       highlightSelectionMatches(),
-      autocompletion({ activateOnTyping: false }),
+      autocompletion({ override: [(context) => complete(context, this.events.known())] }),
       StreamLanguage.define(toml),
       syntaxHighlighting(colors),
       theme,
