@@ -123,6 +123,8 @@ export class Editor implements TextHost {
       message: [message, nearest && `did you mean ${nearest}?`, hint].filter(Boolean).join('\n'),
     }));
     this.view.dispatch(setDiagnostics(this.view.state, marks));
+    // The list of problems takes room: the caret is to stay in sight.
+    if (marks.length > 0 && this.view.hasFocus) setTimeout(() => this.view.dispatch({ effects: EditorView.scrollIntoView(this.view.state.selection.main.head, { yMargin: 28 }) }), 30);
   }
 
   /** Puts the caret somewhere, without telling of it. */
