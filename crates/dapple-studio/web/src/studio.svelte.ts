@@ -346,9 +346,8 @@ export class Studio {
     const size = this.#began.get(picture.generation)?.size ?? this.#size;
     const alone = picture.map === MAP.preview || picture.map >= MAP.thumbnail;
     this.pictures.add(name, picture, alone ? [picture.w * picture.scale, picture.h * picture.scale] : size);
-    const acknowledge = () => this.send({ type: 'ack', generation: picture.generation, map: picture.map });
-    if (picture.map < MAP.thumbnail && !document.hidden) requestAnimationFrame(acknowledge);
-    else if (picture.map < MAP.builtin) acknowledge();
+    // At once, not when it is drawn: what is not drawn by then is replaced for nothing, and a frame is not waited for.
+    if (picture.map < MAP.builtin) this.send({ type: 'ack', generation: picture.generation, map: picture.map });
   }
 
   #pictureName(map: number): string | null {

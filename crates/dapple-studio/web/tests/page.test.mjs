@@ -129,6 +129,24 @@ describe('the page', { skip, timeout: 240_000 }, () => {
     assert.deepEqual(page.wrong, []);
   });
 
+  test('the lit view shows the material and follows a change', async () => {
+    const page = await open(studio.url);
+    await settled(page);
+    await page.locator('#tab-lit').click();
+    const canvas = page.locator('.lit canvas');
+    await canvas.waitFor();
+    await settled(page);
+    if ((await page.locator('.lit .wrong').count()) > 0) return; // This browser has no WebGL, and the page says so.
+    const picture = async () => (await canvas.screenshot()).toString('base64');
+    await page.waitForTimeout(1500);
+    const before = await picture();
+    await page.locator('body').press('r');
+    await settled(page);
+    await page.waitForTimeout(1500);
+    assert.notEqual(await picture(), before);
+    assert.deepEqual(page.wrong, []);
+  });
+
   test('an export is byte for byte what bake writes', async () => {
     const page = await open(studio.url);
     await settled(page);
