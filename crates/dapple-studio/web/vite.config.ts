@@ -15,6 +15,7 @@ export default defineConfig({
     target: 'es2022',
     modulePreload: { polyfill: false },
     assetsInlineLimit: 0,
+    chunkSizeWarningLimit: 800,
     cssCodeSplit: false,
     rollupOptions: {
       output: {

@@ -11,7 +11,7 @@ import { chromium } from 'playwright-core';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
 export const DAPPLE = resolve(process.env.DAPPLE ?? join(here, '../../../../target/debug/dapple'));
-const DIST = resolve(process.env.DIST ?? join(here, '../../dist'));
+export const DIST = resolve(process.env.DIST ?? join(here, '../../dist'));
 const CHROMIUM = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find((path) => path && existsSync(path));
 
 /** Why the tests cannot run, or false. */
