@@ -1,30 +1,27 @@
 // The state of the page: what was told by whatever computes, what is selected, and what a person asked for.
 import type { Editor } from './core/editor';
 import { newGesture, StudioDocument } from './core/document';
-import { Pictures, type Picture } from './core/pictures';
-import type { Began, Frame, Graph, Hello, Json, Op, Path, Points, Problem, Rendered, Reply, Request, Seam, View } from './core/protocol';
+import type { Pictures } from './core/pictures';
+import type { Frame, Graph, Hello, Json, Op, Path, Points, Problem, Reply, Request, Seam } from './core/protocol';
 import { MAP } from './core/protocol';
 import { at, Schemas } from './core/schema';
 import type { Transport } from './core/transport';
 import { recall, remember, type Unsaved } from './core/unsaved';
 import { Looking } from './looking.svelte';
+import { Rendering } from './rendering.svelte';
 
 /** A dialog or a sheet over the page. */
-export type Sheet = 'none' | 'keys' | 'export' | 'save' | 'copy' | 'add' | 'start' | 'leave' | 'disk' | 'rename';
+export type Sheet = 'none' | 'keys' | 'export' | 'save' | 'copy' | 'add' | 'start' | 'leave' | 'disk';
 
 /** Everything that the page shows. */
 export class Studio {
   readonly looking = new Looking();
-  readonly pictures = new Pictures();
+  readonly rendering = new Rendering();
   hello = $state.raw<Hello | null>(null);
   connection = $state<'waiting' | 'open' | 'closed' | 'refused'>('waiting');
   recipe = $state.raw<Json>(null);
   graph = $state.raw<Graph | null>(null);
   problems = $state.raw<Problem[]>([]);
-  rendered = $state.raw<Rendered | null>(null);
-  took = $state.raw<Map<string, number>>(new Map());
-  /** The numbers that are black and white in the pictures of nodes. */
-  ranges = $state.raw<Map<string, [number, number] | null>>(new Map());
   seams = $state.raw<Seam[] | null>(null);
   points = $state.raw<Points | null>(null);
   selected = $state<string | null>(null);
@@ -39,8 +36,6 @@ export class Studio {
   history = $state.raw<[number, number]>([0, 0]);
   schemas = $derived(this.hello ? new Schemas(this.hello.schema) : null);
   readonly document: StudioDocument;
-  /** The pictures that the newer ones are compared with. */
-  mark = $state.raw<Map<string, Picture>>(new Map());
   /** What is to be opened once a person agrees to lose changes. */
   leaving: { builtin?: string; file?: string } | null = null;
   /** A file that was changed by somebody else. */
@@ -50,15 +45,10 @@ export class Studio {
   /** A node to be selected as soon as it is there. */
   wanted: string | null = null;
   #editor: Editor | null = null;
-  #began = new Map<number, Began>();
-  #size: [number, number] = [512, 512];
   #listeners = new Set<(message: Reply) => void>();
-  #marking = true;
   #kept: Unsaved | null = null;
-  /** Whether the newest view was drawn, and the newest revision that was drawn in full. */
-  #seen = false;
-  #wanted: View | null = null;
-  #full = -1;
+  /** Whether the way was lost: the text here goes on, not that of the new session. */
+  #resuming = false;
 
   constructor(readonly transport: Transport) {
     const host = {
@@ -72,6 +62,10 @@ export class Studio {
     transport.onstate = (state) => (this.connection = state);
   }
 
+  get pictures(): Pictures {
+    return this.rendering.pictures;
+  }
+
   get reading(): boolean {
     return this.hello?.mode === 'watch';
   }
@@ -81,9 +75,7 @@ export class Studio {
   }
 
   send(message: Request): void {
-    if (message.type === 'view') this.#size = message.size;
-    if (message.type === 'view') this.#wanted = message;
-    if (message.type === 'view') this.#seen = false;
+    if (message.type === 'view') this.rendering.asked(message);
     if (message.type === 'view' || message.type === 'doc' || message.type === 'patch') this.settled = false;
     this.transport.send(message);
   }
@@ -182,7 +174,7 @@ export class Studio {
 
   /** Keeps the pictures of now, to be compared with later ones. */
   markNow(): void {
-    this.mark = this.pictures.snapshot();
+    this.rendering.markNow();
     this.say('Marked: hold B to compare with what is seen now');
   }
 
@@ -194,9 +186,10 @@ export class Studio {
   }
 
   #receive(message: Reply): void {
+    if (message.type === 'document' && this.#resuming) return this.#resume();
     this.document.receive(message);
     this.#take(message);
-    this.settled = this.#seen && !this.document.busy && this.#full >= this.document.made;
+    this.settled = !this.document.busy && this.rendering.shows(this.document.made);
     for (const then of this.#listeners) then(message);
   }
 
@@ -206,9 +199,7 @@ export class Studio {
         return this.#hello(message);
       case 'document':
         this.looking.window = null;
-        this.pictures.forget((name) => !/^(builtin|file):/.test(name));
-        this.#marking = true;
-        this.#full = -1;
+        this.rendering.reset();
         this.#named();
         return this.#restore();
       case 'diagnostics':
@@ -226,11 +217,11 @@ export class Studio {
         this.looking.extent = extentOf(message.recipe);
         return;
       case 'began':
-        this.#began.set(message.generation, message);
-        if (this.#began.size > 8) this.#began.delete([...this.#began.keys()][0] ?? 0);
-        return;
+        return this.rendering.began(message);
       case 'rendered':
-        return this.#rendered(message);
+        this.rendering.rendered(message, this.document.rev);
+        if (!message.draft && !this.looking.playing && !this.looking.dragging) this.say(`Rendered in ${Math.round(message.ms)} ms`);
+        return;
       case 'seams':
         this.seams = message.maps;
         return;
@@ -259,12 +250,18 @@ export class Studio {
     this.looking.limit = message.limits.size;
     this.looking.whole = message.limits.whole ?? message.limits.size;
     this.#editor?.lock(this.reading);
-    if (again && this.document.text !== '') this.document.resume();
-    else if (message.open === null) this.sheet = 'start';
+    this.#resuming = again && this.document.text !== '';
+    if (!again && message.open === null) this.sheet = 'start';
     if (!again && !this.reading) this.#kept = recall();
-    this.#seen = false;
+    if (this.#resuming && message.open === null) this.#resume();
     this.again += 1;
     this.send({ type: 'gallery', size: 128 });
+  }
+
+  /** Goes on with the text of this page in a new session. */
+  #resume(): void {
+    this.#resuming = false;
+    this.document.resume();
   }
 
   /** The file changed on disk: it is followed where nothing here would be lost, else a person is asked. */
@@ -313,39 +310,10 @@ export class Studio {
     else if (before > 0) this.say('The recipe is valid again');
   }
 
-  #rendered(message: Rendered): void {
-    this.rendered = message;
-    if (message.nodes) this.#cost(message.nodes);
-    if (message.draft) return;
-    this.#seen ||= this.#shows(message.generation);
-    this.#full = message.rev ?? this.document.rev;
-    if (this.#marking && this.pictures.names().length > 0) {
-      this.mark = this.pictures.snapshot();
-      this.#marking = false;
-    }
-    if (!this.looking.playing && !this.looking.dragging) this.say(`Rendered in ${Math.round(message.ms)} ms`);
-  }
-
-  /** Whether a generation shows what was asked for last. */
-  #shows(generation: number): boolean {
-    const began = this.#began.get(generation);
-    const [has, wants] = [began, this.#wanted].map((one) => one && JSON.stringify([one.size, one.region, one.node]));
-    return began === undefined || has === wants;
-  }
-
-  /** Milliseconds of nodes: those of the last time they were computed, where they come from a cache now. */
-  #cost(nodes: NonNullable<Rendered['nodes']>): void {
-    const cost = ({ name, ms }: { name: string; ms: number }) => (ms < 0.05 ? Math.max(ms, this.took.get(name) ?? 0) : ms);
-    this.took = new Map(nodes.map((node) => [node.name, cost(node)]));
-    this.ranges = new Map(nodes.map(({ name, range }) => [name, range ?? null]));
-  }
-
   #picture(picture: Frame): void {
     const name = this.#pictureName(picture.map);
     if (name === null) return;
-    const size = this.#began.get(picture.generation)?.size ?? this.#size;
-    const alone = picture.map === MAP.preview || picture.map >= MAP.thumbnail;
-    this.pictures.add(name, picture, alone ? [picture.w * picture.scale, picture.h * picture.scale] : size);
+    this.rendering.picture(name, picture);
     // At once, not when it is drawn: what is not drawn by then is replaced for nothing, and a frame is not waited for.
     if (picture.map < MAP.builtin) this.send({ type: 'ack', generation: picture.generation, map: picture.map });
   }

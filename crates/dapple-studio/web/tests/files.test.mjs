@@ -85,6 +85,34 @@ describe('files', { skip, timeout: 120_000 }, () => {
     }
   });
 
+  test('a page that lost its way goes on with its own text', async () => {
+    const studio = await serve(['mine.toml'], 'studio', folder());
+    try {
+      const page = await open('about:blank');
+      let way;
+      await page.routeWebSocket(/\/ws/, (socket) => {
+        way = socket;
+        socket.connectToServer();
+      });
+      await page.goto(studio.url);
+      await settled(page);
+      await page.getByRole('spinbutton', { name: 'Seed', exact: true }).fill('31');
+      await page.keyboard.press('Tab');
+      await settled(page);
+      const before = await text(page);
+      const lost = way;
+      await lost.close();
+      await page.waitForTimeout(2500);
+      assert.notEqual(way, lost);
+      assert.equal(await text(page), before);
+      await page.getByRole('button', { name: 'Shuffle the seed' }).click();
+      await settled(page);
+      assert.notEqual(await text(page), before);
+    } finally {
+      studio.end();
+    }
+  });
+
   test('a watched file is followed and cannot be changed', async () => {
     const studio = await serve(['mine.toml'], 'watch', folder());
     try {
