@@ -22,6 +22,7 @@ export class Rendering {
   /** Whether the newest view was drawn, and the newest revision that was drawn in full. */
   #seen = false;
   #full = -1;
+  #generation = 0;
 
   /** Another view was asked for. */
   asked(view: View): void {
@@ -38,7 +39,7 @@ export class Rendering {
 
   /** Whether the full pictures are those of a revision and of the newest view. */
   shows(rev: number): boolean {
-    return this.#seen && this.#full >= rev;
+    return this.#seen && this.#full >= rev && this.#areThere();
   }
 
   began(message: Began): void {
@@ -54,6 +55,7 @@ export class Rendering {
     if (message.draft) return;
     this.#seen ||= this.#isOfView(message.generation);
     this.#full = message.rev ?? rev;
+    this.#generation = message.generation;
     if (!this.#marking || this.pictures.names().length === 0) return;
     this.markNow();
     this.#marking = false;
@@ -69,6 +71,16 @@ export class Rendering {
     const alone = frame.map === MAP.preview || frame.map >= MAP.thumbnail;
     const size = this.#began.get(frame.generation)?.size ?? this.#view?.size ?? [frame.w, frame.h];
     this.pictures.add(name, frame, alone ? [frame.w * frame.scale, frame.h * frame.scale] : size);
+  }
+
+  /** Whether the pictures of the last report have come: one that waits for others comes after it. */
+  #areThere(): boolean {
+    const { node = null, exact = null, maps = [] } = this.#view ?? {};
+    const names = node !== null ? ['node'] : exact ? ['preview'] : maps;
+    return names.every((name) => {
+      const picture = this.pictures.get(name);
+      return picture !== undefined && picture.generation === this.#generation && !picture.draft && picture.coming.length === 0;
+    });
   }
 
   #isOfView(generation: number): boolean {

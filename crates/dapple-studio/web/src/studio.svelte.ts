@@ -189,8 +189,12 @@ export class Studio {
     if (message.type === 'document' && this.#resuming) return this.#resume();
     this.document.receive(message);
     this.#take(message);
-    this.settled = !this.document.busy && this.rendering.shows(this.document.made);
+    this.#settle();
     for (const then of this.#listeners) then(message);
+  }
+
+  #settle(): void {
+    this.settled = !this.document.busy && this.rendering.shows(this.document.made);
   }
 
   #take(message: Reply): void {
@@ -314,6 +318,7 @@ export class Studio {
     const name = this.#pictureName(picture.map);
     if (name === null) return;
     this.rendering.picture(name, picture);
+    this.#settle();
     // At once, not when it is drawn: what is not drawn by then is replaced for nothing, and a frame is not waited for.
     if (picture.map < MAP.builtin) this.send({ type: 'ack', generation: picture.generation, map: picture.map });
   }
