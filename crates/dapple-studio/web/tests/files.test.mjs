@@ -38,7 +38,7 @@ describe('files', { skip, timeout: 120_000 }, () => {
     try {
       const page = await open(studio.url);
       await settled(page);
-      await page.getByRole('spinbutton', { name: 'Seed' }).fill('77');
+      await page.getByRole('spinbutton', { name: 'Seed', exact: true }).fill('77');
       await page.keyboard.press('Tab');
       await settled(page);
       await page.keyboard.press('Control+s');
@@ -46,7 +46,7 @@ describe('files', { skip, timeout: 120_000 }, () => {
       await page.locator('dialog').waitFor({ state: 'detached' });
       assert.equal(readFileSync(join(studio.folder, 'mine.toml'), 'utf8'), await text(page));
       assert.equal(await page.locator('.top .dot').count(), 0);
-      await page.getByRole('spinbutton', { name: 'Seed' }).fill('78');
+      await page.getByRole('spinbutton', { name: 'Seed', exact: true }).fill('78');
       await page.keyboard.press('Tab');
       await settled(page);
       const other = `${readFileSync(join(studio.folder, 'mine.toml'), 'utf8')}\n# By somebody else.\n`;
@@ -71,7 +71,7 @@ describe('files', { skip, timeout: 120_000 }, () => {
       const page = await open(studio.url);
       await settled(page);
       page.on('dialog', (dialog) => dialog.accept());
-      await page.getByRole('spinbutton', { name: 'Seed' }).fill('4711');
+      await page.getByRole('spinbutton', { name: 'Seed', exact: true }).fill('4711');
       await page.keyboard.press('Tab');
       await settled(page);
       const before = await text(page);
@@ -122,7 +122,7 @@ describe('files', { skip, timeout: 120_000 }, () => {
       assert.equal(await page.locator('.parameters input:enabled').count(), 0);
       const next = readFileSync(join(studio.folder, 'mine.toml'), 'utf8').replace(/seed = \d+/, 'seed = 12345');
       writeFileSync(join(studio.folder, 'mine.toml'), next);
-      await page.waitForFunction(() => document.querySelector('.text .editor').shadowRoot.textContent.includes('12345'));
+      await page.waitForFunction(() => document.querySelector('.text .editor').shadowRoot.querySelector('.cm-content').textContent.includes('seed = 12345'));
       await settled(page);
       assert.equal(await text(page), next);
       assert.deepEqual(page.wrong, []);
