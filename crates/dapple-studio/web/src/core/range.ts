@@ -88,3 +88,23 @@ export function fromSlider({ low, high, step, log }: Slide, t: number): number {
 export function shown(value: number): string {
   return Number.isFinite(value) ? String(tidy(value)) : '';
 }
+
+/** Frequencies at which a tile that repeats holds a whole number of cells: multiples of `unit` over its side. */
+export interface Whole {
+  unit: number;
+  side: number;
+  least: number;
+}
+
+/** The nearest number of whole cells. */
+export function snapped(value: number, whole: Whole | null): number {
+  if (!whole) return value;
+  return Math.max(whole.least, Math.round((value * whole.side) / whole.unit) * whole.unit) / whole.side;
+}
+
+/** What a frequency must be whole for, if the sides have a common measure; wavelets need an even number, from 4 on. */
+export function wholeCells(sides: number[], wavelet: boolean): Whole | null {
+  const side = Math.min(...sides);
+  if (sides.length === 0 || sides.some((one) => Math.abs(one / side - Math.round(one / side)) > 1e-9)) return null;
+  return wavelet ? { unit: 2, side, least: 4 } : { unit: 1, side, least: 1 };
+}
