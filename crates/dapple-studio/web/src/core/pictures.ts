@@ -1,0 +1,158 @@
+// Pictures that arrived, by what they show, each where it lies in the tile.
+//
+// A picture may come in pieces. Those of the newest generation lie over the last whole picture, which leaves when the
+// last piece is there: what is seen is never less than it was.
+import type { Frame, Region } from './protocol';
+
+/** Where something lies in the tile, which goes from 0 to 1 along both axes. */
+export interface Rect {
+  x: number;
+  y: number;
+  w: number;
+  h: number;
+}
+
+/** A piece of a picture. It becomes a canvas when it is first drawn: while a slider is dragged, many never are. */
+export class Piece {
+  #canvas: HTMLCanvasElement | null = null;
+
+  constructor(
+    readonly rect: Rect,
+    readonly width: number,
+    readonly height: number,
+    readonly pixels: Uint8ClampedArray<ArrayBuffer>,
+  ) {}
+
+  get canvas(): HTMLCanvasElement {
+    if (this.#canvas) return this.#canvas;
+    const canvas = Object.assign(document.createElement('canvas'), { width: this.width, height: this.height });
+    const context = canvas.getContext('2d', { willReadFrequently: this.width <= SMALL });
+    context?.putImageData(new ImageData(this.pixels, this.width, this.height), 0, 0);
+    this.#canvas = canvas;
+    return canvas;
+  }
+}
+
+/** Up to this width a canvas is kept in plain memory, which is faster for many small ones. */
+const SMALL = 128;
+
+/** A picture: the last one of all of the tile, the last whole one, and what is there of the next. */
+export interface Picture {
+  base: Piece[];
+  whole: Piece[];
+  coming: Piece[];
+  generation: number;
+  draft: boolean;
+  /** The columns and rows of the whole tile at this picture's scale. */
+  size: [number, number];
+}
+
+/** What the pictures of a generation show. */
+export interface Shown {
+  size: [number, number];
+  region: Region | null;
+}
+
+/** Pictures by name, and who wants to know of them. */
+export class Pictures {
+  readonly #pictures = new Map<string, Picture>();
+  readonly #listeners = new Map<string, Set<() => void>>();
+
+  get(name: string): Picture | undefined {
+    return this.#pictures.get(name);
+  }
+
+  names(): string[] {
+    return [...this.#pictures.keys()];
+  }
+
+  /** Calls `then` whenever the picture changes, until the answer is called. */
+  listen(name: string, then: () => void): () => void {
+    const all = this.#listeners.get(name) ?? new Set();
+    this.#listeners.set(name, all.add(then));
+    return () => all.delete(then);
+  }
+
+  /** Whether anybody looks at the picture. */
+  seen(name: string): boolean {
+    return (this.#listeners.get(name)?.size ?? 0) > 0;
+  }
+
+  /** Adds a frame; `size` is that of the whole tile, before scaling. */
+  add(name: string, frame: Frame, size: [number, number]): void {
+    const before = this.#pictures.get(name);
+    const scaled: [number, number] = [Math.ceil(size[0] / frame.scale), Math.ceil(size[1] / frame.scale)];
+    const piece = pieceOf(frame, scaled);
+    const goesOn = before && before.generation === frame.generation && before.draft === frame.draft;
+    const coming = [...(goesOn ? before.coming : []), piece];
+    const whole = frame.last ? coming : (before?.whole ?? []);
+    const base = frame.last && covers(coming) ? [] : (before?.base.length ? before.base : covers(whole) ? whole : []);
+    const rest = { generation: frame.generation, draft: frame.draft, size: scaled };
+    this.#pictures.set(name, { base, whole, coming: frame.last ? [] : coming, ...rest });
+    this.#tell(name);
+  }
+
+  /** Forgets the pictures for which `which` holds. */
+  forget(which: (name: string) => boolean): void {
+    for (const name of this.names()) {
+      if (!which(name)) continue;
+      this.#pictures.delete(name);
+      this.#tell(name);
+    }
+  }
+
+  /** The pictures as they are now, to be compared with later ones. */
+  snapshot(): Map<string, Picture> {
+    return new Map(this.#pictures);
+  }
+
+  #tell(name: string): void {
+    for (const then of this.#listeners.get(name) ?? []) then();
+  }
+}
+
+function pieceOf(frame: Frame, [width, height]: [number, number]): Piece {
+  const rect = { x: frame.x / width, y: frame.y / height, w: frame.w / width, h: frame.h / height };
+  return new Piece(rect, frame.w, frame.h, frame.pixels);
+}
+
+/** The window of the tile that is seen: its middle, and how many CSS pixels wide the tile is. */
+export interface Window {
+  x: number;
+  y: number;
+  zoom: number;
+}
+
+/** Draws a picture into a canvas: `window` says which part, `repeats` how often the tile lies side by side. */
+export function draw(target: HTMLCanvasElement, picture: Picture, window: Window, aspect: number, repeats: number): void {
+  const context = target.getContext('2d');
+  if (!context) return;
+  const ratio = devicePixelRatio;
+  const [w, h] = [window.zoom * ratio, window.zoom * aspect * ratio];
+  const left = Math.round(target.width / 2 - window.x * w);
+  const top = Math.round(target.height / 2 - window.y * h);
+  context.clearRect(0, 0, target.width, target.height);
+  for (let row = 0; row < repeats; row += 1) {
+    for (let column = 0; column < repeats; column += 1) {
+      for (const piece of [...picture.base, ...picture.whole, ...picture.coming]) {
+        place(context, piece, { x: left + column * w, y: top + row * h, w, h });
+      }
+    }
+  }
+}
+
+/** Draws a piece with its edges on whole pixels, so that neighbors meet. */
+function place(context: CanvasRenderingContext2D, piece: Piece, tile: Rect): void {
+  const x = Math.round(tile.x + piece.rect.x * tile.w);
+  const y = Math.round(tile.y + piece.rect.y * tile.h);
+  const w = Math.round(tile.x + (piece.rect.x + piece.rect.w) * tile.w) - x;
+  const h = Math.round(tile.y + (piece.rect.y + piece.rect.h) * tile.h) - y;
+  context.imageSmoothingEnabled = w !== piece.width && w < 3 * piece.width;
+  context.imageSmoothingQuality = w < piece.width ? 'high' : 'low';
+  context.drawImage(piece.canvas, x, y, w, h);
+}
+
+/** Whether pieces cover all of the tile. */
+function covers(pieces: Piece[]): boolean {
+  return pieces.reduce((area, { rect }) => area + rect.w * rect.h, 0) > 0.999;
+}

@@ -1,0 +1,153 @@
+// The keys of the page, and what they do.
+import { MODES } from './looking.svelte';
+import type { Studio } from './studio.svelte';
+
+/** The sheet of keys, by where they hold. */
+export const KEYS: { title: string; keys: [string, string][] }[] = [
+  {
+    title: 'Everywhere',
+    keys: [
+      ['Ctrl Z', 'Undo, also what sliders did'],
+      ['Ctrl Shift Z', 'Redo'],
+      ['Ctrl S', 'Save'],
+      ['Ctrl E', 'Export'],
+      ['Ctrl O', 'Recipes'],
+      ['F6', 'To the next part of the page'],
+      ['?', 'This sheet'],
+      ['Esc', 'Close; to the recipe'],
+    ],
+  },
+  {
+    title: 'View',
+    keys: [
+      ['1 … 6', 'Maps, Tiled, Lit, Node, Seams, Exact'],
+      ['+ -', 'Zoom'],
+      ['0', 'Fit'],
+      ['← → ↑ ↓', 'Move the picture that has the focus'],
+      ['B', 'While it is held: as it was marked'],
+      ['Shift B', 'Mark what is seen now'],
+      ['P', 'Pause'],
+      ['Space', 'Play the loop'],
+      ['R', 'Another seed by chance'],
+    ],
+  },
+  {
+    title: 'Nodes',
+    keys: [
+      ['A', 'Add a node'],
+      ['Ctrl D', 'Duplicate the selected node'],
+      ['Delete', 'Remove it'],
+      ['[ ]', 'Select the node before or after'],
+    ],
+  },
+  {
+    title: 'Points, and stops of ramps',
+    keys: [
+      ['← → ↑ ↓', 'Move; with Shift ten times as far'],
+      ['Delete', 'Remove'],
+      ['Tab', 'To the next'],
+    ],
+  },
+];
+
+/** The parts of the page that F6 goes through. */
+const PARTS = '.top button, .viewer [role=tab][aria-selected=true], .graph .add, .parameters input, .text .editor';
+
+/** Whether keys are for what has the focus: typing, choosing. */
+function busy(target: EventTarget | null): boolean {
+  if (!(target instanceof HTMLElement)) return false;
+  if (target.shadowRoot) return true;
+  const input = target instanceof HTMLInputElement && !['checkbox', 'range', 'color', 'button'].includes(target.type);
+  return input || target.closest('select, textarea, dialog, [contenteditable=true]') !== null;
+}
+
+/** What a key does; true if it did something. */
+export function pressed(studio: Studio, event: KeyboardEvent): boolean {
+  const { looking } = studio;
+  if (event.ctrlKey || event.metaKey) return withControl(studio, event);
+  if (event.key === 'F6') return nextPart(event.shiftKey);
+  if (busy(event.target) || event.altKey) return false;
+  const mode = MODES[Number(event.key) - 1];
+  if (mode && /^[1-6]$/.test(event.key)) {
+    if ((mode.id === 'tiled') !== (looking.mode === 'tiled')) looking.window = null;
+    looking.mode = mode.id;
+    return true;
+  }
+  const onButton = event.target instanceof HTMLButtonElement || event.target instanceof HTMLInputElement;
+  switch (event.key) {
+    case '?':
+      studio.sheet = 'keys';
+      return true;
+    case 'a':
+      if (!studio.reading) studio.sheet = 'add';
+      return true;
+    case 'b':
+      looking.before = true;
+      return true;
+    case 'B':
+      studio.markNow();
+      return true;
+    case 'p':
+      looking.paused = !looking.paused;
+      return true;
+    case 'r':
+      studio.shuffle();
+      return true;
+    case ' ':
+      if (onButton) return false;
+      looking.playing = !looking.playing;
+      return true;
+    case '+':
+    case '=':
+      looking.zoomBy(1.25);
+      return true;
+    case '-':
+      looking.zoomBy(0.8);
+      return true;
+    case '0':
+      looking.window = null;
+      return true;
+    case '[':
+    case ']':
+      studio.step(event.key === ']' ? 1 : -1);
+      return true;
+    case 'Delete':
+      if (studio.selected === null || event.defaultPrevented) return false;
+      studio.patch([{ op: 'remove_node', name: studio.selected }]);
+      return true;
+    case 'Escape':
+      if (studio.sheet === 'none') studio.select(null);
+      return true;
+    default:
+      return false;
+  }
+}
+
+function withControl(studio: Studio, event: KeyboardEvent): boolean {
+  const key = event.key.toLowerCase();
+  const inText = event.target instanceof HTMLElement && event.target.shadowRoot !== null;
+  if (key === 'z' || key === 'y') {
+    if (inText) return false;
+    if (key === 'y' || event.shiftKey) studio.redo();
+    else studio.undo();
+    return true;
+  }
+  if (key === 'd' && studio.selected !== null && !inText) {
+    studio.wanted = studio.freeName(studio.selected);
+    studio.patch([{ op: 'duplicate_node', name: studio.selected, to: studio.wanted }]);
+    return true;
+  }
+  const sheet = ({ s: 'save', e: 'export', o: 'start' } as const)[key as 's' | 'e' | 'o'];
+  if (!sheet || (sheet === 'save' && studio.reading)) return false;
+  studio.sheet = sheet;
+  return true;
+}
+
+function nextPart(back: boolean): boolean {
+  const parts = [...new Map([...document.querySelectorAll<HTMLElement>(PARTS)].map((part) => [part.closest('header.top, section'), part])).values()];
+  const now = parts.findIndex((part) => part.closest('header.top, section')?.contains(document.activeElement));
+  const next = parts[(now + (back ? -1 : 1) + parts.length) % parts.length];
+  const inner = next?.shadowRoot?.querySelector<HTMLElement>('[role=textbox]');
+  (inner ?? next)?.focus();
+  return true;
+}

@@ -1,0 +1,164 @@
+// What is looked at: the kind of view, the maps, the size, the window that is zoomed into, the time.
+import type { Region, View } from './core/protocol';
+import type { Window } from './core/pictures';
+
+/** The kinds of views. */
+export const MODES = [
+  { id: 'maps', label: 'Maps', about: 'The maps side by side' },
+  { id: 'tiled', label: 'Tiled', about: 'Two by two copies: does it repeat well?' },
+  { id: 'lit', label: 'Lit', about: 'The material in light' },
+  { id: 'node', label: 'Node', about: 'The picture of the selected node' },
+  { id: 'seams', label: 'Seams', about: 'How visible the borders of the tile are' },
+  { id: 'exact', label: 'Exact', about: 'The preview that the command renders' },
+] as const;
+
+export type Mode = (typeof MODES)[number]['id'];
+
+/** The sizes of the longer side that are offered. */
+export const SIZES = [128, 256, 512, 1024, 2048, 4096];
+
+/** Seconds that a loop takes. */
+const LOOP = 4;
+
+/** What the page shows of the recipe. */
+export class Looking {
+  mode = $state<Mode>('maps');
+  maps = $state<string[]>(['height', 'normal', 'albedo']);
+  /** Pixels of the longer side. */
+  size = $state(512);
+  /** The window, or null where all is to fit. */
+  window = $state.raw<Window | null>(null);
+  /** Whether a zoomed view asks for more pixels. */
+  sharp = $state(true);
+  /** CSS pixels of a view, set by the views. */
+  room = $state.raw<[number, number]>([1, 1]);
+  time = $state(0);
+  playing = $state(false);
+  paused = $state(false);
+  before = $state(false);
+  dragging = $state(false);
+  shape = $state<'sphere' | 'plane' | 'model'>('sphere');
+  exact = $state<'sphere' | 'plane' | 'torus'>('sphere');
+  /** Width and height of the tile in units of the plane. */
+  extent = $state.raw<[number, number]>([1, 1]);
+  limit = $state(4096);
+  whole = $state(4096);
+
+  /** Height over width of the tile. */
+  get aspect(): number {
+    return this.extent[1] / this.extent[0] || 1;
+  }
+
+  /** Columns and rows of the tile. */
+  get pixels(): [number, number] {
+    return sized(this.size, this.aspect);
+  }
+
+  get repeats(): number {
+    return this.mode === 'tiled' ? 2 : 1;
+  }
+
+  /** The zoom at which all of it fits. */
+  get fit(): number {
+    const [w, h] = this.room;
+    return Math.max(8, Math.min(w, h / this.aspect) / this.repeats);
+  }
+
+  /** The window as it is shown. */
+  get shown(): Window {
+    return this.window ?? { x: this.repeats / 2, y: this.repeats / 2, zoom: this.fit };
+  }
+
+  /** The maps that this view needs. */
+  needed(): string[] {
+    if (this.mode === 'lit') return ['albedo', 'normal', 'orm', 'height'];
+    return this.mode === 'maps' || this.mode === 'tiled' ? [...this.maps] : [];
+  }
+
+  /** The view to be asked for. */
+  view(selected: string | null): View {
+    const { size, region } = this.#detail();
+    const node = this.mode === 'node' ? selected : null;
+    const paused = this.paused || this.mode === 'seams';
+    const exact = this.mode === 'exact' ? { shape: this.exact } : null;
+    const rest = { time: this.time, draft: true, thumbnails: true, paused, exact };
+    return { size, region, maps: this.needed(), node, ...rest };
+  }
+
+  /** Zooms by a factor about a point of the view, in CSS pixels from its middle. */
+  zoomBy(factor: number, [x, y]: [number, number] = [0, 0]): void {
+    const now = this.shown;
+    const zoom = Math.min(Math.max(now.zoom * factor, 16), 1 << 20);
+    const [px, py] = [x / now.zoom, y / (now.zoom * this.aspect)];
+    const k = 1 - now.zoom / zoom;
+    this.#look({ x: now.x + px * k, y: now.y + py * k, zoom });
+  }
+
+  /** Moves the view by CSS pixels. */
+  panBy(x: number, y: number): void {
+    const now = this.shown;
+    this.#look({ x: now.x - x / now.zoom, y: now.y - y / (now.zoom * this.aspect), zoom: now.zoom });
+  }
+
+  /** Shows one pixel of the picture as one of the screen. */
+  oneToOne(): void {
+    this.window = { x: this.repeats / 2, y: this.repeats / 2, zoom: this.pixels[0] / devicePixelRatio };
+  }
+
+  /** Shows or hides a map; the last one stays. */
+  toggle(map: string, order: string[]): void {
+    const has = this.maps.includes(map);
+    if (has && this.maps.length === 1) return;
+    const chosen = has ? this.maps.filter((one) => one !== map) : [...this.maps, map];
+    this.maps = order.filter((one) => chosen.includes(one));
+  }
+
+  /** Plays the loop in time until the answer is called. */
+  play(): () => void {
+    let last = performance.now();
+    let id = requestAnimationFrame(function step(this: void, now: number) {
+      looking.time = (looking.time + (now - last) / 1000 / LOOP) % 1;
+      last = now;
+      id = requestAnimationFrame(step);
+    });
+    const looking = this;
+    return () => cancelAnimationFrame(id);
+  }
+
+  #look(window: Window): void {
+    const keep = (v: number) => Math.min(Math.max(v, 0), this.repeats);
+    this.window = { x: keep(window.x), y: keep(window.y), zoom: window.zoom };
+  }
+
+  /** The size and region that give each pixel of the screen one of the picture. */
+  #detail(): { size: [number, number]; region: Region | null } {
+    const plain = { size: this.pixels, region: null };
+    const now = this.window;
+    if (!now || !this.sharp || this.mode !== 'maps') return plain;
+    const wanted = now.zoom * devicePixelRatio;
+    if (wanted <= this.pixels[0] * 1.01) return plain;
+    const steps = Math.min(Math.ceil(Math.log2(wanted / this.pixels[0])), Math.floor(Math.log2(this.whole / this.size)));
+    if (steps < 1) return plain;
+    const size = sized(this.size * 2 ** steps, this.aspect);
+    const region = this.#seen(now, size);
+    return region ? { size, region } : plain;
+  }
+
+  /** The pixels of the tile that are seen. */
+  #seen(now: Window, [w, h]: [number, number]): Region | null {
+    const half = [this.room[0] / now.zoom / 2, this.room[1] / (now.zoom * this.aspect) / 2] as const;
+    const [x0, x1] = span(now.x - half[0], now.x + half[0], w);
+    const [y0, y1] = span(now.y - half[1], now.y + half[1], h);
+    const fits = x1 > x0 && y1 > y0 && Math.max(x1 - x0, y1 - y0) <= this.limit;
+    return fits ? { first: [x0, y0], size: [x1 - x0, y1 - y0] } : null;
+  }
+}
+
+function span(from: number, to: number, pixels: number): [number, number] {
+  return [Math.max(0, Math.floor(from * pixels)), Math.min(pixels, Math.ceil(to * pixels))];
+}
+
+function sized(longer: number, aspect: number): [number, number] {
+  const [w, h] = aspect <= 1 ? [longer, longer * aspect] : [longer / aspect, longer];
+  return [Math.max(1, Math.round(w)), Math.max(1, Math.round(h))];
+}

@@ -1,0 +1,349 @@
+// The state of the page: what was told by whatever computes, what is selected, and what a person asked for.
+import type { Editor } from './core/editor';
+import { newGesture, StudioDocument } from './core/document';
+import type { Pictures } from './core/pictures';
+import type { Frame, Graph, Hello, Json, Op, Path, Points, Problem, Reply, Request, Seam } from './core/protocol';
+import { MAP } from './core/protocol';
+import { at, Schemas } from './core/schema';
+import type { Transport } from './core/transport';
+import { recall, remember, type Unsaved } from './core/unsaved';
+import { Looking } from './looking.svelte';
+import { Rendering } from './rendering.svelte';
+
+/** A dialog or a sheet over the page. */
+export type Sheet = 'none' | 'keys' | 'export' | 'save' | 'copy' | 'add' | 'start' | 'leave' | 'disk';
+
+/** Everything that the page shows. */
+export class Studio {
+  readonly looking = new Looking();
+  readonly rendering = new Rendering();
+  hello = $state.raw<Hello | null>(null);
+  connection = $state<'waiting' | 'open' | 'closed' | 'refused'>('waiting');
+  recipe = $state.raw<Json>(null);
+  graph = $state.raw<Graph | null>(null);
+  problems = $state.raw<Problem[]>([]);
+  seams = $state.raw<Seam[] | null>(null);
+  points = $state.raw<Points | null>(null);
+  selected = $state<string | null>(null);
+  sheet = $state<Sheet>('none');
+  said = $state('');
+  /** Whether the full pictures are those of the text. */
+  settled = $state(false);
+  refusal = $state.raw<{ what: string; message: string; hint: string | null } | null>(null);
+  name = $state('');
+  file = $state.raw<string | null>(null);
+  changed = $state(false);
+  history = $state.raw<[number, number]>([0, 0]);
+  schemas = $derived(this.hello ? new Schemas(this.hello.schema) : null);
+  readonly document: StudioDocument;
+  /** What is to be opened once a person agrees to lose changes. */
+  leaving: { builtin?: string; file?: string } | null = null;
+  /** A file that was changed by somebody else. */
+  disk = $state.raw<{ text: string; hash: string; file: string } | null>(null);
+  /** Counts connections, so that views are asked for again. */
+  again = $state(0);
+  /** A node to be selected as soon as it is there. */
+  wanted: string | null = null;
+  #editor: Editor | null = null;
+  #listeners = new Set<(message: Reply) => void>();
+  #kept: Unsaved | null = null;
+  /** Whether the way was lost: the text here goes on, not that of the new session. */
+  #resuming = false;
+
+  constructor(readonly transport: Transport) {
+    const host = {
+      text: () => this.#editor?.text() ?? '',
+      apply: (...given: Parameters<Editor['apply']>) => this.#editor?.apply(...given),
+      reset: (text: string) => this.#editor?.reset(text),
+    };
+    this.document = new StudioDocument(host, (message) => this.send(message));
+    transport.onmessage = (message) => this.#receive(message);
+    transport.onpicture = (picture) => this.#picture(picture);
+    transport.onstate = (state) => (this.connection = state);
+  }
+
+  get pictures(): Pictures {
+    return this.rendering.pictures;
+  }
+
+  get reading(): boolean {
+    return this.hello?.mode === 'watch';
+  }
+
+  get valid(): boolean {
+    return this.problems.length === 0;
+  }
+
+  send(message: Request): void {
+    if (message.type === 'view') this.rendering.asked(message);
+    if (message.type === 'view' || message.type === 'doc' || message.type === 'patch') this.settled = false;
+    this.transport.send(message);
+  }
+
+  /** Calls `then` with each message, until the answer is called. */
+  listen(then: (message: Reply) => void): () => void {
+    this.#listeners.add(then);
+    return () => this.#listeners.delete(then);
+  }
+
+  /** Gives the document its editor. */
+  attach(editor: Editor): void {
+    this.#editor = editor;
+    editor.lock(this.reading);
+  }
+
+  /** Called when the text changed, by whatever. */
+  textChanged(): void {
+    this.changed = this.document.changed;
+    const { name, file, text } = this.document;
+    if (!this.reading) remember(() => (this.document.changed ? { name, file, text } : null));
+    this.history = this.#editor?.depth() ?? [0, 0];
+  }
+
+  undo(): void {
+    this.#editor?.undo();
+  }
+
+  redo(): void {
+    this.#editor?.redo();
+  }
+
+  /** The value at a path of the recipe, if it is written there. */
+  value(path: Path): Json | undefined {
+    return at(this.recipe, path);
+  }
+
+  /** Changes the recipe by a widget. */
+  patch(ops: Op[], gesture: number | null = null, drag = false): void {
+    if (this.reading) return;
+    this.looking.dragging = drag;
+    this.document.patch(ops, gesture, drag);
+  }
+
+  set(path: Path, value: Json, gesture: number | null = null, drag = false): void {
+    this.patch([{ op: 'set', path, value }], gesture, drag);
+  }
+
+  /** Another seed by chance. */
+  shuffle(): void {
+    this.set(['seed'], Math.floor(Math.random() * 10_000), newGesture());
+  }
+
+  /** Selects a node, or the recipe; the caret follows unless it led here. */
+  select(name: string | null, follow = true): void {
+    this.selected = name;
+    const span = this.graph?.nodes.find((node) => node.name === name)?.span;
+    if (follow && span) this.#editor?.goTo(span[0]);
+  }
+
+  /** Selects the node after or before. */
+  step(way: number): void {
+    const order = this.graph?.order ?? [];
+    const now = this.selected === null ? (way > 0 ? -1 : 0) : order.indexOf(this.selected);
+    this.select(order[(now + way + order.length) % order.length] ?? null);
+  }
+
+  /** Selects the node that the caret is in. */
+  caret(position: number): void {
+    const node = this.graph?.nodes.find(({ span }) => span[0] <= position && position <= span[1]);
+    if (node) this.selected = node.name;
+  }
+
+  /** Shows where a problem is. */
+  goTo(position: number): void {
+    this.#editor?.goTo(position, true);
+  }
+
+  /** Opens a recipe; the sheet asks first where changes would be lost. */
+  open(what: { builtin?: string; file?: string; text?: string }): void {
+    this.sheet = 'none';
+    this.selected = null;
+    this.send({ type: 'open', ...what });
+  }
+
+  /** Asks before changes are lost, then opens. */
+  leave(what: { builtin?: string; file?: string }): void {
+    this.leaving = what;
+    this.sheet = 'leave';
+  }
+
+  /** Tells people who cannot see it. */
+  say(text: string): void {
+    this.said = text;
+  }
+
+  /** Keeps the pictures of now, to be compared with later ones. */
+  markNow(): void {
+    this.rendering.markNow();
+    this.say('Marked: hold B to compare with what is seen now');
+  }
+
+  /** A name for a node that no other has. */
+  freeName(wanted: string): string {
+    const taken = new Set(this.graph?.order ?? []);
+    const names = [wanted, ...Array.from({ length: 999 }, (_, i) => `${wanted}_${i + 2}`)];
+    return names.find((name) => !taken.has(name)) ?? `${wanted}_${Date.now()}`;
+  }
+
+  #receive(message: Reply): void {
+    if (message.type === 'document' && this.#resuming) return this.#resume();
+    this.document.receive(message);
+    this.#take(message);
+    this.#settle();
+    for (const then of this.#listeners) then(message);
+  }
+
+  #settle(): void {
+    this.settled = !this.document.busy && this.rendering.shows(this.document.made);
+  }
+
+  #take(message: Reply): void {
+    switch (message.type) {
+      case 'hello':
+        return this.#hello(message);
+      case 'document':
+        this.looking.window = null;
+        this.rendering.reset();
+        this.#named();
+        return this.#restore();
+      case 'diagnostics':
+        return this.#problems(message.rev, message.items);
+      case 'graph':
+        this.graph = message;
+        if (this.wanted !== null && message.order.includes(this.wanted)) {
+          this.select(this.wanted);
+          this.wanted = null;
+        }
+        if (this.selected !== null && !message.order.includes(this.selected)) this.selected = null;
+        return;
+      case 'values':
+        this.recipe = message.recipe;
+        this.looking.extent = extentOf(message.recipe);
+        return;
+      case 'began':
+        return this.rendering.began(message);
+      case 'rendered':
+        this.rendering.rendered(message, this.document.rev);
+        if (!message.draft && !this.looking.playing && !this.looking.dragging) this.say(`Rendered in ${Math.round(message.ms)} ms`);
+        return;
+      case 'seams':
+        this.seams = message.maps;
+        return;
+      case 'points':
+        this.points = settle(message, this.points);
+        return;
+      case 'saved':
+        Object.assign(this.document, { file: message.file, hash: message.hash, kept: this.document.text });
+        this.say(`Saved ${message.file}`);
+        return this.#named();
+      case 'disk':
+        return this.#onDisk(message);
+      case 'refused':
+        if (message.what === 'save' && this.sheet === 'save') return;
+        this.refusal = message;
+        this.say(message.message);
+        return;
+      default:
+        return;
+    }
+  }
+
+  #hello(message: Hello): void {
+    const again = this.hello !== null;
+    this.hello = message;
+    this.looking.limit = message.limits.size;
+    this.looking.whole = message.limits.whole ?? message.limits.size;
+    this.#editor?.lock(this.reading);
+    this.#resuming = again && this.document.text !== '';
+    if (!again && message.open === null) this.sheet = 'start';
+    if (!again && !this.reading) this.#kept = recall();
+    if (this.#resuming && message.open === null) this.#resume();
+    this.again += 1;
+    this.send({ type: 'gallery', size: 128 });
+  }
+
+  /** Goes on with the text of this page in a new session. */
+  #resume(): void {
+    this.#resuming = false;
+    this.document.resume();
+  }
+
+  /** The file changed on disk: it is followed where nothing here would be lost, else a person is asked. */
+  #onDisk(message: { text: string; hash: string; file: string }): void {
+    if (message.text === this.document.text) {
+      Object.assign(this.document, { hash: message.hash, kept: message.text });
+      return this.textChanged();
+    }
+    this.disk = message;
+    if (this.reading || !this.changed) this.takeDisk();
+    else this.sheet = 'disk';
+  }
+
+  /** Takes the text of the file as it is on disk; undo brings back what was here. */
+  takeDisk(): void {
+    if (!this.disk) return;
+    Object.assign(this.document, { hash: this.disk.hash, kept: this.disk.text });
+    this.document.replace(this.disk.text);
+    this.disk = null;
+    this.sheet = 'none';
+    this.textChanged();
+  }
+
+  /** Brings back what was not saved before a reload; undo takes it away again. */
+  #restore(): void {
+    const kept = this.#kept;
+    this.#kept = null;
+    if (!kept || kept.name !== this.document.name || kept.file !== this.document.file) return;
+    this.document.replace(kept.text);
+    this.say('Changes from before the reload are back');
+  }
+
+  #named(): void {
+    this.name = this.document.name;
+    this.file = this.document.file;
+    this.textChanged();
+  }
+
+  #problems(rev: number, items: Problem[]): void {
+    if (rev < this.document.made) return;
+    const before = this.problems.length;
+    this.problems = items;
+    this.#editor?.problems(items);
+    const [first] = items;
+    if (first) this.say(`Error: ${first.message}`);
+    else if (before > 0) this.say('The recipe is valid again');
+  }
+
+  #picture(picture: Frame): void {
+    const name = this.#pictureName(picture.map);
+    if (name === null) return;
+    this.rendering.picture(name, picture);
+    this.#settle();
+    // At once, not when it is drawn: what is not drawn by then is replaced for nothing, and a frame is not waited for.
+    if (picture.map < MAP.builtin) this.send({ type: 'ack', generation: picture.generation, map: picture.map });
+  }
+
+  #pictureName(map: number): string | null {
+    if (map === MAP.node) return 'node';
+    if (map === MAP.preview) return 'preview';
+    if (map >= MAP.file) return `file:${this.hello?.files[map - MAP.file]}`;
+    if (map >= MAP.builtin) return `builtin:${this.hello?.builtins[map - MAP.builtin]?.name}`;
+    if (map >= MAP.thumbnail) return `thumb:${this.graph?.nodes[map - MAP.thumbnail]?.name}`;
+    return this.hello?.maps[map]?.name ?? null;
+  }
+}
+
+/** The points, with those of before where they are the same: what did not change is not drawn again. */
+function settle(now: Points, before: Points | null): Points {
+  if (before?.node !== now.node) return now;
+  const points = now.points.map((point, index) => {
+    const old = before.points[index];
+    return old && JSON.stringify(old) === JSON.stringify(point) ? old : point;
+  });
+  return { ...now, points };
+}
+
+function extentOf(recipe: Json): [number, number] {
+  const [w, h] = (at(recipe, ['extent']) ?? [1, 1]) as number[];
+  return typeof w === 'number' && typeof h === 'number' && w > 0 && h > 0 ? [w, h] : [1, 1];
+}

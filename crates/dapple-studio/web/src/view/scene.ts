@@ -1,0 +1,232 @@
+// The material in light, by WebGL: maps that arrived become textures of a physically based material.
+//
+// Normals are in tangent space; occlusion, roughness and metallic come packed as in glTF; albedo is sRGB and all else
+// linear. Heights displace the surface by the relief of the recipe. The surroundings are made here: a sky that gets
+// lighter upward and three soft boxes.
+import {
+  ACESFilmicToneMapping, AmbientLight, BackSide, BoxGeometry, type BufferGeometry, Color, DataTexture, DirectionalLight,
+  LinearMipmapLinearFilter, Mesh, MeshBasicMaterial, MeshStandardMaterial, NoColorSpace, PerspectiveCamera, PlaneGeometry,
+  PMREMGenerator, RepeatWrapping, RGBAFormat, Scene, SphereGeometry, SRGBColorSpace, type Texture, UnsignedByteType,
+  Vector2, WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import type { Picture } from '../core/pictures';
+
+/** How a material lies on a shape. */
+export interface Lay {
+  shape: 'sphere' | 'plane' | 'model';
+  repeat: number;
+  /** Height of the largest displacement over the width of the tile. */
+  relief: number;
+  displaced: boolean;
+  aspect: number;
+  /** Whether the green of normals points down. */
+  flipped: boolean;
+}
+
+/** The maps of the scene. */
+export const LIT = ['albedo', 'normal', 'orm', 'height'] as const;
+
+/** A scene in a canvas; draws only when something changed. */
+export class LitScene {
+  readonly #renderer: WebGLRenderer;
+  readonly #scene = new Scene();
+  readonly #camera = new PerspectiveCamera(35, 1, 0.01, 100);
+  readonly #controls: OrbitControls;
+  readonly #material = new MeshStandardMaterial({ roughness: 1, metalness: 1, envMapIntensity: 0.9 });
+  readonly #mesh = new Mesh<BufferGeometry, MeshStandardMaterial>(new SphereGeometry(1, 64, 32), this.#material);
+  readonly #light = new DirectionalLight(0xfff4e2, 2.2);
+  readonly #textures = new Map<string, DataTexture>();
+  #model: BufferGeometry | null = null;
+  #shape = '';
+  #waiting = 0;
+  /** Frames drawn so far. */
+  frames = 0;
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: 'high-performance' });
+    this.#renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    this.#renderer.toneMapping = ACESFilmicToneMapping;
+    this.#scene.environment = surroundings(this.#renderer);
+    this.#light.position.set(-2.2, 2.6, 2.4);
+    this.#scene.add(this.#mesh, this.#light, new AmbientLight(0xffffff, 0.05));
+    this.#controls = new OrbitControls(this.#camera, canvas);
+    this.#controls.enableDamping = false;
+    this.#controls.enablePan = false;
+    this.#controls.minDistance = 1.25;
+    this.#controls.maxDistance = 12;
+    this.#controls.addEventListener('change', () => this.later());
+    this.#camera.position.set(0, 0.6, 3.9);
+    this.#controls.update();
+  }
+
+  /** Takes a new picture of a map. */
+  take(name: string, picture: Picture): void {
+    const pixels = joined(picture);
+    if (!pixels) return;
+    const [w, h] = picture.size;
+    let texture = this.#textures.get(name);
+    if (texture && texture.image.width === w && texture.image.height === h) texture.image.data = pixels;
+    else {
+      texture?.dispose();
+      texture = textureOf(pixels, w, h, name === 'albedo');
+      this.#textures.set(name, texture);
+      this.#wear(name, texture);
+    }
+    texture.needsUpdate = true;
+    this.later();
+  }
+
+  /** Lays the material on a shape. */
+  lay(lay: Lay): void {
+    const geometry = `${lay.shape} ${lay.displaced} ${lay.aspect}`;
+    if (geometry !== this.#shape) this.#build(lay);
+    this.#shape = geometry;
+    const around = lay.shape === 'sphere' ? 2 : 1;
+    for (const texture of this.#textures.values()) texture.repeat.set(lay.repeat * around, lay.repeat / (lay.shape === 'plane' ? 1 : lay.aspect));
+    const width = lay.shape === 'plane' ? 2 / lay.repeat : Math.PI / lay.repeat;
+    this.#material.displacementScale = lay.displaced ? lay.relief * width : 0;
+    this.#material.displacementBias = -this.#material.displacementScale / 2;
+    this.#material.normalScale = new Vector2(1, lay.flipped ? -1 : 1);
+    this.later();
+  }
+
+  /** Shows a model of one's own from a GLB or OBJ file. */
+  async load(file: File): Promise<void> {
+    const found: BufferGeometry[] = [];
+    const collect = (object: unknown) => object instanceof Mesh && found.push((object as Mesh).geometry);
+    if (/\.obj$/i.test(file.name)) {
+      const { OBJLoader } = await import('three/addons/loaders/OBJLoader.js');
+      new OBJLoader().parse(await file.text()).traverse(collect);
+    } else {
+      const { GLTFLoader } = await import('three/addons/loaders/GLTFLoader.js');
+      (await new GLTFLoader().parseAsync(await file.arrayBuffer(), '')).scene.traverse(collect);
+    }
+    const largest = found.toSorted((a, b) => count(b) - count(a))[0];
+    if (!largest) throw new Error('there is no mesh in the file');
+    if (!largest.getAttribute('uv')) throw new Error('the mesh has no texture coordinates');
+    this.#model = fitted(largest.clone());
+    this.#shape = '';
+  }
+
+  /** Turns the light, in turns. */
+  turnLight(turn: number): void {
+    const angle = turn * 2 * Math.PI;
+    this.#light.position.set(Math.sin(angle) * 3.2, 2.6, Math.cos(angle) * 3.2);
+    this.#scene.environmentRotation.y = angle;
+    this.later();
+  }
+
+  /** Turns the view by keys, in radians. */
+  orbit(x: number, y: number): void {
+    const at = this.#camera.position.clone();
+    const radius = at.length();
+    const tilt = Math.min(3, Math.max(0.14, Math.acos(at.y / radius) + y));
+    const turn = Math.atan2(at.x, at.z) + x;
+    this.#camera.position.set(radius * Math.sin(tilt) * Math.sin(turn), radius * Math.cos(tilt), radius * Math.sin(tilt) * Math.cos(turn));
+    this.#controls.update();
+    this.later();
+  }
+
+  resize(width: number, height: number): void {
+    this.#renderer.setSize(width, height, false);
+    this.#camera.aspect = width / Math.max(1, height);
+    this.#camera.updateProjectionMatrix();
+    this.later();
+  }
+
+  /** Draws at the next frame. */
+  later(): void {
+    this.#waiting ||= requestAnimationFrame(() => {
+      this.#waiting = 0;
+      this.frames += 1;
+      this.#renderer.render(this.#scene, this.#camera);
+    });
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.#waiting);
+    for (const texture of this.#textures.values()) texture.dispose();
+    this.#mesh.geometry.dispose();
+    this.#controls.dispose();
+    this.#renderer.dispose();
+  }
+
+  #build(lay: Lay): void {
+    this.#mesh.geometry.dispose();
+    const fine = lay.displaced ? 256 : 64;
+    if (lay.shape === 'model' && this.#model) this.#mesh.geometry = this.#model.clone();
+    else if (lay.shape === 'plane') this.#mesh.geometry = new PlaneGeometry(2, 2 * lay.aspect, fine, fine);
+    else this.#mesh.geometry = new SphereGeometry(1, Math.max(128, fine), Math.max(64, fine / 2));
+    this.#mesh.rotation.x = lay.shape === 'plane' ? -0.5 : 0;
+  }
+
+  #wear(name: string, texture: DataTexture): void {
+    if (name === 'albedo') this.#material.map = texture;
+    else if (name === 'normal') this.#material.normalMap = texture;
+    else if (name === 'height') this.#material.displacementMap = texture;
+    else Object.assign(this.#material, { aoMap: texture, roughnessMap: texture, metalnessMap: texture });
+    const [other] = [...this.#textures.values()].filter((one) => one !== texture);
+    if (other) texture.repeat.copy(other.repeat);
+    this.#material.needsUpdate = true;
+  }
+}
+
+/** The pixels of a picture, the first row at the bottom as WebGL counts them; null while pieces are missing. */
+function joined(picture: Picture): Uint8ClampedArray<ArrayBuffer> | null {
+  const [w, h] = picture.size;
+  const pieces = picture.whole;
+  if (pieces.reduce((sum, piece) => sum + piece.width * piece.height, 0) !== w * h) return null;
+  const [only] = pieces;
+  if (only && pieces.length === 1) return only.pixels;
+  const all = new Uint8ClampedArray(w * h * 4);
+  for (const { rect, width, height, pixels } of pieces) {
+    const [x, y] = [Math.round(rect.x * w), Math.round(rect.y * h)];
+    for (let row = 0; row < height; row += 1) {
+      all.set(pixels.subarray(row * width * 4, (row + 1) * width * 4), ((y + row) * w + x) * 4);
+    }
+  }
+  return all;
+}
+
+function textureOf(pixels: Uint8ClampedArray<ArrayBuffer>, w: number, h: number, color: boolean): DataTexture {
+  const texture = new DataTexture(pixels, w, h, RGBAFormat, UnsignedByteType);
+  texture.wrapS = texture.wrapT = RepeatWrapping;
+  texture.colorSpace = color ? SRGBColorSpace : NoColorSpace;
+  texture.generateMipmaps = true;
+  texture.minFilter = LinearMipmapLinearFilter;
+  texture.anisotropy = 8;
+  texture.flipY = true;
+  return texture;
+}
+
+function surroundings(renderer: WebGLRenderer): Texture {
+  const scene = new Scene();
+  const room = new Mesh(new BoxGeometry(20, 20, 20), [0.35, 0.35, 1.1, 0.12, 0.3, 0.45].map((light) => new MeshBasicMaterial({ color: new Color(light, light, light * 1.04), side: BackSide })));
+  scene.add(room);
+  const boxes: [number, number, number, number, number][] = [[-6, 7, 5, 4, 14], [8, 3, 2, 2.5, 8], [0, 4, -9, 6, 5]];
+  for (const [x, y, z, size, light] of boxes) {
+    const box = new Mesh(new PlaneGeometry(size, size), new MeshBasicMaterial({ color: new Color(light, light * 0.97, light * 0.92) }));
+    box.position.set(x, y, z);
+    box.lookAt(0, 0, 0);
+    scene.add(box);
+  }
+  const generator = new PMREMGenerator(renderer);
+  const texture = generator.fromScene(scene, 0.03).texture;
+  generator.dispose();
+  return texture;
+}
+
+function count(geometry: BufferGeometry): number {
+  return geometry.getAttribute('position')?.count ?? 0;
+}
+
+/** A model about the origin, of the size of the sphere. */
+function fitted(geometry: BufferGeometry): BufferGeometry {
+  geometry.center();
+  geometry.computeBoundingSphere();
+  const radius = geometry.boundingSphere?.radius ?? 1;
+  geometry.scale(1.15 / radius, 1.15 / radius, 1.15 / radius);
+  if (!geometry.getAttribute('normal')) geometry.computeVertexNormals();
+  return geometry;
+}

@@ -1,0 +1,98 @@
+// Control points on the picture: made editable, moved, inserted and deleted, by mouse and by keys.
+import assert from 'node:assert/strict';
+import { mkdtempSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { endBrowser, hash, open, serve, settled, skip, text } from './harness.mjs';
+
+const RECIPE = `dapple = 1
+name = "dots"
+extent = [2.0, 2.0]
+
+# A dozen of points.
+[nodes.dots.pups.cells]
+spacing = 0.5
+
+[material]
+height = "dots"
+`;
+
+describe('control points', { skip, timeout: 120_000 }, () => {
+  let studio;
+  let page;
+  before(async () => {
+    const folder = mkdtempSync(join(tmpdir(), 'dapple-points-'));
+    writeFileSync(join(folder, 'dots.toml'), RECIPE);
+    studio = await serve(['dots.toml'], 'studio', folder);
+    page = await open(studio.url);
+    await settled(page);
+    await page.locator('.svelte-flow__node[data-id=dots]').focus();
+    await page.keyboard.press('Enter');
+    await page.locator('#tab-node').click();
+    await page.locator('svg .point').first().waitFor();
+    await settled(page);
+  });
+  after(async () => {
+    await endBrowser();
+    studio?.end();
+  });
+
+  /** The point nearest to a place, in pixels from the middle of the picture. */
+  const nearest = (x, y) =>
+    page.evaluate(([x, y]) => {
+      const box = document.querySelector('canvas[data-map=node]').getBoundingClientRect();
+      const far = [...document.querySelectorAll('svg .point')].map((one) => {
+        const at = one.getBoundingClientRect();
+        return Math.hypot(at.x + at.width / 2 - box.x - box.width / 2 - x, at.y + at.height / 2 - box.y - box.height / 2 - y);
+      });
+      return far.indexOf(Math.min(...far));
+    }, [x, y]);
+  const count = () => page.locator('svg .point').count();
+
+  test('a texture becomes its points with the same picture', async () => {
+    const before = await hash(page, 'node');
+    assert.equal(await page.locator('svg.open').count(), 0);
+    await page.getByRole('button', { name: 'Make points editable' }).click();
+    await page.locator('svg.open .point').first().waitFor();
+    await settled(page);
+    assert.match(await text(page), /# A dozen of points\.\n\[nodes\.dots\.pups\.points\]/);
+    assert.equal(await hash(page, 'node'), before);
+  });
+
+  test('a dragged point moves, and one undo brings it back', async () => {
+    const [before, old] = [await hash(page, 'node'), await text(page)];
+    const middle = await nearest(0, 0);
+    const box = await page.locator('svg .point').nth(middle).boundingBox();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    for (let i = 1; i <= 20; i += 1) await page.mouse.move(box.x + box.width / 2 + i * 2, box.y + box.height / 2 + i);
+    await page.mouse.up();
+    await settled(page);
+    assert.notEqual(await hash(page, 'node'), before);
+    const now = await page.locator('svg .point').nth(middle).boundingBox();
+    assert.ok(Math.abs(now.x - box.x - 40) < 2 && Math.abs(now.y - box.y - 20) < 2, `${now.x - box.x}, ${now.y - box.y}`);
+    await page.keyboard.press('Control+z');
+    await settled(page);
+    assert.equal(await text(page), old);
+    assert.equal(await hash(page, 'node'), before);
+  });
+
+  test('points are added by a double-click, moved by arrows and deleted', async () => {
+    const many = await count();
+    // Beside a point, but not on it.
+    const near = await page.locator('svg .point').nth(await nearest(0, 0)).boundingBox();
+    await page.mouse.dblclick(near.x + near.width / 2 + 24, near.y + near.height / 2 - 3);
+    await settled(page);
+    await page.waitForFunction((n) => document.querySelectorAll('svg .point').length === n, many + 1);
+    const last = page.locator('svg .point').nth(many);
+    const label = await last.getAttribute('aria-label');
+    await last.focus();
+    await page.keyboard.press('Shift+ArrowRight');
+    await settled(page);
+    assert.notEqual(await last.getAttribute('aria-label'), label);
+    await page.keyboard.press('Delete');
+    await page.waitForFunction((n) => document.querySelectorAll('svg .point').length === n, many);
+    assert.deepEqual(page.wrong, []);
+  });
+});
