@@ -1,4 +1,4 @@
-//! Looks whether the page was built, and lists its files.
+//! Looks whether the page was built, and lists its files: of those that are there compressed, too, only that.
 
 #![expect(
     clippy::disallowed_methods,
@@ -17,8 +17,17 @@ fn main() {
     let mut files = Vec::new();
     list(&dist, "", &mut files);
     files.sort();
+    let is_compressed = |name: &str| {
+        files
+            .iter()
+            .any(|(other, _)| *other == format!("{name}.gz"))
+    };
+    let embedded: Vec<_> = files
+        .iter()
+        .filter(|(name, _)| !is_compressed(name))
+        .collect();
     let mut code = String::from("&[\n");
-    for (name, path) in &files {
+    for (name, path) in embedded {
         println!("cargo::rerun-if-changed={}", path.display());
         writeln!(
             code,

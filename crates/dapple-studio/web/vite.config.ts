@@ -1,14 +1,32 @@
-// The build: one page into ../dist, six files or so without hashes in their names, which the command embeds.
+// The build: one page into ../dist, six files or so without hashes in their names, which the command embeds; those that
+// are large beside them once more, compressed, which is what it embeds then.
 // The development server hands the socket and the files on to a running `dapple studio`, whose address is
 // DAPPLE_STUDIO (http://127.0.0.1:7878 by default).
 import { svelte } from '@sveltejs/vite-plugin-svelte';
-import { defineConfig } from 'vite';
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { gzipSync } from 'node:zlib';
+import { defineConfig, type Plugin } from 'vite';
 
 const studio = process.env['DAPPLE_STUDIO'] ?? 'http://127.0.0.1:7878';
 const behind = { target: studio, changeOrigin: true, headers: { origin: studio } };
 
+/** Writes each script and style once more as NAME.gz. */
+function compressed(): Plugin {
+  return {
+    name: 'compressed',
+    apply: 'build',
+    writeBundle({ dir = '' }) {
+      for (const name of readdirSync(dir, { recursive: true, encoding: 'utf8' })) {
+        if (!/\.(js|css)$/.test(name)) continue;
+        writeFileSync(join(dir, `${name}.gz`), gzipSync(readFileSync(join(dir, name)), { level: 9 }));
+      }
+    },
+  };
+}
+
 export default defineConfig({
-  plugins: [svelte()],
+  plugins: [svelte(), compressed()],
   build: {
     outDir: '../dist',
     emptyOutDir: true,
