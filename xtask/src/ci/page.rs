@@ -10,8 +10,10 @@ use xshell::{Shell, cmd};
 pub(super) fn page(shell: &Shell) -> anyhow::Result<()> {
     let root = shell.current_dir();
     let npm = crate::run::NPM;
-    let is_new = "process.exit(parseInt(process.versions.node) < 20)";
-    if !works(cmd!(shell, "node -e {is_new}")) || !works(cmd!(shell, "{npm} --version")) {
+    let is_new = "process.exit(parseInt(process.versions.node) < 20 ? 1 : 0)";
+    if !works(cmd!(shell, "node -e {is_new}"))
+        || !works(cmd!(shell, "{npm} --version").ignore_stdout())
+    {
         return skip("there is no Node 20 with npm");
     }
     let _web = shell.push_dir("crates/dapple-studio/web");

@@ -1,5 +1,5 @@
 // How long it takes from a slider to pixels, in the browser and against the real command; fails at three times the
-// bars, which are those of an idle desktop. Prints what was measured.
+// bars, which are those of an idle desktop of four cores. Prints what was measured.
 import assert from 'node:assert/strict';
 import { cpus, loadavg } from 'node:os';
 import { after, describe, test } from 'node:test';
@@ -7,7 +7,8 @@ import { endBrowser, open, serve, settled, skip, text } from './harness.mjs';
 
 /** Milliseconds: slider to draft, to all of 512², to all of 1024², and from the command to the first picture. */
 const BAR = { draft: [16, 33], full: [50, 100], large: [150, 300], first: 700 };
-const SLACK = 3;
+/** How many times the bar fails: three, and more on fewer cores than a desktop's four, which the browser and the command share. */
+const SLACK = 3 * Math.max(1, 4 / cpus().length);
 const CHANGES = 24;
 /** The load, if other work keeps the machine so busy that times say nothing of the studio; else 0. */
 const BUSY = loadavg()[0] > 1.5 * cpus().length ? loadavg()[0].toFixed(1) : 0;
