@@ -11,8 +11,8 @@ use crate::shared::Shared;
 use crate::threads;
 use dapple::color::{LinearRgb, Normal};
 use dapple::recipe::{
-    Bake, BakeOptions, Images, MapKind, MapRows, Picture, Plan as RustPlan,
-    Recipe as RustRecipe, Region,
+    Bake, BakeOptions, Images, MapKind, MapRows, Picture, Plan as RustPlan, Recipe as RustRecipe,
+    Region,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
