@@ -42,13 +42,16 @@ fn main() {
         .unwrap_or_else(|error| panic!("the list of files cannot be written: {error}"));
 }
 
-/// The files of a folder, with their names as the page asks for them.
+/// Lists the files of a folder, with their names as the page asks for them; hidden ones are left out.
 fn list(folder: &Path, prefix: &str, files: &mut Vec<(String, PathBuf)>) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
     };
     for entry in entries.flatten() {
         let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
+        if name.starts_with('.') {
+            continue;
+        }
         if entry.path().is_dir() {
             list(&entry.path(), &format!("{name}/"), files);
         } else {

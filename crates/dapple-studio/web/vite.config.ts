@@ -11,12 +11,16 @@ import { defineConfig, type Plugin } from 'vite';
 const studio = process.env['DAPPLE_STUDIO'] ?? 'http://127.0.0.1:7878';
 const behind = { target: studio, changeOrigin: true, headers: { origin: studio } };
 
-/** Writes each script and style once more as NAME.gz. */
+const ignored = new URL('../dist/.gitignore', import.meta.url);
+const kept = readFileSync(ignored);
+
+/** Writes each script and style once more as NAME.gz, and keeps the file that hides the folder from git. */
 function compressed(): Plugin {
   return {
     name: 'compressed',
     apply: 'build',
     writeBundle({ dir = '' }) {
+      writeFileSync(ignored, kept);
       for (const name of readdirSync(dir, { recursive: true, encoding: 'utf8' })) {
         if (!/\.(js|css)$/.test(name)) continue;
         writeFileSync(join(dir, `${name}.gz`), gzipSync(readFileSync(join(dir, name)), { level: 9 }));
