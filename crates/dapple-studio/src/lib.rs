@@ -30,15 +30,14 @@ mod patch;
 mod picture;
 mod points;
 mod render;
-#[cfg(feature = "server")]
 mod sample;
 mod schema;
-
 #[cfg(feature = "server")]
 mod seams;
 #[cfg(feature = "server")]
 mod server;
 mod session;
+mod strip;
 mod utf16;
 
 pub use change::Change;
@@ -57,3 +56,4 @@ pub use render::{Job, MAX_SIDE, Renderer, World};
 #[cfg(feature = "server")]
 pub use server::{ExportedFile, Host, ServeOptions, has_page, serve};
 pub use session::{ImagesOf, Session};
+pub use strip::Variant;

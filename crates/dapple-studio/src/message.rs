@@ -56,6 +56,15 @@ pub enum Request {
         /// The longer side of a picture, in pixels.
         size: u32,
     },
+    /// A row of small pictures of what changes would make of the recipe, when there is time; the last one asked for counts.
+    Strip {
+        /// The node that is shown; the material in light by default.
+        node: Option<String>,
+        /// The changes of each picture.
+        changes: Vec<Vec<Op>>,
+        /// The longer side of a picture, in pixels.
+        size: u32,
+    },
     /// The control points of a node.
     Points {
         /// The node.

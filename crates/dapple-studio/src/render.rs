@@ -85,7 +85,7 @@ pub trait World {
 /// Draws jobs, and keeps what the next one may need again.
 #[derive(Debug)]
 pub struct Renderer {
-    memory: Memory,
+    pub(crate) memory: Memory,
     planned: Option<Planned>,
     /// The longest side of the next draft, in pixels.
     draft_side: u32,
@@ -254,7 +254,6 @@ fn is_same(a: &Images, b: &Images) -> bool {
 }
 
 /// A plan within the limits of the studio.
-#[cfg(feature = "server")]
 pub(crate) fn planned(recipe: &Recipe, images: &Images, time: f64) -> Result<Plan, RecipeError> {
     Plan::new_within(recipe, images, time, &LIMITS)
 }

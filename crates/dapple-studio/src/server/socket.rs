@@ -203,6 +203,10 @@ impl Page {
                 self.worker.sample(self.samples(size));
                 Ok(Vec::new())
             }
+            request @ Request::Strip { .. } => {
+                self.worker.vary(self.session.strip(request));
+                Ok(Vec::new())
+            }
             Request::Export(export) => Ok(self.ask("export", TaskKind::Export(export))),
             Request::Save {
                 text,

@@ -3,7 +3,7 @@
 use super::Shared;
 use crate::message::{CodeKind, Export, Output, Reply, Shape};
 use crate::render::{Job, Renderer, World};
-use crate::{Document, Picture, Shown, StudioError, code, points, seams};
+use crate::{Document, Picture, Shown, StudioError, Variant, code, points, seams};
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
@@ -44,6 +44,8 @@ pub(super) enum TaskKind {
 struct Queue {
     job: Option<Job>,
     tasks: VecDeque<Task>,
+    /// The pictures of the strip that was asked for last.
+    variants: VecDeque<Variant>,
     /// Small pictures for which there is time when nothing else is to be done.
     samples: VecDeque<Sample>,
     is_over: bool,
@@ -114,6 +116,12 @@ impl Worker {
         self.inside.changed.notify_one();
     }
 
+    /// Makes the pictures of a strip when there is time, in place of those of the strip before.
+    pub(super) fn vary(&self, variants: Vec<Variant>) {
+        self.inside.lock().variants = variants.into();
+        self.inside.changed.notify_one();
+    }
+
     /// Makes small pictures when there is time.
     pub(super) fn sample(&self, samples: Vec<Sample>) {
         self.inside.lock().samples = samples.into();
@@ -156,6 +164,7 @@ impl Drop for Worker {
 enum Next {
     Draw(Job),
     Do(Task),
+    Vary(Variant),
     Sample(Sample),
 }
 
@@ -170,12 +179,14 @@ impl Inside {
             let what = match &next {
                 Next::Draw(_) => "view",
                 Next::Do(task) => task.what,
+                Next::Vary(_) => "strip",
                 Next::Sample(_) => "gallery",
             };
             // A defect in a method must not end the server while somebody works.
             let done = catch_unwind(AssertUnwindSafe(|| match next {
                 Next::Draw(job) => renderer.draw(&job, self),
                 Next::Do(task) => self.perform(task),
+                Next::Vary(variant) => renderer.draw_variant(&variant, self),
                 Next::Sample(sample) => self.show(&sample),
             }));
             if done.is_err() {
@@ -197,6 +208,9 @@ impl Inside {
             }
             if let Some(job) = queue.job.take() {
                 return Some(Next::Draw(job));
+            }
+            if let Some(variant) = queue.variants.pop_front() {
+                return Some(Next::Vary(variant));
             }
             if let Some(sample) = queue.samples.pop_front() {
                 return Some(Next::Sample(sample));
