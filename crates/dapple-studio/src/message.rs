@@ -258,8 +258,6 @@ pub enum Reply {
     Began {
         /// The generation.
         generation: u32,
-        /// The state of the text.
-        rev: u64,
         /// Columns and rows of the whole tile.
         size: [u32; 2],
         /// The part of the tile, if it is not all of it.
@@ -463,10 +461,6 @@ pub struct NodeTime {
 pub struct MapSeams {
     /// The map.
     pub name: String,
-    /// The seam between its left and right, one pixel wide; none where it does not repeat.
-    pub x: Option<Json>,
-    /// The seam between its top and bottom.
-    pub y: Option<Json>,
     /// The report as a table.
     pub text: String,
 }

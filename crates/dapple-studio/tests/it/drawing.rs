@@ -199,6 +199,24 @@ fn what_is_no_longer_wanted_is_not_drawn() {
 }
 
 #[test]
+fn a_draft_that_was_begun_is_shown() {
+    let mut page = Page::open("polka-dots");
+    page.ask(view(512, &["albedo"], true));
+    page.draw();
+    page.ask(view(1024, &["albedo"], true));
+    let world = TestWorld::default();
+    world.patience.set(Some(1));
+    page.renderer.draw(&page.session.job().unwrap(), &world);
+    let (_, pictures) = split(world.outputs.into_inner());
+    // The first draft was drawn at once, so that this one has more rows than are drawn before it is asked again.
+    let drawn: Vec<_> = pictures
+        .iter()
+        .map(|picture| (picture.is_draft, picture.is_last, picture.size))
+        .collect();
+    assert_eq!(drawn, [(true, true, [256; 2])]);
+}
+
+#[test]
 fn a_view_that_shows_nothing_is_refused() {
     for view in [
         json!({ "type": "view", "size": [0, 64], "maps": ["albedo"], "paused": false }),
