@@ -135,8 +135,7 @@ function withControl(studio: Studio, event: KeyboardEvent): boolean {
     return true;
   }
   if (key === 'd' && studio.selected !== null && !inText) {
-    studio.wanted = studio.freeName(studio.selected);
-    studio.patch([{ op: 'duplicate_node', name: studio.selected, to: studio.wanted }]);
+    studio.duplicate();
     return true;
   }
   const sheet = ({ s: 'save', e: 'export', o: 'start' } as const)[key as 's' | 'e' | 'o'];
