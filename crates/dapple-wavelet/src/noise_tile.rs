@@ -81,7 +81,7 @@ fn check_size(size: [u32; 2], levels: u32) -> Result<(), WaveletError> {
     }
 }
 
-/// The sum of a raster and of a band of its size, which is still to be doubled `level` times.
+/// Adds a band to a raster of its size, which is to be doubled `level` more times.
 fn add_band(
     raster: &Raster<f32>,
     weight: f32,

@@ -64,7 +64,7 @@ impl LineFilter {
         }
     }
 
-    /// Filters the lines that `load` writes into the slice it is given, as long as the source.
+    /// Filters the lines that `load` writes into a slice of the length of the source.
     #[inline(always)]
     pub(crate) fn run<'lanes, const L: usize>(
         &self,
