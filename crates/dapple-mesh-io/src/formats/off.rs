@@ -28,7 +28,7 @@ pub(super) const OFF: MeshFormat = MeshFormat {
     writer: None,
 };
 
-/// The columns of the vertices, as the header lists them.
+/// The columns of the vertices, according to the header.
 #[derive(Clone, Copy, Default)]
 struct Header {
     texture: bool,

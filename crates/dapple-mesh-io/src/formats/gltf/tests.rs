@@ -429,8 +429,8 @@ fn clouds_and_nothing_read_back() {
     );
 }
 
-/// The reason why the reader is ours: a file that is refused here passes the validation of the crate `gltf`, and makes it
-/// panic.
+/// The reason why the reader is ours: this file, which is an error here, passes the validation of the crate `gltf`, and
+/// makes it panic.
 #[test]
 fn file_that_makes_the_crate_gltf_panic_is_refused() {
     let mut document = square();
