@@ -61,7 +61,7 @@ impl Heights {
         Ok(heights)
     }
 
-    /// The heights of a band, below or beside the last one.
+    /// Computes the heights of a band below or beside the last one.
     pub(super) fn of(
         &mut self,
         plan: &Plan,
