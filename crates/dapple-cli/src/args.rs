@@ -214,9 +214,7 @@ pub(crate) fn seed(text: &str) -> Result<u64, String> {
 /// Parses a name of files without a folder.
 fn plain_name(text: &str) -> Result<String, String> {
     if text.is_empty() || text.starts_with('.') || text.contains(['/', '\\']) {
-        return Err(
-            "it is a part of the names of files, without a slash or a leading dot".to_owned(),
-        );
+        return Err("it becomes part of file names, without a slash or a leading dot".to_owned());
     }
     Ok(text.to_owned())
 }

@@ -217,7 +217,7 @@ pub(crate) fn advise(error: RecipeError) -> Error {
                 .wrong_value();
         }
         RecipeErrorKind::UnknownRecipe { .. } => return Error::new(error).wrong_value(),
-        RecipeErrorKind::NoImage { .. } => "images lie in the folder of the recipe",
+        RecipeErrorKind::NoImage { .. } => "put the images into the folder of the recipe",
         RecipeErrorKind::Schema { .. } => "see the changelog for what has changed in recipes",
         _ => return error.into(),
     };
@@ -229,7 +229,7 @@ pub(crate) fn advise_shard(error: RecipeError) -> Error {
     match error.kind() {
         RecipeErrorKind::Global { .. } => Error::new(error)
             .context("the recipe cannot be baked in shards")
-            .hint("make what the node makes beforehand, with `dapple tile`, `dapple blend-map` or a bake of its own, and let the recipe name the result in an `image` node"),
+            .hint("make the picture of the node beforehand, with `dapple tile`, `dapple blend-map` or `dapple bake`, and read it with an `image` node"),
         _ => advise(error),
     }
 }

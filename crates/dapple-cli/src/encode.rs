@@ -49,7 +49,7 @@ impl Format {
             }
             (_, ending) => {
                 let error = usage(format!("{target}: unknown image format {ending:?}"));
-                return Err(error.hint("let the name end in .png, .exr, .npy or .r16"));
+                return Err(error.hint("use a name that ends in .png, .exr, .npy or .r16"));
             }
         };
         let format = asked.or(by_ending).unwrap_or(Self::Png16);

@@ -37,7 +37,7 @@ pub(crate) fn foresee(
     if pixels > MOST_PIXELS && options.memory == BakeMemory::Whole {
         let error =
             anyhow!("without --banded at most 32768 × 32768 pixels are baked, and this is {work}");
-        let hint = "add --banded if you mean it, or make a part with --region";
+        let hint = "add --banded to bake it anyway, or bake a part with --region";
         return Err(error.hint(hint).wrong_value());
     }
     job.note_work(&format!("baking {work}"));

@@ -251,7 +251,7 @@ pub(crate) fn model(path: &Path) -> Result<Model> {
                 Some(format!("a mesh is a file in {}", mesh_endings()))
             }
             MeshIoErrorKind::Unsupported { .. } => {
-                Some("export it again without that, or as .obj or .ply".to_owned())
+                Some("export it without this feature, or as .obj or .ply".to_owned())
             }
             _ => None,
         };

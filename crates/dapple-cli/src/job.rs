@@ -352,15 +352,18 @@ impl<'a> Job<'a> {
     /// The default JSON file: the output's name with the ending `.json`.
     fn beside(&self, main: &Target) -> Result<Target> {
         let Some(path) = main.path() else {
-            return Err(usage("the JSON file has no output to be written beside")
-                .hint("name it: --json=FILE"));
+            return Err(
+                usage("there is no output file beside which to write the JSON file")
+                    .hint("name it: --json=FILE"),
+            );
         };
         let target = Target::Path(path.with_extension("json"));
         let is_target =
             |(output, _): &(OutputIdx, FileRecord)| *self.outputs.target(*output) == target;
         if self.files.iter().any(is_target) {
             return Err(
-                usage("the output is a JSON file itself").hint("name the other: --json=FILE")
+                usage("the output and the JSON file would have the same name")
+                    .hint("name the other: --json=FILE"),
             );
         }
         Ok(target)

@@ -114,10 +114,10 @@ impl Target {
     pub(crate) fn part(&self, part: &str) -> Result<Self> {
         match self {
             _ if part.is_empty() => Ok(self.clone()),
-            Self::Stdout => Err(
-                usage("there are several files, and standard output takes one")
-                    .hint("give a file or a folder with -o"),
-            ),
+            Self::Stdout => Err(usage(
+                "there are several files, but standard output takes only one",
+            )
+            .hint("give a file or a folder with -o")),
             Self::Path(path) => {
                 let mut name = path.file_stem().unwrap_or_default().to_owned();
                 name.push(format!("_{part}"));

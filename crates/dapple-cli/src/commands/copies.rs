@@ -175,7 +175,11 @@ fn claim(
 /// The maps of all tiles, with the height and then alpha last; whether there is alpha, and whether an image has more
 /// than 8 bits.
 fn read(args: &Args) -> Result<(Vec<Vec<Map>>, bool, bool)> {
-    let mut reader = Reader::new(None, args.alpha.alpha, "tiles and their maps have one size");
+    let mut reader = Reader::new(
+        None,
+        args.alpha.alpha,
+        "tiles and their maps must have the same size",
+    );
     let read = args.images.iter().map(|tile| tile.read(&mut reader));
     let mut materials = read.collect::<Result<Vec<Material>>>()?;
     reader.agree(&args.images, &mut materials)?;

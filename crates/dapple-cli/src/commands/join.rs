@@ -74,8 +74,8 @@ pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     let kinds = list.map_kinds()?;
     check_whole(folder, &list, &kinds)?;
     if list.frames.is_some() && matches!(args.files.json, Some(Some(_))) {
-        let error = usage("--json=FILE is for one picture, and this is a loop");
-        return Err(error.hint("with --json each picture has one of its own"));
+        let error = usage("--json=FILE is for a single picture, but this is a loop");
+        return Err(error.hint("use --json, which writes one file for each picture"));
     }
     for frame in Frame::all(list.frames) {
         // All files are claimed before the work begins.
@@ -125,7 +125,7 @@ fn check_whole(folder: &Path, list: &List, kinds: &[MapKind]) -> Result<()> {
     };
     let named = named.join(", ");
     let error = anyhow!("{n_missing} of {n_files} files are missing: {named}{more}");
-    Err(error.hint("run the commands that `dapple shards` lists again; they make only what is missing, and files of a recipe that has changed since do not count"))
+    Err(error.hint("run the commands from `dapple shards` again; they only make missing files, and files of an older recipe do not count"))
 }
 
 impl Args {

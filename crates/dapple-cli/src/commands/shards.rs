@@ -91,7 +91,7 @@ pub(crate) struct Args {
 /// Errors of a recipe that cannot be baked in shards, and of a folder with other shards.
 pub(crate) fn run(args: &Args, context: &Context) -> Result<Exit> {
     if args.recipe == "-" {
-        let error = usage("a recipe that is baked in shards is read again for each of them");
+        let error = usage("shards need a recipe file, since every one of them reads it again");
         return Err(error.hint("put it into a file"));
     }
     let (mut recipe, folder) = read_recipe(&args.recipe)?;

@@ -169,7 +169,7 @@ fn sources(args: &Args, job: &mut Job<'_>) -> Result<Vec<Source>> {
         let size = loaded.map.size();
         let first = sources.first().map(|source| source.loaded.map.size());
         input::check_size(path, size, paths[0], first.unwrap_or(size))
-            .hint("maps that are cut together have one size")?;
+            .hint("maps that are cut together must have the same size")?;
         sources.push(Source {
             name: input::name(path),
             outputs,

@@ -74,7 +74,7 @@ fn counts(report: &MeshReport) -> [(&'static str, usize); 12] {
             report.winding_edges,
         ),
         ("faces without an area", report.degenerate_faces),
-        ("faces that are there twice", report.duplicate_faces),
+        ("duplicate faces", report.duplicate_faces),
         ("faces back to back with another", report.back_to_back_faces),
         (
             "vertices at the place of another",
