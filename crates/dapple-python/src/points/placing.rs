@@ -21,7 +21,7 @@ enum Wanted {
 }
 
 impl Wanted {
-    /// The points that it connects.
+    /// Places the points.
     fn place(
         self,
         domain: dapple::points::Domain,
