@@ -1,7 +1,7 @@
 //! A texture grown over a mesh from a small example, baked to a texture map and written as a model: a GLB file that
 //! viewers and engines open.
 //!
-//! The mesh is a ring that is made here; `dapple::mesh_io::read_model` reads yours.
+//! The mesh is a ring made by the example; `dapple::mesh_io::read_model` reads your own.
 //!
 //! ```sh
 //! cargo run -p dapple --example 12_baked_model
@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     write_model(&path, &model)?;
     out::wrote(&path);
 
-    // A picture of it: a ray meets a triangle, whose corners have texture coordinates.
+    // A rendered picture: a ray meets a triangle, whose corners have texture coordinates.
     let uvs = atlas.uvs();
     let look = |surface: &Surface| {
         let color = surface.triangle().map_or(LinearRgb::BLACK, |hit| {

@@ -229,7 +229,7 @@ fn a_bake_that_is_killed_at_any_moment_leaves_old_files_or_whole_new_ones() {
         "the old files"
     );
     let old = bytes();
-    // From before the first byte to after the last, at moments that spread evenly, as the golden ratio does.
+    // Kills the process at evenly spread moments from before the first byte to after the last, by the golden ratio.
     for round in 0..16 {
         let part = (f64::from(round) * 0.618_033_988_75).fract();
         let mut child = bake("2")
@@ -240,7 +240,7 @@ fn a_bake_that_is_killed_at_any_moment_leaves_old_files_or_whole_new_ones() {
         std::thread::sleep(Duration::from_secs_f64(
             whole_run.as_secs_f64() * 1.2 * part,
         ));
-        // A child that has ended cannot be killed, and is fine.
+        // A child that has ended cannot be killed, which is fine.
         let _ = child.kill();
         child.wait().unwrap();
         for ((found, old), new) in bytes().iter().zip(&old).zip(&new) {

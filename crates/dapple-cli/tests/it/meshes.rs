@@ -1,4 +1,4 @@
-//! What covered meshes look like: hard edges, and sheets that are seen from both sides.
+//! Covered meshes: hard edges, and surfaces that are visible from both sides.
 
 use crate::support::{Folder, assert_done, stdout};
 use dapple::mesh::{CREASE, FaceIdx, Mesh, Model};
@@ -26,7 +26,7 @@ fn cube() -> Mesh {
     Mesh::new((0..8).map(corner).collect(), &faces).unwrap()
 }
 
-/// Covers `hard.obj` of a folder.
+/// Covers `hard.obj` in a folder.
 fn cover(folder: &Folder, extra: &[&str], output: &str) -> Model {
     let arguments = [
         "synth",
@@ -42,7 +42,7 @@ fn cover(folder: &Folder, extra: &[&str], output: &str) -> Model {
     read_model(folder.path(output)).unwrap()
 }
 
-/// How far normals of corners are from those of their faces, at most.
+/// The largest difference of corner normals from those of their faces.
 fn most_off(model: &Model) -> f64 {
     let normals = model.normals_of_corners().unwrap();
     let faces = (0..).map(FaceIdx).zip(&normals);
@@ -66,7 +66,7 @@ fn hard_edges_of_a_mesh_stay_hard() {
     let smooth = most_off(&cover(&folder, &["--crease", "100"], "smooth.glb"));
     assert!(smooth > 0.5, "off by {smooth}");
 
-    // Its own normals go before creases: here the upper side is bent up at its rim.
+    // Its own normals take precedence over creases: here the upper side is bent up at its rim.
     let mut bent = Model::from(cube());
     let mut normals = bent.mesh.corner_normals(CREASE);
     let middle = DVec3::new(0.5, 0.5, 0.0);

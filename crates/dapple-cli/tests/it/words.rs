@@ -3,7 +3,7 @@
 use crate::support::{Folder, assert_done, stderr};
 use std::fs;
 
-/// Two ways to type the same.
+/// Two ways to type the same command.
 const SAME: [[&str; 2]; 9] = [
     ["worley --value f2_minus_f1", "worley --Value F2-Minus-F1"],
     ["worley --metric manhattan", "worley --metric Manhattan"],
