@@ -3,7 +3,7 @@
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
-use dapple_studio::{Export, ExportedFile, Host, Named, ServeOptions, Shape, StudioError, serve};
+use dapple_studio::{Export, ExportedFile, Host, Lit, Named, ServeOptions, StudioError, serve};
 use serde_json::{Value, json};
 use std::fs;
 use std::io::{Read as _, Write as _};
@@ -36,13 +36,7 @@ impl Host for TestHost {
         }])
     }
 
-    fn preview(
-        &self,
-        _: &Recipe,
-        _: &Images,
-        _: f64,
-        _: Shape,
-    ) -> Result<Raster<LinearRgb>, StudioError> {
+    fn preview(&self, _: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError> {
         Ok(Raster::filled([2, 1], LinearRgb::WHITE).unwrap())
     }
 
