@@ -537,3 +537,34 @@ fn all_recipes_have_small_pictures() {
         );
     }
 }
+
+#[test]
+fn points_of_labeled_cells_come_with_their_labels() {
+    let server = Server::new(None);
+    let mut page = server.page();
+    let text = "dapple = 1\n[nodes.hide.pups.cells]\nspacing = 0.2\npoints_per_cell = [3, 4]\n[material]\nheight = \"hide\"\n";
+    say(&mut page, &json!({ "type": "doc", "rev": 0, "text": text }));
+    let points = |page: &mut Page| {
+        say(page, &json!({ "type": "points", "node": "hide" }));
+        until(page, "points")
+    };
+    let before = points(&mut page);
+    let ops = json!([{ "op": "make_points", "node": "hide" }]);
+    say(&mut page, &json!({ "type": "patch", "rev": 0, "ops": ops }));
+    until(&mut page, "edits");
+    let after = points(&mut page);
+    assert_eq!((&before["editable"], &after["editable"]), (&json!(false), &json!(true)));
+    for key in ["points", "values", "edges"] {
+        assert_eq!(before[key], after[key], "{key}");
+    }
+    let values = after["values"].as_array().unwrap();
+    for point in after["points"].as_array().unwrap() {
+        let label = point["label"].as_u64().unwrap() as usize;
+        assert_eq!(point["value"], values[label], "{point}");
+    }
+    let label = json!(["nodes", "hide", "pups", "points", "points", 0, "label"]);
+    let ops = json!([{ "op": "set", "path": label, "value": values.len() - 1 }]);
+    say(&mut page, &json!({ "type": "patch", "rev": 1, "ops": ops }));
+    until(&mut page, "edits");
+    assert_eq!(points(&mut page)["points"][0]["label"], json!(values.len() - 1));
+}
