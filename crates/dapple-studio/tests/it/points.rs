@@ -47,7 +47,9 @@ fn a_dragged_point_draws_what_its_text_draws_anew() {
             &|_| unreachable!("there are no images"),
         );
         let (_, expected) = anew.draw();
-        let pixels = |pictures: Vec<dapple_studio::Picture>| pictures.into_iter().map(|picture| picture.pixels);
+        let pixels = |pictures: Vec<dapple_studio::Picture>| {
+            pictures.into_iter().map(|picture| picture.pixels)
+        };
         assert!(pixels(pictures).eq(pixels(expected)), "step {step}");
     }
 }
@@ -67,5 +69,8 @@ fn one_of_700_points_is_dragged_in_50_ms() {
     // The fastest of many: other tests run at the same time.
     let fastest = (1..=20).map(took).fold(f64::INFINITY, f64::min);
     println!("{fastest:.1} ms");
-    assert!(fastest < 50.0, "{fastest:.1} ms from the message to both maps");
+    assert!(
+        fastest < 50.0,
+        "{fastest:.1} ms from the message to both maps"
+    );
 }

@@ -553,7 +553,10 @@ fn points_of_labeled_cells_come_with_their_labels() {
     say(&mut page, &json!({ "type": "patch", "rev": 0, "ops": ops }));
     until(&mut page, "edits");
     let after = points(&mut page);
-    assert_eq!((&before["editable"], &after["editable"]), (&json!(false), &json!(true)));
+    assert_eq!(
+        (&before["editable"], &after["editable"]),
+        (&json!(false), &json!(true))
+    );
     for key in ["points", "values", "edges"] {
         assert_eq!(before[key], after[key], "{key}");
     }
@@ -566,5 +569,8 @@ fn points_of_labeled_cells_come_with_their_labels() {
     let ops = json!([{ "op": "set", "path": label, "value": values.len() - 1 }]);
     say(&mut page, &json!({ "type": "patch", "rev": 1, "ops": ops }));
     until(&mut page, "edits");
-    assert_eq!(points(&mut page)["points"][0]["label"], json!(values.len() - 1));
+    assert_eq!(
+        points(&mut page)["points"][0]["label"],
+        json!(values.len() - 1)
+    );
 }
