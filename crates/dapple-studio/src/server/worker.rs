@@ -1,9 +1,9 @@
 //! The thread that draws what one page shows. What is drawn is always the newest; what was asked for besides comes before.
 
 use super::Shared;
-use crate::message::{CodeKind, Export, Output, Reply, Shape};
+use crate::message::{CodeKind, Export, Output, Reply};
 use crate::render::{Job, Renderer, World};
-use crate::{Document, Picture, Shown, StudioError, code, points, seams};
+use crate::{Document, Lit, Picture, Shown, StudioError, code, points, seams};
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
@@ -39,7 +39,7 @@ pub(super) enum TaskKind {
     Export(Export),
 }
 
-/// What the thread has to do.
+/// The work that waits for the thread.
 #[derive(Default)]
 struct Queue {
     job: Option<Job>,
@@ -152,7 +152,7 @@ impl Drop for Worker {
     }
 }
 
-/// What the thread does next.
+/// The next work of the thread.
 enum Next {
     Draw(Job),
     Do(Task),
@@ -297,14 +297,8 @@ impl World for Inside {
         Ok(loaded.images.clone())
     }
 
-    fn preview(
-        &self,
-        recipe: &Recipe,
-        images: &Images,
-        time: f64,
-        shape: Shape,
-    ) -> Result<Raster<LinearRgb>, StudioError> {
-        self.shared.host.preview(recipe, images, time, shape)
+    fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError> {
+        self.shared.host.preview(lit)
     }
 
     fn now(&self) -> f64 {
