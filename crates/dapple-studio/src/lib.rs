@@ -18,7 +18,6 @@
 #![forbid(unsafe_code)]
 
 mod change;
-#[cfg(feature = "server")]
 mod code;
 mod data;
 mod diagnose;
@@ -30,15 +29,13 @@ mod patch;
 mod picture;
 mod points;
 mod render;
-#[cfg(feature = "server")]
 mod sample;
 mod schema;
-
-#[cfg(feature = "server")]
 mod seams;
 #[cfg(feature = "server")]
 mod server;
 mod session;
+mod task;
 mod utf16;
 
 pub use change::Change;
@@ -53,7 +50,8 @@ pub use message::{
 pub use patch::{Op, Part, apply};
 pub use picture::{Picture, Shown, rgba};
 pub use render::{Job, MAX_SIDE, Renderer, World};
-
+pub use sample::sample;
 #[cfg(feature = "server")]
 pub use server::{ExportedFile, Host, ServeOptions, has_page, serve};
 pub use session::{ImagesOf, Session};
+pub use task::{ExportOf, Task};

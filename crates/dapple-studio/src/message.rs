@@ -340,7 +340,8 @@ impl Reply {
 #[derive(Clone, Debug, Serialize)]
 pub struct Hello {
     version: &'static str,
-    pub(crate) mode: Mode,
+    /// What the page may do.
+    pub mode: Mode,
     builtins: Vec<Named>,
     /// Recipes in the folder.
     pub(crate) files: Vec<String>,

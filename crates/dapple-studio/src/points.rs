@@ -1,21 +1,16 @@
 //! The control points of textures, to be looked at and to be edited.
 
 use crate::StudioError;
-#[cfg(feature = "server")]
 use crate::message::Points;
 use crate::render::LIMITS;
-#[cfg(feature = "server")]
 use dapple::pups::ControlNet;
-#[cfg(feature = "server")]
-use dapple::recipe::{ControlPoint, Node};
-use dapple::recipe::{ControlPoints, Images, PupsNode, Recipe};
+use dapple::recipe::{ControlPoint, ControlPoints, Images, Node, PupsNode, Recipe};
 use serde_json::Value as Json;
 
 /// The most points that are shown.
 const MOST_POINTS: usize = 20_000;
 
 /// The control points of a node, and the edges of their graph.
-#[cfg(feature = "server")]
 pub(crate) fn report(
     recipe: &Recipe,
     images: &Images,
@@ -51,7 +46,6 @@ pub(crate) fn report(
     })
 }
 
-#[cfg(feature = "server")]
 fn points(net: &ControlNet) -> Vec<ControlPoint> {
     let (numbers, orientations) = (net.numbers(), net.orientations());
     let positions = net.pups.points().positions().iter().enumerate();

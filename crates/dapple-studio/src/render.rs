@@ -254,7 +254,6 @@ fn is_same(a: &Images, b: &Images) -> bool {
 }
 
 /// A plan within the limits of the studio.
-#[cfg(feature = "server")]
 pub(crate) fn planned(recipe: &Recipe, images: &Images, time: f64) -> Result<Plan, RecipeError> {
     Plan::new_within(recipe, images, time, &LIMITS)
 }
