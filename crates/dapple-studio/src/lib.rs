@@ -35,6 +35,7 @@ mod seams;
 #[cfg(feature = "server")]
 mod server;
 mod session;
+mod strip;
 mod task;
 mod utf16;
 
@@ -54,4 +55,5 @@ pub use sample::sample;
 #[cfg(feature = "server")]
 pub use server::{ExportedFile, Host, ServeOptions, has_page, serve};
 pub use session::{ImagesOf, Session};
+pub use strip::Variant;
 pub use task::{ExportOf, Task};

@@ -25,10 +25,29 @@ pub fn sample(
     images: &Images,
     side: u32,
 ) -> Result<Picture, StudioError> {
+    let (size, pixels) = lit(recipe, images, side.clamp(1, MOST))?;
+    Ok(Picture {
+        generation: 0,
+        shown,
+        first: [0; 2],
+        size,
+        scale: 1,
+        is_draft: false,
+        is_last: true,
+        pixels,
+    })
+}
+
+/// The size and the pixels of a picture whose longer side has so many pixels.
+pub(crate) fn lit(
+    recipe: &Recipe,
+    images: &Images,
+    side: u32,
+) -> Result<([u32; 2], Vec<u8>), StudioError> {
     let mut recipe = recipe.clone();
     recipe.material.normal_y = NormalY::OpenGl;
     let plan = planned(&recipe, images, 0.0)?;
-    let size = size_of(recipe.extent, side.clamp(1, MOST));
+    let size = size_of(recipe.extent, side);
     let maps = vec![MapKind::Albedo, MapKind::Normal];
     let options = BakeOptions {
         size,
@@ -45,16 +64,7 @@ pub fn sample(
     };
     let lit = colors.zip_map(&normals, |&color, normal| color * light(normal));
     let lit = lit.map_err(|error| StudioError::new(error.to_string()))?;
-    Ok(Picture {
-        generation: 0,
-        shown,
-        first: [0; 2],
-        size,
-        scale: 1,
-        is_draft: false,
-        is_last: true,
-        pixels: of_colors(&lit),
-    })
+    Ok((size, of_colors(&lit)))
 }
 
 /// How bright a place with this normal is.

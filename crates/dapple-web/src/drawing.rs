@@ -9,8 +9,39 @@ use dapple_recipe::{Images, Recipe};
 use dapple_studio::{Area, Job, Output, Picture, Renderer, Reply, Shape, StudioError, View, World};
 use std::cell::RefCell;
 
-/// The pixels of a piece, about.
-const PIECE_PIXELS: u32 = 1 << 16;
+/// The most and the fewest pixels of a piece, about.
+const PIECES: [u32; 2] = [1 << 16, 1 << 13];
+/// The milliseconds for which the next piece is made smaller, and those for which it is made larger.
+const PIECE_MS: [f64; 2] = [32.0, 8.0];
+
+/// How large pieces are, which follows from how long the last ones took.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace {
+    pixels: u32,
+}
+
+impl Default for Pace {
+    fn default() -> Self {
+        let [most, _] = PIECES;
+        Self { pixels: most }
+    }
+}
+
+impl Pace {
+    fn follow(&mut self, ms: f64) {
+        let ([most, fewest], [slow, fast]) = (PIECES, PIECE_MS);
+        if ms > slow {
+            self.pixels = (self.pixels / 2).max(fewest);
+        } else if ms < fast {
+            self.pixels = (self.pixels * 2).min(most);
+        }
+    }
+
+    /// The rows of a piece.
+    fn rows(self, area: Area) -> u32 {
+        (self.pixels / area.size[0].max(1)).max(16)
+    }
+}
 
 /// A job, and how far it is drawn.
 #[derive(Debug)]
@@ -42,13 +73,13 @@ struct Told {
 }
 
 impl Drawing {
-    pub(crate) fn new(job: Job, start: f64) -> Self {
+    pub(crate) fn new(job: Job, start: f64, pace: Pace) -> Self {
         let view = &job.view;
         let area = area_of(view);
         let numbers = [view.size, area.first, area.size].concat();
         // The pixels of a draft are at least two pixels wide.
         let has_draft = view.draft && numbers.iter().all(|number| number % 2 == 0);
-        let is_whole = view.paused || view.node.is_some() || rows_of(area) >= area.size[1];
+        let is_whole = view.paused || view.node.is_some() || pace.rows(area) >= area.size[1];
         Self {
             next: if has_draft || is_whole {
                 Next::Draft
@@ -65,6 +96,7 @@ impl Drawing {
     pub(crate) fn step(
         &mut self,
         renderer: &mut Renderer,
+        pace: &mut Pace,
         now: fn() -> f64,
         put: &mut dyn FnMut(Output),
     ) -> bool {
@@ -74,7 +106,7 @@ impl Drawing {
             Next::Draft if job.view.node.is_some() => Next::Rest,
             Next::Draft => Next::Rows(0),
             Next::Rows(first) => {
-                let rows = rows_of(area).min(area.size[1] - first);
+                let rows = pace.rows(area).min(area.size[1] - first);
                 job.view.region = Some(Area {
                     first: [area.first[0], area.first[1] + first],
                     size: [area.size[0], rows],
@@ -101,7 +133,11 @@ impl Drawing {
             told: RefCell::new(self.told),
             put: RefCell::new(put),
         };
+        let start = now();
         renderer.draw(&job, &place);
+        if let Next::Rows(_) = self.next {
+            pace.follow(now() - start);
+        }
         self.told = place.told.into_inner();
         let is_last = match self.next {
             Next::Draft => !self.told.draft,
@@ -116,11 +152,6 @@ impl Drawing {
 fn area_of(view: &View) -> Area {
     let (first, size) = ([0; 2], view.size);
     view.region.unwrap_or(Area { first, size })
-}
-
-/// The rows of a piece.
-fn rows_of(area: Area) -> u32 {
-    (PIECE_PIXELS / area.size[0].max(1)).max(16)
 }
 
 /// The place of a piece: it passes on what belongs to the whole job.

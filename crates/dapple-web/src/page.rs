@@ -1,11 +1,13 @@
 //! One page: its session, what waits to be done, and what was made.
 
-use crate::drawing::{Drawing, images};
+use crate::drawing::{Drawing, Pace, images};
 use crate::export;
-use dapple_recipe::{Memory, Recipe};
+use dapple_color::LinearRgb;
+use dapple_raster::Raster;
+use dapple_recipe::{Images, Memory, Recipe};
 use dapple_studio::{
-    Export, Hello, Mode, Output, Renderer, Reply, Request, Session, Shown, StudioError, Task,
-    sample,
+    Export, Hello, Mode, Output, Renderer, Reply, Request, Session, Shape, Shown, StudioError,
+    Task, Variant, World, sample,
 };
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -32,6 +34,9 @@ pub struct Page {
     renderer: Renderer,
     tasks: VecDeque<Task>,
     drawing: Option<Drawing>,
+    pace: Pace,
+    /// The pictures of the strip that was asked for last.
+    variants: VecDeque<Variant>,
     /// The built-in recipes of which there is no small picture yet, and the side of pictures.
     samples: VecDeque<(u16, &'static str)>,
     side: u32,
@@ -48,6 +53,8 @@ impl Page {
             renderer: Renderer::new(&Memory::new(MEMORY)),
             tasks: VecDeque::new(),
             drawing: None,
+            pace: Pace::default(),
+            variants: VecDeque::new(),
             samples: VecDeque::new(),
             side: 0,
             made: VecDeque::new(),
@@ -84,7 +91,7 @@ impl Page {
             None => self.answer_here(request),
         }
         if let Some(job) = self.session.job() {
-            self.drawing = Some(Drawing::new(job, (self.now)()));
+            self.drawing = Some(Drawing::new(job, (self.now)(), self.pace));
         }
     }
 
@@ -94,6 +101,10 @@ impl Page {
             Request::Gallery { size } => {
                 self.side = *size;
                 self.samples = (0..).zip(Recipe::builtin_names()).collect();
+                return;
+            }
+            Request::Strip { .. } => {
+                self.variants = self.session.strip(request.clone()).into();
                 return;
             }
             // What was made is given at once.
@@ -111,9 +122,18 @@ impl Page {
         } else if let Some(mut drawing) = self.drawing.take() {
             let made = &mut self.made;
             let put = &mut |output| put(made, output);
-            if drawing.step(&mut self.renderer, self.now, put) {
+            if drawing.step(&mut self.renderer, &mut self.pace, self.now, put) {
                 self.drawing = Some(drawing);
             }
+        } else if let Some(variant) = self.variants.pop_front() {
+            let made = RefCell::new(&mut self.made);
+            self.renderer.draw_variant(
+                &variant,
+                &Beside {
+                    now: self.now,
+                    made,
+                },
+            );
         } else if let Some((index, name)) = self.samples.pop_front() {
             let picture = Recipe::builtin(name).map_err(StudioError::from);
             let picture = picture.and_then(|recipe| {
@@ -124,7 +144,13 @@ impl Page {
                 self.made.push_back(Made::Picture(picture.to_bytes()));
             }
         }
-        !self.tasks.is_empty() || self.drawing.is_some() || !self.samples.is_empty()
+        let is_left = [
+            !self.tasks.is_empty(),
+            self.drawing.is_some(),
+            !self.variants.is_empty(),
+            !self.samples.is_empty(),
+        ];
+        is_left.contains(&true)
     }
 
     fn perform(&mut self, task: &Task) {
@@ -143,6 +169,40 @@ impl Page {
 
     fn say(&mut self, reply: &Reply) {
         put(&mut self.made, Output::Reply(reply.clone()));
+    }
+}
+
+/// Where small pictures beside those of the view are made.
+struct Beside<'a> {
+    now: fn() -> f64,
+    made: RefCell<&'a mut VecDeque<Made>>,
+}
+
+impl World for Beside<'_> {
+    fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
+        images(recipe)
+    }
+
+    fn preview(
+        &self,
+        _: &Recipe,
+        _: &Images,
+        _: f64,
+        _: Shape,
+    ) -> Result<Raster<LinearRgb>, StudioError> {
+        Err(StudioError::new("there is no exact preview here"))
+    }
+
+    fn now(&self) -> f64 {
+        (self.now)()
+    }
+
+    fn is_wanted(&self, _: u32) -> bool {
+        true
+    }
+
+    fn put(&self, output: Output) {
+        put(&mut self.made.borrow_mut(), output);
     }
 }
 

@@ -192,6 +192,10 @@ impl Page {
                 self.worker.sample(self.samples(size));
                 Ok(Vec::new())
             }
+            request @ Request::Strip { .. } => {
+                self.worker.vary(self.session.strip(request));
+                Ok(Vec::new())
+            }
             Request::Save {
                 text,
                 file,

@@ -3,7 +3,7 @@
 use super::Shared;
 use crate::message::{Export, Output, Reply, Shape};
 use crate::render::{Job, Renderer, World};
-use crate::{Shown, StudioError, Task};
+use crate::{Shown, StudioError, Task, Variant};
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
@@ -19,6 +19,8 @@ use tokio::sync::mpsc::UnboundedSender;
 struct Queue {
     job: Option<Job>,
     tasks: VecDeque<Task>,
+    /// The pictures of the strip that was asked for last.
+    variants: VecDeque<Variant>,
     /// Small pictures for which there is time when nothing else is to be done.
     samples: VecDeque<Sample>,
     is_over: bool,
@@ -89,6 +91,12 @@ impl Worker {
         self.inside.changed.notify_one();
     }
 
+    /// Makes the pictures of a strip when there is time, in place of those of the strip before.
+    pub(super) fn vary(&self, variants: Vec<Variant>) {
+        self.inside.lock().variants = variants.into();
+        self.inside.changed.notify_one();
+    }
+
     /// Makes small pictures when there is time.
     pub(super) fn sample(&self, samples: Vec<Sample>) {
         self.inside.lock().samples = samples.into();
@@ -131,6 +139,7 @@ impl Drop for Worker {
 enum Next {
     Draw(Job),
     Do(Task),
+    Vary(Variant),
     Sample(Sample),
 }
 
@@ -145,12 +154,14 @@ impl Inside {
             let what = match &next {
                 Next::Draw(_) => "view",
                 Next::Do(task) => task.what(),
+                Next::Vary(_) => "strip",
                 Next::Sample(_) => "gallery",
             };
             // A defect in a method must not end the server while somebody works.
             let done = catch_unwind(AssertUnwindSafe(|| match next {
                 Next::Draw(job) => renderer.draw(&job, self),
                 Next::Do(task) => self.perform(&task),
+                Next::Vary(variant) => renderer.draw_variant(&variant, self),
                 Next::Sample(sample) => self.show(&sample),
             }));
             if done.is_err() {
@@ -172,6 +183,9 @@ impl Inside {
             }
             if let Some(job) = queue.job.take() {
                 return Some(Next::Draw(job));
+            }
+            if let Some(variant) = queue.variants.pop_front() {
+                return Some(Next::Vary(variant));
             }
             if let Some(sample) = queue.samples.pop_front() {
                 return Some(Next::Sample(sample));

@@ -76,6 +76,13 @@ export async function settled(page, limit = 20_000) {
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 }
 
+/** Selects a node in the graph by keys. */
+export async function select(page, name) {
+  await page.locator(`.svelte-flow__node[data-id="${name}"]`).focus();
+  await page.keyboard.press('Enter');
+  await page.waitForFunction((name) => document.querySelector('.parameters .name')?.value === name, name);
+}
+
 export async function endBrowser() {
   await browser?.close();
   browser = null;

@@ -4,7 +4,7 @@ import { mkdtempSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { endBrowser, hash, open, serve, settled, skip, text } from './harness.mjs';
+import { endBrowser, hash, open, select, serve, settled, skip, text } from './harness.mjs';
 
 const RECIPE = `dapple = 1
 name = "dots"
@@ -27,8 +27,7 @@ describe('control points', { skip, timeout: 120_000 }, () => {
     studio = await serve(['dots.toml'], 'studio', folder);
     page = await open(studio.url);
     await settled(page);
-    await page.locator('.svelte-flow__node[data-id=dots]').focus();
-    await page.keyboard.press('Enter');
+    await select(page, 'dots');
     await page.locator('#tab-node').click();
     await page.locator('svg .point').first().waitFor();
     await settled(page);

@@ -176,7 +176,8 @@ fn an_export_has_the_numbers_of_a_bake() {
     let made = made(&mut page);
     let exported = of_type(&made, "exported").remove(0);
     assert_eq!(exported["files"][0]["name"], "giraffe_height.npy");
-    let Some(Made::File(bytes)) = made.last() else {
+    let is_file = |made: &&Made| matches!(made, Made::File(_));
+    let Some(Made::File(bytes)) = made.iter().find(is_file) else {
         panic!("the file follows its message");
     };
     let plan = Plan::new(&Recipe::builtin("giraffe").unwrap(), &Images::new(), 0.0).unwrap();
