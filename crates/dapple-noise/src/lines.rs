@@ -7,7 +7,6 @@ use crate::GradientNoise;
 use crate::gradient::{Column, MOST_CORNERS, Place, corner, corners, fade};
 use dapple_raster::simd::{self, dispatch};
 use dapple_raster::{RasterError, RasterViewMut, Window};
-use fearless_simd::prelude::*;
 use std::mem;
 use std::ops::Range;
 
@@ -192,27 +191,26 @@ impl<const N: usize> Corners<N> {
     fn blend(&mut self, offsets: &[f32; N], count: usize) {
         let mut lines: [&[[f32; N]]; MOST_CORNERS] = [&[]; MOST_CORNERS];
         for (line, known) in lines.iter_mut().zip(&self.lines) {
-            *line = &known.gradients[..count];
+            *line = &known.gradients;
         }
         self.columns.resize(count, Column::default());
         let columns = &mut self.columns[..count];
-        dispatch!(simd::level(), simd => blend(simd, &lines, offsets, columns));
+        dispatch!(simd::level(), _simd => blend(lines, offsets, columns));
     }
 }
 
-/// Blends the gradients along the lines of corners, whose lengths are those of `columns`.
+/// Blends the gradients along the lines of corners, each at least as long as `columns`.
 #[inline(always)]
-fn blend<S: Simd, const N: usize>(
-    _simd: S,
-    lines: &[&[[f32; N]]; MOST_CORNERS],
+fn blend<const N: usize>(
+    mut lines: [&[[f32; N]]; MOST_CORNERS],
     offsets: &[f32; N],
     columns: &mut [Column],
 ) {
-    let mut sliced = *lines;
-    for line in sliced.iter_mut().take(corners(N)) {
+    // Lines of equal length need no further check of their bounds.
+    for line in &mut lines[..corners(N)] {
         *line = &line[..columns.len()];
     }
     for index in 0..columns.len() {
-        columns[index] = Column::blend(|line| sliced[line][index], offsets);
+        columns[index] = Column::blend(|line| lines[line][index], offsets);
     }
 }
