@@ -207,6 +207,11 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
+    /// The options of the files.
+    pub(crate) fn args(&self) -> &'a OutputArgs {
+        self.args
+    }
+
     /// Announces work on standard error, unless the command is quiet.
     pub(crate) fn note_work(&self, text: &str) {
         if !self.context.quiet {

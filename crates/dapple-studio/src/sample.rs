@@ -6,7 +6,7 @@ use crate::{Picture, Shown, StudioError};
 use dapple::color::{Normal, NormalY};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Recipe};
 
-/// Where the light comes from: a unit vector to the right, up, and towards the eye.
+/// The direction to the light: a unit vector to the right, up, and towards the eye.
 const LIGHT: [f32; 3] = [-0.48, 0.6, 0.64];
 /// The light from everywhere, and that from one side.
 const LIGHTS: [f32; 2] = [0.35, 1.0];
@@ -67,7 +67,7 @@ pub(crate) fn lit(
     Ok((size, of_colors(&lit)))
 }
 
-/// How bright a place with this normal is.
+/// The brightness of a place with this normal, from 0 to 1.
 fn light(normal: &Normal) -> f32 {
     let parts = normal.to_array().into_iter().zip(LIGHT);
     let facing: f32 = parts.map(|(a, b)| a * b).sum();

@@ -3,10 +3,8 @@
 //! A worker has one thread and hears nothing while it draws, so that a piece must be short. Each piece is a job of the
 //! [`Renderer`], whose plan and values stay in its memory; the page sees the messages of one job.
 
-use dapple_color::LinearRgb;
-use dapple_raster::Raster;
 use dapple_recipe::{Images, Recipe};
-use dapple_studio::{Area, Job, Output, Picture, Renderer, Reply, Shape, StudioError, View, World};
+use dapple_studio::{Area, Job, Output, Picture, Renderer, Reply, StudioError, View, World};
 use std::cell::RefCell;
 
 /// The most and the fewest pixels of a piece, about.
@@ -165,16 +163,6 @@ struct Place<'a> {
 impl World for Place<'_> {
     fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
         images(recipe)
-    }
-
-    fn preview(
-        &self,
-        _: &Recipe,
-        _: &Images,
-        _: f64,
-        _: Shape,
-    ) -> Result<Raster<LinearRgb>, StudioError> {
-        Err(StudioError::new("there is no exact preview here"))
     }
 
     fn now(&self) -> f64 {

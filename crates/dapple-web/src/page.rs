@@ -2,12 +2,10 @@
 
 use crate::drawing::{Drawing, Pace, images};
 use crate::export;
-use dapple_color::LinearRgb;
-use dapple_raster::Raster;
 use dapple_recipe::{Images, Memory, Recipe};
 use dapple_studio::{
-    Export, Hello, Mode, Output, Renderer, Reply, Request, Session, Shape, Shown, StudioError,
-    Task, Variant, World, sample,
+    Export, Hello, Mode, Output, Renderer, Reply, Request, Session, Shown, StudioError, Task,
+    Variant, World, sample,
 };
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -181,16 +179,6 @@ struct Beside<'a> {
 impl World for Beside<'_> {
     fn images(&self, recipe: &Recipe) -> Result<Images, StudioError> {
         images(recipe)
-    }
-
-    fn preview(
-        &self,
-        _: &Recipe,
-        _: &Images,
-        _: f64,
-        _: Shape,
-    ) -> Result<Raster<LinearRgb>, StudioError> {
-        Err(StudioError::new("there is no exact preview here"))
     }
 
     fn now(&self) -> f64 {

@@ -27,8 +27,14 @@ const READERS: [&str; 19] = [
 ];
 
 /// Command lines that clap cannot tell to be wrong.
-const WRONG: [&str; 33] = [
+const WRONG: [&str; 39] = [
     "bake flagstone -o out.png --name rock",
+    "bake flagstone --frames 2 -o rock.glb",
+    "bake flagstone --frames 2 --maps height -o -",
+    "bake flagstone --frames 2 --json=all.json -o out/",
+    "bake flagstone --frames 2 --frame 1/2 -o out/",
+    "pups cow --motion nan -o out.png",
+    "pups cow --motion 2 -o out.png",
     "bake flagstone",
     "bake flagstone --maps height,height -o out/",
     "worley --size 100x64 -o out.png",

@@ -52,12 +52,12 @@ impl<T: PupsRecipe> Texture for T {
     }
 
     fn expected_points(&self, tile: Domain) -> f64 {
-        placed(self, tile, 0.0).expected_points()
+        placed(self, tile).expected_points()
     }
 
     fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError> {
         check_domain(self)?;
-        Ok(placed(self, plan.domain(), plan.time()).build(&(), plan.seed(None))?)
+        Ok(now(self, plan).build(&(), plan.seed(None))?)
     }
 }
 
@@ -71,7 +71,7 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
     }
 
     fn expected_points(&self, tile: Domain) -> f64 {
-        placed(&self.options, tile, 0.0).expected_points()
+        placed(&self.options, tile).expected_points()
     }
 
     fn build(&self, plan: &Builder<'_>) -> Result<PupsField, RecipeError> {
@@ -80,19 +80,28 @@ impl<T: PupsRecipe<ReferenceImage>> Texture for Referenced<T> {
             Picture::Colors(raster) => raster.map(|color| color.luminance()),
         })?;
         check_domain(&self.options)?;
-        Ok(placed(&self.options, plan.domain(), plan.time()).build(&image, plan.seed(None))?)
+        Ok(now(&self.options, plan).build(&image, plan.seed(None))?)
     }
 }
 
-/// The options at a time, with the tile as their domain, which wraps along no axis along which the texture changes.
-fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain, time: f64) -> T {
+/// The options with the tile of a plan as their domain, at its time if the points move.
+fn now<T: PupsRecipe<Image>, Image>(options: &T, plan: &Builder<'_>) -> T {
+    let mut options = placed(options, plan.domain());
+    let net = options.net_mut();
+    if net.motion.is_some() {
+        net.time = plan.time();
+    }
+    options
+}
+
+/// The options with the tile as their domain, which wraps along no axis along which the texture changes.
+fn placed<T: PupsRecipe<Image>, Image>(options: &T, tile: Domain) -> T {
     let usual = T::default().domain_mut().wrap;
     let mut options = options.clone();
     *options.domain_mut() = Domain {
         wrap: [0, 1].map(|axis| tile.wrap[axis] && usual[axis]),
         ..tile
     };
-    options.net_mut().time = time;
     options
 }
 
@@ -184,7 +193,7 @@ impl Recipe {
     /// let recipe = Recipe::from_toml(text)?;
     /// let nets = recipe.control_nets("hide", &Images::new(), 0.0, &PlanLimits::default())?;
     /// let points = nets.and_then(|nets| nets.points).expect("a cow is one net of numbers");
-    /// assert!(points.points.iter().all(|point| point.value == 0.0 || point.value == 1.0));
+    /// assert!(points.points.iter().all(|point| point.label.is_some()), "white or black");
     /// # Ok::<(), dapple_recipe::RecipeError>(())
     /// ```
     pub fn control_nets(

@@ -1,9 +1,9 @@
 //! The thread that draws what one page shows. What is drawn is always the newest; what was asked for besides comes before.
 
 use super::Shared;
-use crate::message::{Export, Output, Reply, Shape};
+use crate::message::{Export, Output, Reply};
 use crate::render::{Job, Renderer, World};
-use crate::{Shown, StudioError, Task, Variant};
+use crate::{Lit, Shown, StudioError, Task, Variant};
 use dapple::color::LinearRgb;
 use dapple::raster::Raster;
 use dapple::recipe::{Images, Recipe};
@@ -14,7 +14,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Instant, SystemTime};
 use tokio::sync::mpsc::UnboundedSender;
 
-/// What the thread has to do.
+/// The work that waits for the thread.
 #[derive(Default)]
 struct Queue {
     job: Option<Job>,
@@ -135,7 +135,7 @@ impl Drop for Worker {
     }
 }
 
-/// What the thread does next.
+/// The next work of the thread.
 enum Next {
     Draw(Job),
     Do(Task),
@@ -240,14 +240,8 @@ impl World for Inside {
         Ok(loaded.images.clone())
     }
 
-    fn preview(
-        &self,
-        recipe: &Recipe,
-        images: &Images,
-        time: f64,
-        shape: Shape,
-    ) -> Result<Raster<LinearRgb>, StudioError> {
-        self.shared.host.preview(recipe, images, time, shape)
+    fn preview(&self, lit: &Lit<'_>) -> Result<Raster<LinearRgb>, StudioError> {
+        self.shared.host.preview(lit)
     }
 
     fn now(&self) -> f64 {

@@ -58,16 +58,6 @@ impl World for AtOnce {
         Ok(Images::new())
     }
 
-    fn preview(
-        &self,
-        _: &Recipe,
-        _: &Images,
-        _: f64,
-        _: dapple_studio::Shape,
-    ) -> Result<dapple_raster::Raster<dapple_color::LinearRgb>, StudioError> {
-        Err(StudioError::new("there is no light here"))
-    }
-
     fn now(&self) -> f64 {
         0.0
     }
