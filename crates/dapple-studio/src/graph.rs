@@ -28,8 +28,6 @@ struct GraphNode {
     /// Where it is written, in UTF-16 code units.
     span: Option<[usize; 2]>,
     inputs: Vec<GraphInput>,
-    /// The range of its values, if that is known.
-    range: Option<[f64; 2]>,
 }
 
 /// An input of a node.
@@ -42,7 +40,6 @@ struct GraphInput {
     node: Option<String>,
     /// The input as it is written, or by default.
     value: Json,
-    is_written: bool,
 }
 
 impl Graph {
@@ -67,7 +64,6 @@ impl Graph {
                 is_global: plan.is_some_and(|plan| plan.is_global(name)),
                 span: document.node_span(name),
                 inputs: inputs.collect(),
-                range: None,
             })
         };
         let names = names_in_order(document, &data);
@@ -132,7 +128,6 @@ fn input(found: &Found<'_>, skipped: usize) -> GraphInput {
             .filter(is_node)
             .map(str::to_owned),
         value: found.value.cloned().unwrap_or(Json::Null),
-        is_written: found.is_written,
     }
 }
 

@@ -56,6 +56,15 @@ pub enum Request {
         /// The longer side of a picture, in pixels.
         size: u32,
     },
+    /// A row of small pictures of what changes would make of the recipe, when there is time; the last one asked for counts.
+    Strip {
+        /// The node that is shown; the material in light by default.
+        node: Option<String>,
+        /// The changes of each picture.
+        changes: Vec<Vec<Op>>,
+        /// The longer side of a picture, in pixels.
+        size: u32,
+    },
     /// The control points of a node.
     Points {
         /// The node.
@@ -249,8 +258,6 @@ pub enum Reply {
     Began {
         /// The generation.
         generation: u32,
-        /// The state of the text.
-        rev: u64,
         /// Columns and rows of the whole tile.
         size: [u32; 2],
         /// The part of the tile, if it is not all of it.
@@ -340,7 +347,8 @@ impl Reply {
 #[derive(Clone, Debug, Serialize)]
 pub struct Hello {
     version: &'static str,
-    pub(crate) mode: Mode,
+    /// What the page may do.
+    pub mode: Mode,
     builtins: Vec<Named>,
     /// Recipes in the folder.
     pub(crate) files: Vec<String>,
@@ -454,10 +462,6 @@ pub struct NodeTime {
 pub struct MapSeams {
     /// The map.
     pub name: String,
-    /// The seam between its left and right, one pixel wide; none where it does not repeat.
-    pub x: Option<Json>,
-    /// The seam between its top and bottom.
-    pub y: Option<Json>,
     /// The report as a table.
     pub text: String,
 }

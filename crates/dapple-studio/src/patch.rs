@@ -73,14 +73,14 @@ pub enum Op {
         /// Its name.
         name: String,
     },
-    /// Gives a node another name. Inputs and seeds that name it follow.
+    /// Gives a node another name. Inputs that name it follow; what draws by the old name still does, this node too.
     RenameNode {
         /// Its name.
         name: String,
         /// The new name.
         to: String,
     },
-    /// Adds a copy of a node.
+    /// Adds a copy of a node, which draws by the name of the first where it has a seed.
     DuplicateNode {
         /// Its name.
         name: String,

@@ -19,6 +19,8 @@ pub enum Shown {
     Builtin(u16),
     /// The recipe of the folder with this index.
     File(u16),
+    /// The picture of this index in the strip that was asked for last.
+    Strip(u16),
 }
 
 impl Shown {
@@ -36,6 +38,7 @@ impl Shown {
             Self::Thumbnail(index) => 200 + index.min(799),
             Self::Builtin(index) => 1000 + index.min(999),
             Self::File(index) => 2000 + index.min(999),
+            Self::Strip(index) => 3000 + index.min(999),
         }
     }
 }

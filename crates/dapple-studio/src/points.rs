@@ -1,21 +1,16 @@
 //! The control points of textures, to be looked at and to be edited.
 
 use crate::StudioError;
-#[cfg(feature = "server")]
 use crate::message::Points;
 use crate::render::LIMITS;
-#[cfg(feature = "server")]
 use dapple::pups::ControlNet;
-#[cfg(feature = "server")]
-use dapple::recipe::{ControlPoint, Node};
-use dapple::recipe::{ControlPoints, Images, PupsNode, Recipe};
+use dapple::recipe::{ControlPoint, ControlPoints, Images, Node, PupsNode, Recipe};
 use serde_json::Value as Json;
 
 /// The most points that are shown.
 const MOST_POINTS: usize = 20_000;
 
 /// The control points of a node, and the edges of their graph.
-#[cfg(feature = "server")]
 pub(crate) fn report(
     recipe: &Recipe,
     images: &Images,
@@ -58,7 +53,6 @@ pub(crate) fn report(
 }
 
 /// The points of a net, with the labels that they have in the text where they are written one by one.
-#[cfg(feature = "server")]
 fn points(net: &ControlNet, written: Option<&ControlPoints>) -> Vec<ControlPoint> {
     let label = |index: usize| match written {
         Some(written) => written.points[index].label,

@@ -18,7 +18,7 @@ pub(crate) const MAX_TILE: u32 = 1 << 16;
 /// The longest and the shortest longer side of a draft, in pixels.
 const DRAFT_SIDES: [u32; 2] = [256, 64];
 /// The milliseconds for which a draft is fast enough, and those for which a larger one is, too.
-const DRAFT_MS: [f64; 2] = [16.0, 5.0];
+const DRAFT_MS: [f64; 2] = [8.0, 2.5];
 /// The longest side of a thumbnail, in pixels.
 const THUMBNAIL_SIDE: u32 = 64;
 /// The most thumbnails: their numbers end before those of recipes.
@@ -95,7 +95,7 @@ pub trait World {
 /// Draws jobs, and keeps what the next one may need again.
 #[derive(Debug)]
 pub struct Renderer {
-    memory: Memory,
+    pub(crate) memory: Memory,
     planned: Option<Planned>,
     /// The longest side of the next draft, in pixels.
     draft_side: u32,
@@ -264,7 +264,6 @@ fn is_same(a: &Images, b: &Images) -> bool {
 }
 
 /// A plan within the limits of the studio.
-#[cfg(feature = "server")]
 pub(crate) fn planned(recipe: &Recipe, images: &Images, time: f64) -> Result<Plan, RecipeError> {
     Plan::new_within(recipe, images, time, &LIMITS)
 }
@@ -309,7 +308,6 @@ impl Pass<'_> {
         self.world.put(
             Reply::Began {
                 generation: self.job.generation,
-                rev: self.job.rev,
                 size: view.size,
                 region: view.region,
                 node: view.node.clone(),
@@ -402,7 +400,10 @@ impl Pass<'_> {
         let rows = frame.region.size[1];
         let mut parts: Vec<_> = options.maps.iter().map(|_| (0, Vec::new())).collect();
         for band in Bake::new(self.plan, &options)? {
-            self.check_wanted()?;
+            // A draft that was begun is shown: else none would be while changes come faster than it is drawn.
+            if !is_draft {
+                self.check_wanted()?;
+            }
             let band = band?;
             for ((kind, map), (first_row, pixels)) in band.maps.iter().zip(&mut parts) {
                 pixels.extend(rgba(map));

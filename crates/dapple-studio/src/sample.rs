@@ -1,8 +1,8 @@
 //! A small picture of a recipe, to know it by: its color in light from the upper left.
 
-use crate::StudioError;
 use crate::picture::of_colors;
 use crate::render::{planned, size_of};
+use crate::{Picture, Shown, StudioError};
 use dapple::color::{Normal, NormalY};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Recipe};
 
@@ -10,6 +10,33 @@ use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Recipe};
 const LIGHT: [f32; 3] = [-0.48, 0.6, 0.64];
 /// The light from everywhere, and that from one side.
 const LIGHTS: [f32; 2] = [0.35, 1.0];
+
+/// The longest side of a picture, in pixels.
+const MOST: u32 = 256;
+
+/// A small picture of a recipe in light, to know it by. Its longer side has `side` pixels, at most 256.
+///
+/// # Errors
+///
+/// What the recipe refuses.
+pub fn sample(
+    shown: Shown,
+    recipe: &Recipe,
+    images: &Images,
+    side: u32,
+) -> Result<Picture, StudioError> {
+    let (size, pixels) = lit(recipe, images, side.clamp(1, MOST))?;
+    Ok(Picture {
+        generation: 0,
+        shown,
+        first: [0; 2],
+        size,
+        scale: 1,
+        is_draft: false,
+        is_last: true,
+        pixels,
+    })
+}
 
 /// The size and the pixels of a picture whose longer side has so many pixels.
 pub(crate) fn lit(

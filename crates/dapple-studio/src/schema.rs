@@ -30,9 +30,6 @@ pub(crate) struct Kind {
     name: &'static str,
     /// Its use, such as `color`.
     group: &'static str,
-    about: String,
-    /// The names of its inputs; `*` for any number of them.
-    inputs: Vec<String>,
     /// The options that a new node of this kind begins with.
     value: Json,
 }
@@ -219,39 +216,13 @@ pub(crate) fn kinds() -> Vec<Kind> {
 }
 
 fn kind(name: &'static str) -> Kind {
-    let variant = resolved(&schema()["properties"]["nodes"]["additionalProperties"]);
-    let mut variants = branches(variant);
-    let variant = variants.find(|variant| variant["properties"].get(name).is_some());
-    let variant = variant.unwrap_or(&Json::Null);
-    let options = resolved(&variant["properties"][name]);
-    let inputs = match options.get("properties").and_then(Json::as_object) {
-        _ if role(options) == Some(Role::Input) => vec!["input".to_owned()],
-        None if options.get("items").and_then(role).is_some() => vec!["*".to_owned()],
-        None => Vec::new(),
-        Some(properties) => {
-            let inputs = properties
-                .iter()
-                .filter(|(_, inner)| is_input_or_list(inner));
-            inputs.map(|(key, _)| key.clone()).collect()
-        }
-    };
     let known = GROUPS.iter().find(|(other, ..)| *other == name);
     let (_, group, example) = known.copied().unwrap_or((name, "other", "{}"));
     Kind {
         name,
         group,
-        about: variant["description"]
-            .as_str()
-            .unwrap_or_default()
-            .to_owned(),
-        inputs,
         value: serde_json::from_str(example).unwrap_or_default(),
     }
-}
-
-fn is_input_or_list(schema: &Json) -> bool {
-    optional_role(schema) == Some(Role::Input)
-        || schema.get("items").and_then(role) == Some(Role::Input)
 }
 
 #[cfg(test)]
@@ -302,7 +273,6 @@ mod tests {
                 Plan::new(&recipe, &Images::new(), 0.0)
                     .unwrap_or_else(|error| panic!("{}: {error}", kind.name));
             }
-            assert!(!kind.about.is_empty(), "{}", kind.name);
         }
     }
 }

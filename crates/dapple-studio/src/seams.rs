@@ -6,7 +6,6 @@ use crate::render::{MAX_SIDE, planned};
 use dapple::raster::Raster;
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Recipe};
 use dapple::tile::{SeamOptions, SeamReport, TileError};
-use serde_json::{Value as Json, json};
 
 /// The maps that are looked at: all others are made of these.
 const MAPS: [MapKind; 4] = [
@@ -62,15 +61,8 @@ pub(crate) fn report(
 }
 
 fn map_seams(kind: MapKind, report: &SeamReport) -> MapSeams {
-    let side = |seam: Option<dapple::tile::SeamRatio>| -> Option<Json> {
-        let seam = seam?;
-        Some(json!({ "ratio": seam.ratio }))
-    };
-    let seam = &report.seams[0];
     MapSeams {
         name: kind.name().to_owned(),
-        x: side(seam.x),
-        y: side(seam.y),
         text: report.to_string(),
     }
 }

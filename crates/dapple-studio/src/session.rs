@@ -4,7 +4,7 @@ use crate::change::changes;
 use crate::message::{Reply, Request, View};
 use crate::patch::{Op, apply, spliced};
 use crate::render::Job;
-use crate::{Document, StudioError, points};
+use crate::{Document, StudioError, Variant, points, strip};
 use dapple::recipe::{Images, Recipe};
 use std::sync::Arc;
 
@@ -157,6 +157,28 @@ impl Session {
             }
             _ => return None,
         })
+    }
+
+    /// The pictures of a [`Request::Strip`]; none of other requests.
+    #[must_use]
+    pub fn strip(&self, request: Request) -> Vec<Variant> {
+        let Request::Strip {
+            node,
+            changes,
+            size,
+        } = request
+        else {
+            return Vec::new();
+        };
+        let variant = |(index, changes)| Variant {
+            document: self.document.clone(),
+            changes,
+            node: node.clone(),
+            time: self.view.time,
+            index,
+            side: size,
+        };
+        (0..).zip(changes).take(strip::MOST).map(variant).collect()
     }
 
     /// The job of drawing the text and the view as they are, if they have changed since the last one.

@@ -3,7 +3,7 @@
 use super::{Op, Part, Place, apply_one};
 use crate::StudioError;
 use crate::data::{json_of_table, table_of};
-use crate::schema::roles;
+use crate::schema::{Role, roles};
 use dapple::recipe::KINDS;
 use serde_json::{Map, Value as Json, json};
 use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, Value};
@@ -46,7 +46,7 @@ fn set_blank_line(node: &mut Table) {
     }
 }
 
-/// Gives a node another name, and all inputs and seeds that name it, too.
+/// Gives a node another name, and all inputs that name it, too. What draws by the old name still does.
 pub(super) fn rename(document: &mut DocumentMut, name: &str, to: &str) -> Result<(), StudioError> {
     if name == to {
         return Ok(());
@@ -68,19 +68,50 @@ pub(super) fn rename(document: &mut DocumentMut, name: &str, to: &str) -> Result
         _ => return Err(no_node(name)),
     }
     for found in roles(&data) {
-        let names_it = found.is_written && found.value.and_then(Json::as_str) == Some(name);
-        if !names_it {
+        let is_named = found.value.and_then(Json::as_str) == Some(name);
+        if found.role == Role::Input && found.is_written && is_named {
+            let path = moved(found.path, name, to);
+            let value = to.into();
+            apply_one(document, &Op::Set { path, value })?;
+        }
+    }
+    keep_seed(document, &data, name, to)
+}
+
+/// The path of what was in a node in the node of another name.
+fn moved(mut path: Vec<Part>, name: &str, to: &str) -> Vec<Part> {
+    if let [first, node, ..] = &mut path[..]
+        && *first == Part::from("nodes")
+        && *node == Part::from(name)
+    {
+        *node = Part::from(to);
+    }
+    path
+}
+
+/// Has the node `to`, which was or is made after the node `name` of `data`, draw by the name that that one drew by.
+fn keep_seed(
+    document: &mut DocumentMut,
+    data: &Json,
+    name: &str,
+    to: &str,
+) -> Result<(), StudioError> {
+    for found in roles(data) {
+        let is_of_node = found.path.starts_with(&["nodes".into(), name.into()]);
+        if found.role != Role::Seed || !is_of_node {
             continue;
         }
-        let mut path = found.path;
-        if let [first, node, ..] = &mut path[..]
-            && *first == Part::from("nodes")
-            && *node == Part::from(name)
-        {
-            *node = Part::from(to);
+        let path = moved(found.path, name, to);
+        match found.value {
+            Some(seed) if found.is_written && seed == to => {
+                apply_one(document, &Op::Remove { path })?;
+            }
+            _ if found.is_written => {}
+            _ => {
+                let value = name.into();
+                apply_one(document, &Op::Set { path, value })?;
+            }
         }
-        let value = to.into();
-        apply_one(document, &Op::Set { path, value })?;
     }
     Ok(())
 }
@@ -104,7 +135,7 @@ fn rename_in_table(table: &mut Table, name: &str, to: &str) {
     }
 }
 
-/// Adds a copy of a node.
+/// Adds a copy of a node, which draws by the name of the first.
 pub(super) fn duplicate(
     document: &mut DocumentMut,
     name: &str,
@@ -119,7 +150,8 @@ pub(super) fn duplicate(
     let (kind, value) = node
         .and_then(|node| node.iter().next())
         .ok_or_else(|| no_node(name))?;
-    add(document, to, kind, value)
+    add(document, to, kind, value)?;
+    keep_seed(document, &data, name, to)
 }
 
 /// Gives a node an input.

@@ -3,7 +3,7 @@
 use super::{Op, Part, apply, spliced};
 use crate::Document;
 use crate::data::json_of_table;
-use dapple::recipe::Recipe;
+use dapple::recipe::{Images, Plan, Recipe};
 use proptest::prelude::*;
 use serde_json::{Value as Json, json};
 use toml_edit::DocumentMut;
@@ -211,7 +211,7 @@ fn nodes_come_and_go_with_their_lines() {
 }
 
 #[test]
-fn inputs_and_seeds_follow_a_node_that_is_renamed() {
+fn inputs_follow_a_node_that_is_renamed() {
     let rename = Op::RenameNode {
         name: "cells".to_owned(),
         to: "stones".to_owned(),
@@ -221,7 +221,41 @@ fn inputs_and_seeds_follow_a_node_that_is_renamed() {
         text,
         TEXT.replace("\"cells\"", "\"stones\"")
             .replace("nodes.cells", "nodes.stones")
+            .replace("seed = \"stones\"", "seed = \"cells\"")
+            .replace("0.65 } }\n", "0.65 } }\nseed = \"cells\"\n")
     );
+    let back = Op::RenameNode {
+        name: "stones".to_owned(),
+        to: "cells".to_owned(),
+    };
+    assert_eq!(apply(&text, &[back]).unwrap(), TEXT);
+}
+
+#[test]
+fn a_node_looks_the_same_under_another_name_and_as_a_copy() {
+    let picture = |text: &str, node: &str| {
+        let recipe = Recipe::from_toml(text).unwrap();
+        let plan = Plan::new(&recipe, &Images::new(), 0.0).unwrap();
+        format!("{:?}", plan.node_picture(node, [8; 2], None).unwrap())
+    };
+    let text = Recipe::builtin_text("flagstone").unwrap();
+    for name in Recipe::from_toml(text).unwrap().nodes.into_keys() {
+        let to = "another".to_owned();
+        let ops = [
+            Op::RenameNode {
+                name: name.clone(),
+                to: to.clone(),
+            },
+            Op::DuplicateNode {
+                name: name.clone(),
+                to,
+            },
+        ];
+        for op in ops {
+            let new = apply(text, std::slice::from_ref(&op)).unwrap();
+            assert_eq!(picture(&new, "another"), picture(text, &name), "{op:?}");
+        }
+    }
 }
 
 #[test]

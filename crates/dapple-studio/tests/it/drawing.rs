@@ -3,7 +3,7 @@
 use crate::world::{Page, TestWorld, of_type, split};
 use dapple::image::{Content, Depth, Encoding, Image, Limits, PngPixels, RowWriter, decode_image};
 use dapple::recipe::{Bake, BakeOptions, Images, MapKind, MapRows, Plan, Recipe};
-use dapple_studio::{Picture, Shown};
+use dapple_studio::{Picture, Request, Shown};
 use serde_json::json;
 use std::io::Cursor;
 
@@ -161,6 +161,33 @@ fn nodes_have_pictures_and_thumbnails_with_their_ranges() {
 }
 
 #[test]
+fn a_strip_shows_what_changes_would_make() {
+    let mut page = Page::open("flagstone");
+    let gain = |value: f64| json!({ "op": "set", "path": ["nodes", "grain", "noise", "gain"], "value": value });
+    let message = json!({
+        "type": "strip", "node": "grain", "size": 32, "changes": [[gain(0.25)], [gain(-3.0)], [gain(0.75)]],
+    });
+    let request: Request = serde_json::from_value(message).unwrap();
+    let world = TestWorld::default();
+    let text = page.session.document().text().to_owned();
+    for variant in page.session.strip(request) {
+        page.renderer.draw_variant(&variant, &world);
+    }
+    assert_eq!(page.session.document().text(), text);
+    let (_, strip) = split(world.outputs.into_inner());
+    let shown: Vec<_> = strip.iter().map(|picture| picture.shown).collect();
+    // The recipe refuses the second value.
+    assert_eq!(shown, [Shown::Strip(0), Shown::Strip(2)]);
+    page.ask(json!({ "type": "patch", "rev": 0, "ops": [gain(0.75)] }));
+    page.ask(
+        json!({ "type": "view", "size": [32, 32], "node": "grain", "paused": false, "draft": false }),
+    );
+    let (_, pictures) = page.draw();
+    assert_eq!(strip[1].pixels, pictures[0].pixels);
+    assert_ne!(strip[0].pixels, strip[1].pixels);
+}
+
+#[test]
 fn what_is_no_longer_wanted_is_not_drawn() {
     let mut page = Page::open("giraffe");
     page.ask(view(1024, &["albedo"], true));
@@ -169,6 +196,24 @@ fn what_is_no_longer_wanted_is_not_drawn() {
     page.renderer.draw(&page.session.job().unwrap(), &world);
     let (_, pictures) = split(world.outputs.into_inner());
     assert!(pictures.len() <= 1, "{}", pictures.len());
+}
+
+#[test]
+fn a_draft_that_was_begun_is_shown() {
+    let mut page = Page::open("polka-dots");
+    page.ask(view(512, &["albedo"], true));
+    page.draw();
+    page.ask(view(1024, &["albedo"], true));
+    let world = TestWorld::default();
+    world.patience.set(Some(1));
+    page.renderer.draw(&page.session.job().unwrap(), &world);
+    let (_, pictures) = split(world.outputs.into_inner());
+    // The first draft was drawn at once, so that this one has more rows than are drawn before it is asked again.
+    let drawn: Vec<_> = pictures
+        .iter()
+        .map(|picture| (picture.is_draft, picture.is_last, picture.size))
+        .collect();
+    assert_eq!(drawn, [(true, true, [256; 2])]);
 }
 
 #[test]

@@ -115,7 +115,7 @@ fn the_graph_says_what_each_node_is_made_of() {
     );
     assert_eq!(
         c["inputs"][0],
-        json!({ "label": "1", "path": ["add", 0], "node": "a", "value": "a", "is_written": true })
+        json!({ "label": "1", "path": ["add", 0], "node": "a", "value": "a" })
     );
     assert_eq!(
         (&b["is_color"], &c["is_color"], &b["is_global"]),

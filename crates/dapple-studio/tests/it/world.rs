@@ -10,6 +10,8 @@ use std::cell::{Cell, RefCell};
 pub(crate) struct TestWorld {
     pub(crate) outputs: RefCell<Vec<Output>>,
     pub(crate) wanted: Cell<Option<usize>>,
+    /// How many more times a job is wanted when it asks.
+    pub(crate) patience: Cell<Option<usize>>,
     ticks: Cell<f64>,
 }
 
@@ -24,6 +26,10 @@ impl World for TestWorld {
     }
 
     fn is_wanted(&self, _: u32) -> bool {
+        if let Some(left) = self.patience.get() {
+            self.patience.set(Some(left.saturating_sub(1)));
+            return left > 0;
+        }
         self.wanted
             .get()
             .is_none_or(|most| self.outputs.borrow().len() < most)

@@ -34,6 +34,8 @@ export class Looking {
   room = $state.raw<[number, number]>([1, 1]);
   time = $state(0);
   playing = $state(false);
+  /** Whether full pictures take too long for a loop, which then plays in drafts. */
+  slow = $state(false);
   paused = $state(false);
   before = $state(false);
   dragging = $state(false);
@@ -56,6 +58,11 @@ export class Looking {
 
   get repeats(): number {
     return this.mode === 'tiled' ? 2 : 1;
+  }
+
+  /** Whether more pixels are asked for where it is zoomed. */
+  get zooms(): boolean {
+    return this.mode === 'maps' || this.mode === 'node';
   }
 
   /** The zoom at which all of it fits. */
@@ -81,7 +88,7 @@ export class Looking {
     const node = this.mode === 'node' ? selected : null;
     const paused = this.paused || this.mode === 'seams';
     const exact = this.mode === 'exact' ? { shape: this.exact } : null;
-    const rest = { time: this.time, draft: true, thumbnails: true, paused, exact };
+    const rest = { time: this.time, draft: !this.playing || this.slow, thumbnails: !this.playing, paused, exact };
     return { size, region, maps: this.needed(), node, ...rest };
   }
 
@@ -113,12 +120,15 @@ export class Looking {
     this.maps = order.filter((one) => chosen.includes(one));
   }
 
-  /** Plays the loop in time until the answer is called. */
-  play(): () => void {
+  /** Plays the loop in time until the answer is called; a picture that is not there yet is waited for. */
+  play(isDrawn: () => boolean): () => void {
+    this.slow = false;
     let last = performance.now();
     let id = requestAnimationFrame(function step(this: void, now: number) {
-      looking.time = (looking.time + (now - last) / 1000 / LOOP) % 1;
-      last = now;
+      if (isDrawn()) {
+        looking.time = (looking.time + (now - last) / 1000 / LOOP) % 1;
+        last = now;
+      }
       id = requestAnimationFrame(step);
     });
     const looking = this;
@@ -134,7 +144,7 @@ export class Looking {
   #detail(): { size: [number, number]; region: Region | null } {
     const plain = { size: this.pixels, region: null };
     const now = this.window;
-    if (!now || !this.sharp || this.mode !== 'maps') return plain;
+    if (!now || !this.sharp || !this.zooms) return plain;
     const wanted = now.zoom * devicePixelRatio;
     if (wanted <= this.pixels[0] * 1.01) return plain;
     const steps = Math.min(Math.ceil(Math.log2(wanted / this.pixels[0])), Math.floor(Math.log2(this.whole / this.size)));

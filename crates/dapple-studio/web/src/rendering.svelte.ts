@@ -21,13 +21,19 @@ export class Rendering {
   #marking = true;
   /** Whether the newest view was drawn, and the newest revision that was drawn in full. */
   #seen = false;
+  #drawn = false;
   #full = -1;
   #generation = 0;
+
+  /** Whether a picture of the newest view has come, be it a draft. */
+  get drawn(): boolean {
+    return this.#drawn;
+  }
 
   /** Another view was asked for. */
   asked(view: View): void {
     this.#view = view;
-    this.#seen = false;
+    this.#seen = this.#drawn = false;
   }
 
   /** Another recipe was opened. */
@@ -52,8 +58,10 @@ export class Rendering {
   rendered(message: Rendered, rev: number): void {
     this.last = message;
     if (message.nodes) this.#cost(message.nodes);
+    const isOfView = this.#isOfView(message.generation);
+    this.#drawn ||= isOfView;
     if (message.draft) return;
-    this.#seen ||= this.#isOfView(message.generation);
+    this.#seen ||= isOfView;
     this.#full = message.rev ?? rev;
     this.#generation = message.generation;
     if (!this.#marking || this.pictures.names().length === 0) return;
@@ -85,7 +93,7 @@ export class Rendering {
 
   #isOfView(generation: number): boolean {
     const began = this.#began.get(generation);
-    const [has, wants] = [began, this.#view].map((one) => one && JSON.stringify([one.size, one.region, one.node]));
+    const [has, wants] = [began, this.#view].map((one) => one && JSON.stringify([one.size, one.region, one.node, one.time]));
     return began === undefined || has === wants;
   }
 

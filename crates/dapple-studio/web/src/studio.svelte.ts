@@ -4,14 +4,17 @@ import { newGesture, StudioDocument } from './core/document';
 import type { Pictures } from './core/pictures';
 import type { Frame, Graph, Hello, Json, Op, Path, Points, Problem, Reply, Request, Seam } from './core/protocol';
 import { MAP } from './core/protocol';
-import { at, Schemas } from './core/schema';
+import { at, Schemas, type Range } from './core/schema';
 import type { Transport } from './core/transport';
 import { recall, remember, type Unsaved } from './core/unsaved';
-import { Looking } from './looking.svelte';
+import { Looking, MODES } from './looking.svelte';
 import { Rendering } from './rendering.svelte';
 
 /** A dialog or a sheet over the page. */
 export type Sheet = 'none' | 'keys' | 'export' | 'save' | 'copy' | 'add' | 'start' | 'leave' | 'disk';
+
+/** Milliseconds up to which full pictures of a loop are played. */
+const SLOW = 50;
 
 /** Everything that the page shows. */
 export class Studio {
@@ -26,6 +29,8 @@ export class Studio {
   points = $state.raw<Points | null>(null);
   selected = $state<string | null>(null);
   sheet = $state<Sheet>('none');
+  /** The path of the parameter whose help is open. */
+  helped = $state('');
   said = $state('');
   /** Whether the full pictures are those of the text. */
   settled = $state(false);
@@ -37,14 +42,18 @@ export class Studio {
   schemas = $derived(this.hello ? new Schemas(this.hello.schema) : null);
   readonly document: StudioDocument;
   /** What is to be opened once a person agrees to lose changes. */
-  leaving: { builtin?: string; file?: string } | null = null;
+  leaving: { builtin?: string; file?: string; text?: string } | null = null;
   /** A file that was changed by somebody else. */
   disk = $state.raw<{ text: string; hash: string; file: string } | null>(null);
   /** Counts connections, so that views are asked for again. */
   again = $state(0);
   /** A node to be selected as soon as it is there. */
   wanted: string | null = null;
+  /** What an input may be: any number. */
+  readonly free: Range = { min: -Infinity, max: Infinity, open: [false, false], integer: false, soft: null, log: false };
   #editor: Editor | null = null;
+  /** The changes of a widget that is only tried. */
+  #tried: Op[] | null = null;
   #listeners = new Set<(message: Reply) => void>();
   #kept: Unsaved | null = null;
   /** Whether the way was lost: the text here goes on, not that of the new session. */
@@ -59,7 +68,10 @@ export class Studio {
     this.document = new StudioDocument(host, (message) => this.send(message));
     transport.onmessage = (message) => this.#receive(message);
     transport.onpicture = (picture) => this.#picture(picture);
-    transport.onstate = (state) => (this.connection = state);
+    transport.onstate = (state) => {
+      this.connection = state;
+      if (state === 'open') this.again += 1;
+    };
   }
 
   get pictures(): Pictures {
@@ -68,6 +80,16 @@ export class Studio {
 
   get reading(): boolean {
     return this.hello?.mode === 'watch';
+  }
+
+  /** Whether there is no server: files are opened and saved by the browser. */
+  get alone(): boolean {
+    return this.hello?.mode === 'static';
+  }
+
+  /** The views that there are: without a server none is rendered by the command. */
+  get modes(): readonly (typeof MODES)[number][] {
+    return MODES.filter(({ id }) => id !== 'exact' || !this.alone);
   }
 
   get valid(): boolean {
@@ -115,6 +137,7 @@ export class Studio {
 
   /** Changes the recipe by a widget. */
   patch(ops: Op[], gesture: number | null = null, drag = false): void {
+    if (this.#tried) return void this.#tried.push(...ops);
     if (this.reading) return;
     this.looking.dragging = drag;
     this.document.patch(ops, gesture, drag);
@@ -122,6 +145,18 @@ export class Studio {
 
   set(path: Path, value: Json, gesture: number | null = null, drag = false): void {
     this.patch([{ op: 'set', path, value }], gesture, drag);
+  }
+
+  /** The changes that widgets would make, which are not made. */
+  tried(change: () => void): Op[] {
+    const ops: Op[] = [];
+    this.#tried = ops;
+    try {
+      change();
+    } finally {
+      this.#tried = null;
+    }
+    return ops;
   }
 
   /** Another seed by chance. */
@@ -162,7 +197,7 @@ export class Studio {
   }
 
   /** Asks before changes are lost, then opens. */
-  leave(what: { builtin?: string; file?: string }): void {
+  leave(what: { builtin?: string; file?: string; text?: string }): void {
     this.leaving = what;
     this.sheet = 'leave';
   }
@@ -224,6 +259,7 @@ export class Studio {
         return this.rendering.began(message);
       case 'rendered':
         this.rendering.rendered(message, this.document.rev);
+        if (!message.draft && this.looking.playing) this.looking.slow = message.ms > SLOW;
         if (!message.draft && !this.looking.playing && !this.looking.dragging) this.say(`Rendered in ${Math.round(message.ms)} ms`);
         return;
       case 'seams':
@@ -258,7 +294,6 @@ export class Studio {
     if (!again && message.open === null) this.sheet = 'start';
     if (!again && !this.reading) this.#kept = recall();
     if (this.#resuming && message.open === null) this.#resume();
-    this.again += 1;
     this.send({ type: 'gallery', size: 128 });
   }
 
@@ -320,12 +355,13 @@ export class Studio {
     this.rendering.picture(name, picture);
     this.#settle();
     // At once, not when it is drawn: what is not drawn by then is replaced for nothing, and a frame is not waited for.
-    if (picture.map < MAP.builtin) this.send({ type: 'ack', generation: picture.generation, map: picture.map });
+    this.send({ type: 'ack', generation: picture.generation, map: picture.map });
   }
 
   #pictureName(map: number): string | null {
     if (map === MAP.node) return 'node';
     if (map === MAP.preview) return 'preview';
+    if (map >= MAP.strip) return `strip:${map - MAP.strip}`;
     if (map >= MAP.file) return `file:${this.hello?.files[map - MAP.file]}`;
     if (map >= MAP.builtin) return `builtin:${this.hello?.builtins[map - MAP.builtin]?.name}`;
     if (map >= MAP.thumbnail) return `thumb:${this.graph?.nodes[map - MAP.thumbnail]?.name}`;

@@ -20,6 +20,13 @@ export const skip =
   (!existsSync(DAPPLE) && `skipped: no command at ${DAPPLE}; name one by DAPPLE`) ||
   (!existsSync(join(DIST, 'index.html')) && `skipped: the page is not built at ${DIST}; run npm run build`);
 
+/** The page without a server, as `cargo xtask web` builds it; it is tested where STATIC names it. */
+export const STATIC = process.env.STATIC ?? '';
+export const skipStatic =
+  (STATIC === '' && 'skipped: STATIC names no folder of `cargo xtask web`') ||
+  (!CHROMIUM && 'skipped: no Chromium; name one by CHROMIUM') ||
+  (!existsSync(DAPPLE) && `skipped: no command at ${DAPPLE}; name one by DAPPLE`);
+
 /** A studio that runs: its folder, its address, and how to end it. */
 export async function serve(args = [], command = 'studio', folder = mkdtempSync(join(tmpdir(), 'dapple-studio-'))) {
   const child = spawn(DAPPLE, [command, '--no-open', '--dist', DIST, ...args], { cwd: folder });
@@ -67,6 +74,13 @@ export async function settled(page, limit = 20_000) {
     return document.querySelector('.page')?.dataset.settled === 'true';
   }, null, { timeout: limit });
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+}
+
+/** Selects a node in the graph by keys. */
+export async function select(page, name) {
+  await page.locator(`.svelte-flow__node[data-id="${name}"]`).focus();
+  await page.keyboard.press('Enter');
+  await page.waitForFunction((name) => document.querySelector('.parameters .name')?.value === name, name);
 }
 
 export async function endBrowser() {

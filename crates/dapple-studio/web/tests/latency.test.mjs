@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { cpus, loadavg } from 'node:os';
 import { after, describe, test } from 'node:test';
-import { endBrowser, open, serve, settled, skip, text } from './harness.mjs';
+import { endBrowser, open, select, serve, settled, skip, text } from './harness.mjs';
 
 /** Milliseconds: slider to draft, to all of 512², to all of 1024², and from the command to the first picture. */
 const BAR = { draft: [16, 33], full: [50, 100], large: [150, 300], first: 700 };
@@ -45,10 +45,7 @@ describe('latency', { skip, timeout: 300_000 }, () => {
         await page.waitForFunction(() => window.drawn?.length > 0);
         const first = performance.now() - started;
         await settled(page);
-        if (node) {
-          await page.locator(`.svelte-flow__node[data-id="${node}"]`).focus();
-          await page.keyboard.press('Enter');
-        }
+        if (node) await select(page, node);
         await page.locator(`[data-path="${path}"] input[type=range]`).waitFor();
         const small = await measure(page, path, 512);
         await page.locator('.viewer .tools select').first().selectOption({ label: '1024 px' });
@@ -72,8 +69,7 @@ describe('latency', { skip, timeout: 300_000 }, () => {
     try {
       const page = await open(studio.url);
       await settled(page);
-      await page.locator('.svelte-flow__node[data-id=grain]').focus();
-      await page.keyboard.press('Enter');
+      await select(page, 'grain');
       await page.locator('[data-path="nodes.grain.noise.gain"] input[type=range]').waitFor();
       await page.evaluate(async () => {
         const input = document.querySelector('[data-path="nodes.grain.noise.gain"] input[type=range]');

@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createRequire } from 'node:module';
 import { after, before, describe, test } from 'node:test';
-import { dapple, endBrowser, hash, open, serve, settled, skip, text } from './harness.mjs';
+import { dapple, endBrowser, hash, open, select, serve, settled, skip, text } from './harness.mjs';
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
@@ -17,21 +17,13 @@ describe('the page', { skip, timeout: 240_000 }, () => {
     studio?.end();
   });
 
-  const node = async (page, name) => {
-    const order = await page.evaluate(() => [...document.querySelectorAll('.svelte-flow__node')].map((one) => one.dataset.id));
-    assert.ok(order.includes(name), `no node ${name} in ${order}`);
-    await page.locator(`.svelte-flow__node[data-id="${name}"]`).focus();
-    await page.keyboard.press('Enter');
-    await page.locator('.parameters .name').waitFor();
-    assert.equal(await page.locator('.parameters .name').inputValue(), name);
-  };
   const slider = (page, path) => page.locator(`[data-path="${path}"] input[type=range]`);
 
   test('a dragged slider changes pixels and text, and is one step of undo', async () => {
     const page = await open(studio.url);
     await settled(page);
     const [textBefore, before] = [await text(page), await hash(page, 'height')];
-    await node(page, 'grain');
+    await select(page, 'grain');
     const knob = slider(page, 'nodes.grain.noise.gain');
     const box = await knob.boundingBox();
     await page.mouse.move(box.x + box.width * 0.65, box.y + box.height / 2);
@@ -111,6 +103,7 @@ describe('the page', { skip, timeout: 240_000 }, () => {
     await page.keyboard.press('Enter');
     await page.locator('.svelte-flow__node[data-id=power]').waitFor();
     assert.match(await text(page), /\[nodes\.power\.power\]/);
+    await page.getByText('Nothing is made of this node yet').waitFor();
     const input = page.locator('[data-path="nodes.power.power.input"] select');
     await input.focus();
     await input.selectOption('grain');
@@ -145,6 +138,47 @@ describe('the page', { skip, timeout: 240_000 }, () => {
     await page.waitForTimeout(1500);
     assert.notEqual(await picture(), before);
     assert.deepEqual(page.wrong, []);
+  });
+
+  test('the help of a parameter shows it at other values, and a click takes one', async () => {
+    const page = await open(studio.url);
+    await settled(page);
+    await select(page, 'grain');
+    const before = await text(page);
+    await page.getByRole('button', { name: 'gain', exact: true }).click();
+    const strip = page.getByRole('group', { name: 'Values of gain' });
+    await strip.waitFor();
+    const values = await strip.getByRole('button').allTextContents();
+    assert.equal(values.length, 5);
+    assert.ok(values.map((one) => one.trim()).includes('0.65'), values.join());
+    const drawn = (index) => strip.locator('canvas').nth(index).evaluate((canvas) => canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.join());
+    await page.waitForFunction(() => [...document.querySelectorAll('.strip canvas')].every((canvas) => canvas.getContext('2d').getImageData(9, 9, 1, 1).data[3] === 255));
+    assert.notEqual(await drawn(0), await drawn(4));
+    assert.equal(await text(page), before);
+    await strip.getByRole('button').last().click();
+    await settled(page);
+    assert.match(await text(page), new RegExp(`octaves = 5\\ngain = ${values.at(-1).trim()}(\\.0)?\\n`));
+    await page.keyboard.press('Control+z');
+    await settled(page);
+    assert.equal(await text(page), before);
+    assert.deepEqual(page.wrong, []);
+  });
+
+  test('the whole graph is framed, also in a pane that was hidden at first', async () => {
+    for (const viewport of [{ width: 1600, height: 1000 }, { width: 800, height: 900 }]) {
+      const page = await open(studio.url, { viewport });
+      await settled(page);
+      if (viewport.width < 820) await page.getByRole('tab', { name: 'Graph' }).click();
+      await page.locator('.svelte-flow__node').first().waitFor();
+      await page.waitForTimeout(300);
+      const outside = await page.evaluate(() => {
+        const pane = document.querySelector('.graph').getBoundingClientRect();
+        const out = (box) => box.left < pane.left || box.right > pane.right || box.top < pane.top || box.bottom > pane.bottom;
+        return [...document.querySelectorAll('.svelte-flow__node')].filter((one) => out(one.getBoundingClientRect())).map((one) => one.dataset.id);
+      });
+      assert.deepEqual(outside, [], `${viewport.width}`);
+      await page.context().close();
+    }
   });
 
   test('an export is byte for byte what bake writes', async () => {

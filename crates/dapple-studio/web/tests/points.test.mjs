@@ -4,7 +4,7 @@ import { mkdtempSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { endBrowser, hash, open, serve, settled, skip, text } from './harness.mjs';
+import { endBrowser, hash, open, select, serve, settled, skip, text } from './harness.mjs';
 
 const RECIPE = `dapple = 1
 name = "dots"
@@ -33,8 +33,7 @@ height = "dots"
 /** Shows the points of the node `dots`. */
 async function look(page) {
   await settled(page);
-  await page.locator('.svelte-flow__node[data-id=dots]').focus();
-  await page.keyboard.press('Enter');
+  await select(page, 'dots');
   await page.locator('#tab-node').click();
   await page.locator('svg .point').first().waitFor();
   await settled(page);

@@ -54,6 +54,7 @@ export type Request =
   | ({ type: 'view' } & View)
   | { type: 'ack'; generation: number; map: number }
   | { type: 'gallery'; size: number }
+  | { type: 'strip'; node: string | null; changes: Op[][]; size: number }
   | { type: 'seams'; size: [number, number] }
   | { type: 'points'; node: string }
   | { type: 'code'; kind: CodeKind; size: [number, number]; maps: string[] }
@@ -76,7 +77,6 @@ export interface ExportOptions {
 export interface Kind {
   name: string;
   group: string;
-  about: string;
   value?: Json;
 }
 
@@ -144,7 +144,6 @@ export interface GraphNode {
   is_global: boolean;
   span: [number, number];
   inputs: GraphInput[];
-  range: [number, number] | null;
 }
 
 /** The nodes of a valid recipe. */
@@ -170,6 +169,10 @@ export interface Points {
   type: 'points';
   node: string;
   editable: boolean;
+  /** Whether the points can be put into the text. */
+  can_be_editable: boolean;
+  /** The number of nets of points; the points are those of the coarsest. */
+  layers: number;
   extent: [number, number];
   wrap: [boolean, boolean];
   points: ControlPoint[];
@@ -181,8 +184,6 @@ export interface Points {
 /** How a map joins where the tile repeats. */
 export interface Seam {
   name: string;
-  x: Json;
-  y: Json;
   text: string;
 }
 
@@ -209,10 +210,10 @@ export type Reply =
 export interface Began {
   type: 'began';
   generation: number;
-  rev: number;
   size: [number, number];
   region: Region | null;
   node: string | null;
+  time: number;
 }
 
 /** All pictures of a generation are there. */
@@ -226,7 +227,7 @@ export interface Rendered {
 }
 
 /** Numbers of maps that are none of `hello.maps`. */
-export const MAP = { node: 100, preview: 101, thumbnail: 200, builtin: 1000, file: 2000 } as const;
+export const MAP = { node: 100, preview: 101, thumbnail: 200, builtin: 1000, file: 2000, strip: 3000 } as const;
 
 /** A picture, or a window of one. */
 export interface Frame {

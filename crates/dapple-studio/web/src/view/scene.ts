@@ -4,8 +4,8 @@
 // linear. Heights displace the surface by the relief of the recipe. The surroundings are made here: a sky that gets
 // lighter upward and three soft boxes.
 import {
-  ACESFilmicToneMapping, AmbientLight, BackSide, BoxGeometry, type BufferGeometry, Color, DataTexture, DirectionalLight,
-  LinearMipmapLinearFilter, Mesh, MeshBasicMaterial, MeshStandardMaterial, NoColorSpace, PerspectiveCamera, PlaneGeometry,
+  AmbientLight, BackSide, BoxGeometry, type BufferGeometry, Color, DataTexture, DirectionalLight,
+  LinearFilter, LinearMipmapLinearFilter, Mesh, MeshBasicMaterial, MeshStandardMaterial, NeutralToneMapping, NoColorSpace, PerspectiveCamera, PlaneGeometry,
   PMREMGenerator, RepeatWrapping, RGBAFormat, Scene, SphereGeometry, SRGBColorSpace, type Texture, UnsignedByteType,
   Vector2, WebGLRenderer,
 } from 'three';
@@ -33,10 +33,12 @@ export class LitScene {
   readonly #scene = new Scene();
   readonly #camera = new PerspectiveCamera(35, 1, 0.01, 100);
   readonly #controls: OrbitControls;
-  readonly #material = new MeshStandardMaterial({ roughness: 1, metalness: 1, envMapIntensity: 0.9 });
+  readonly #material = new MeshStandardMaterial({ roughness: 1, metalness: 1, envMapIntensity: 0.75 });
   readonly #mesh = new Mesh<BufferGeometry, MeshStandardMaterial>(new SphereGeometry(1, 64, 32), this.#material);
-  readonly #light = new DirectionalLight(0xfff4e2, 2.2);
+  readonly #light = new DirectionalLight(0xfff4e2, 1.9);
   readonly #textures = new Map<string, DataTexture>();
+  /** The level of the height's smaller copies whose pixels are as far apart as the vertices. */
+  readonly #level = { value: 0 };
   #model: BufferGeometry | null = null;
   #shape = '';
   #waiting = 0;
@@ -46,9 +48,14 @@ export class LitScene {
   constructor(canvas: HTMLCanvasElement) {
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: 'high-performance' });
     this.#renderer.setPixelRatio(Math.min(2, devicePixelRatio));
-    this.#renderer.toneMapping = ACESFilmicToneMapping;
+    this.#renderer.toneMapping = NeutralToneMapping;
     this.#scene.environment = surroundings(this.#renderer);
     this.#light.position.set(-2.2, 2.6, 2.4);
+    this.#material.onBeforeCompile = (shader) => {
+      shader.uniforms['displacementLevel'] = this.#level;
+      shader.vertexShader = shader.vertexShader.replace('#include <displacementmap_vertex>', DISPLACEMENT).replace('#include <displacementmap_pars_vertex>', `#include <displacementmap_pars_vertex>
+uniform float displacementLevel;`);
+    };
     this.#scene.add(this.#mesh, this.#light, new AmbientLight(0xffffff, 0.05));
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#controls.enableDamping = false;
@@ -84,6 +91,9 @@ export class LitScene {
     this.#shape = geometry;
     const around = lay.shape === 'sphere' ? 2 : 1;
     for (const texture of this.#textures.values()) texture.repeat.set(lay.repeat * around, lay.repeat / (lay.shape === 'plane' ? 1 : lay.aspect));
+    const [columns] = segments(lay);
+    const texels = (this.#textures.get('height')?.image.width ?? 1) * lay.repeat * around;
+    this.#level.value = Math.max(0, Math.log2(texels / columns));
     const width = lay.shape === 'plane' ? 2 / lay.repeat : Math.PI / lay.repeat;
     this.#material.displacementScale = lay.displaced ? lay.relief * width : 0;
     this.#material.displacementBias = -this.#material.displacementScale / 2;
@@ -154,10 +164,10 @@ export class LitScene {
 
   #build(lay: Lay): void {
     this.#mesh.geometry.dispose();
-    const fine = lay.displaced ? 256 : 64;
+    const [columns, rows] = segments(lay);
     if (lay.shape === 'model' && this.#model) this.#mesh.geometry = this.#model.clone();
-    else if (lay.shape === 'plane') this.#mesh.geometry = new PlaneGeometry(2, 2 * lay.aspect, fine, fine);
-    else this.#mesh.geometry = new SphereGeometry(1, Math.max(128, fine), Math.max(64, fine / 2));
+    else if (lay.shape === 'plane') this.#mesh.geometry = new PlaneGeometry(2, 2 * lay.aspect, columns, rows);
+    else this.#mesh.geometry = new SphereGeometry(1, columns, rows);
     this.#mesh.rotation.x = lay.shape === 'plane' ? -0.5 : 0;
   }
 
@@ -171,6 +181,20 @@ export class LitScene {
     this.#material.needsUpdate = true;
   }
 }
+
+/** How many faces a shape has along its width and height. */
+function segments({ shape, displaced }: Lay): [number, number] {
+  if (shape === 'sphere') return displaced ? [384, 192] : [128, 64];
+  return displaced ? [256, 256] : [1, 1];
+}
+
+/** Moves a vertex by the height about it: of all pixels up to the next vertex, so that steep borders are not jagged. */
+const DISPLACEMENT = `
+#ifdef USE_DISPLACEMENTMAP
+  float height = textureLod(displacementMap, vDisplacementMapUv, displacementLevel).x;
+  transformed += normalize(objectNormal) * (height * displacementScale + displacementBias);
+#endif
+`;
 
 /** The pixels of a picture, the first row at the bottom as WebGL counts them; null while pieces are missing. */
 function joined(picture: Picture): Uint8ClampedArray<ArrayBuffer> | null {
@@ -194,6 +218,7 @@ function textureOf(pixels: Uint8ClampedArray<ArrayBuffer>, w: number, h: number,
   texture.wrapS = texture.wrapT = RepeatWrapping;
   texture.colorSpace = color ? SRGBColorSpace : NoColorSpace;
   texture.generateMipmaps = true;
+  texture.magFilter = LinearFilter;
   texture.minFilter = LinearMipmapLinearFilter;
   texture.anisotropy = 8;
   texture.flipY = true;

@@ -1,0 +1,35 @@
+// Where the nodes of a recipe lie in a drawing.
+import dagre from '@dagrejs/dagre';
+import type { Graph } from '../core/protocol';
+
+/** The size of a node in the drawing, and the gaps between nodes. */
+export const NODE = { width: 150, height: 50, row: 11 };
+
+/** How high a node with so many inputs is. */
+export function heightOf(inputs: number): number {
+  return Math.max(NODE.height, 8 + inputs * NODE.row);
+}
+
+/** The name of the node that stands for the material. */
+export const MATERIAL = '#material';
+
+/** Where nodes lie, from left to right; the same graph always lies the same. */
+export function layout(graph: Graph): Map<string, { x: number; y: number }> {
+  const drawing = new dagre.graphlib.Graph();
+  drawing.setGraph({ rankdir: 'LR', nodesep: 12, ranksep: 40, marginx: 8, marginy: 8 });
+  drawing.setDefaultEdgeLabel(() => ({}));
+  for (const node of graph.nodes) drawing.setNode(node.name, { width: NODE.width, height: heightOf(node.inputs.length) });
+  const maps = Object.entries(graph.material);
+  drawing.setNode(MATERIAL, { width: NODE.width, height: heightOf(maps.length) });
+  for (const node of graph.nodes) {
+    for (const input of node.inputs) if (input.node !== null) drawing.setEdge(input.node, node.name);
+  }
+  for (const [, input] of maps) if (input.node !== null) drawing.setEdge(input.node, MATERIAL);
+  dagre.layout(drawing);
+  return new Map(
+    drawing.nodes().map((name) => {
+      const { x, y, width, height } = drawing.node(name);
+      return [name, { x: x - width / 2, y: y - height / 2 }];
+    }),
+  );
+}
