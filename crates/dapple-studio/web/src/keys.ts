@@ -64,8 +64,10 @@ function busy(target: EventTarget | null): boolean {
 export function pressed(studio: Studio, event: KeyboardEvent): boolean {
   const { looking } = studio;
   if (event.ctrlKey || event.metaKey) return withControl(studio, event);
+  // A dialog has its own keys, also where nothing in it has the focus.
+  if (studio.sheet !== 'none' || event.altKey) return false;
   if (event.key === 'F6') return nextPart(event.shiftKey);
-  if (busy(event.target) || event.altKey) return false;
+  if (busy(event.target)) return false;
   const mode = studio.modes[Number(event.key) - 1];
   if (mode && /^[1-6]$/.test(event.key)) {
     if ((mode.id === 'tiled') !== (looking.mode === 'tiled')) looking.window = null;
@@ -115,7 +117,7 @@ export function pressed(studio: Studio, event: KeyboardEvent): boolean {
       studio.patch([{ op: 'remove_node', name: studio.selected }]);
       return true;
     case 'Escape':
-      if (studio.sheet === 'none') studio.select(null);
+      studio.select(null);
       return true;
     default:
       return false;
@@ -132,8 +134,7 @@ function withControl(studio: Studio, event: KeyboardEvent): boolean {
     return true;
   }
   if (key === 'd' && studio.selected !== null && !inText) {
-    studio.wanted = studio.freeName(studio.selected);
-    studio.patch([{ op: 'duplicate_node', name: studio.selected, to: studio.wanted }]);
+    studio.duplicate();
     return true;
   }
   const sheet = ({ s: 'save', e: 'export', o: 'start' } as const)[key as 's' | 'e' | 'o'];

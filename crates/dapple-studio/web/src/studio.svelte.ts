@@ -4,7 +4,7 @@ import { newGesture, StudioDocument } from './core/document';
 import type { Pictures } from './core/pictures';
 import type { Frame, Graph, Hello, Json, Op, Path, Points, Problem, Reply, Request, Seam } from './core/protocol';
 import { MAP } from './core/protocol';
-import { at, Schemas, type Range } from './core/schema';
+import { at, entry, Schemas, type Range } from './core/schema';
 import type { Transport } from './core/transport';
 import { recall, remember, type Unsaved } from './core/unsaved';
 import { Looking, MODES } from './looking.svelte';
@@ -15,6 +15,9 @@ export type Sheet = 'none' | 'keys' | 'export' | 'save' | 'copy' | 'add' | 'star
 
 /** Milliseconds up to which full pictures of a loop are played. */
 const SLOW = 50;
+
+/** Milliseconds for which something that was told is seen. */
+const NOTED = 6000;
 
 /** Everything that the page shows. */
 export class Studio {
@@ -32,6 +35,8 @@ export class Studio {
   /** The path of the parameter whose help is open. */
   helped = $state('');
   said = $state('');
+  /** What was told in the last seconds. */
+  noted = $state('');
   /** Whether the full pictures are those of the text. */
   settled = $state(false);
   refusal = $state.raw<{ what: string; message: string; hint: string | null } | null>(null);
@@ -51,6 +56,7 @@ export class Studio {
   wanted: string | null = null;
   /** What an input may be: any number. */
   readonly free: Range = { min: -Infinity, max: Infinity, open: [false, false], integer: false, soft: null, log: false };
+  #noting: ReturnType<typeof setTimeout> | undefined;
   #editor: Editor | null = null;
   /** The changes of a widget that is only tried. */
   #tried: Op[] | null = null;
@@ -202,15 +208,34 @@ export class Studio {
     this.sheet = 'leave';
   }
 
-  /** Tells people who cannot see it. */
+  /** Tells something in the line at the bottom for a while, and those who hear it. */
   say(text: string): void {
-    this.said = text;
+    this.said = this.noted = text;
+    clearTimeout(this.#noting);
+    this.#noting = setTimeout(() => (this.noted = ''), NOTED);
   }
 
   /** Keeps the pictures of now, to be compared with later ones. */
   markNow(): void {
     this.rendering.markNow();
     this.say('Marked: hold B to compare with what is seen now');
+  }
+
+  /** Adds a copy of the selected node. */
+  duplicate(): void {
+    if (this.selected !== null) this.#name('duplicate_node', this.selected, this.freeName(this.selected));
+  }
+
+  /** Gives the selected node another name. */
+  rename(to: string): void {
+    if (this.selected !== null) this.#name('rename_node', this.selected, to);
+  }
+
+  #name(op: 'duplicate_node' | 'rename_node', name: string, to: string): void {
+    this.wanted = to;
+    this.patch([{ op, name, to }]);
+    const pups = this.value(['nodes', name, 'pups']);
+    if (pups !== undefined && entry(pups, 'points') === undefined) this.say(`A pups texture draws by its name: ${to} looks different`);
   }
 
   /** A name for a node that no other has. */
@@ -260,7 +285,7 @@ export class Studio {
       case 'rendered':
         this.rendering.rendered(message, this.document.rev);
         if (!message.draft && this.looking.playing) this.looking.slow = message.ms > SLOW;
-        if (!message.draft && !this.looking.playing && !this.looking.dragging) this.say(`Rendered in ${Math.round(message.ms)} ms`);
+        if (!message.draft && !this.looking.playing && !this.looking.dragging) this.said = `Rendered in ${Math.round(message.ms)} ms`;
         return;
       case 'seams':
         this.seams = message.maps;

@@ -201,6 +201,9 @@ describe('the page', { skip, timeout: 240_000 }, () => {
       assert.ok(readFileSync(await download.path()).equals(readFileSync(join(folder, 'out', name))), name);
     }
     assert.equal(readdirSync(join(folder, 'out')).length, 5);
+    await page.evaluate(() => document.activeElement.blur());
+    await page.keyboard.press('Escape');
+    await page.locator('dialog').waitFor({ state: 'detached' });
   });
 
   test('axe finds no violation in any view, in light and in dark, wide and narrow', async () => {

@@ -9,6 +9,9 @@ export interface Known {
   nodes: string[];
 }
 
+/** What may be typed on without asking anew: while keys come fast, Enter takes what they chose. */
+const WORD = /^[\w-]*$/;
+
 /** The completions at a place of the text. */
 export function complete(context: CompletionContext, { schemas, nodes }: Known): CompletionResult | null {
   if (!schemas) return null;
@@ -22,7 +25,7 @@ export function complete(context: CompletionContext, { schemas, nodes }: Known):
   const key = before.match(/^\s*([\w-]*)$/);
   if (!key || !table || (!context.explicit && key[1] === '')) return null;
   const options = schemas.parts(table).map(({ key: label, about, required }) => ({ label, info: about, apply: `${label} = `, boost: required ? 1 : 0, type: 'property' }));
-  return { from: context.pos - (key[1]?.length ?? 0), options };
+  return { from: context.pos - (key[1]?.length ?? 0), options, validFor: WORD };
 }
 
 /** The heading of the table that a line is in. */
@@ -38,7 +41,7 @@ function ofHeading(context: CompletionContext, schemas: Schemas, typed: string):
   const path = typed.split('.');
   const last = path.pop() ?? '';
   const options = keysBelow(schemas, path);
-  return options.length > 0 ? { from: context.pos - last.length, options } : null;
+  return options.length > 0 ? { from: context.pos - last.length, options, validFor: WORD } : null;
 }
 
 function keysBelow(schemas: Schemas, path: string[]): Completion[] {
@@ -55,7 +58,7 @@ function ofString(context: CompletionContext, schemas: Schemas, table: JsonSchem
     shape?.kind === 'choice' ? shape.options.map(({ value, about }) => ({ label: String(value), info: about, type: 'enum' }))
     : shape?.kind === 'union' ? shape.variants.filter(({ schema }) => schema.const !== undefined).map(({ schema, about }) => ({ label: String(schema.const), info: about, type: 'enum' }))
     : nodes.map((label) => ({ label, type: 'variable' }));
-  return { from: context.pos - typed.length, options: words, validFor: /^[\w-]*$/ };
+  return { from: context.pos - typed.length, options: words, validFor: WORD };
 }
 
 /** The schema of the table with this heading. */

@@ -1,6 +1,6 @@
 // How widgets change the recipe: an edit names a path, and tables that were not written yet come with their defaults.
 import type { Json, Path } from '../core/protocol';
-import type { Part } from '../core/schema';
+import type { Part, Shape } from '../core/schema';
 
 /** Sets a value of the recipe, or takes it away where the value is undefined. */
 export type Edit = (path: Path, value: Json | undefined, gesture?: number | null, drag?: boolean) => void;
@@ -15,6 +15,12 @@ export interface FieldProps {
   fallback: Json | undefined;
   required: boolean;
   edit: Edit;
+}
+
+/** What the widgets of lists and unions are given. */
+export interface InnerProps<K extends Shape['kind']> extends Omit<FieldProps, 'schema' | 'about' | 'required'> {
+  shape: Extract<Shape, { kind: K }>;
+  depth: number;
 }
 
 /** The value with another at the end of a path. */

@@ -68,8 +68,8 @@ uniform float displacementLevel;`);
   }
 
   /** Takes a new picture of a map. */
-  take(name: string, picture: Picture): void {
-    const pixels = joined(picture);
+  take(name: string, picture: Picture | undefined): void {
+    const pixels = picture && joined(picture);
     if (!pixels) return;
     const [w, h] = picture.size;
     let texture = this.#textures.get(name);
@@ -184,7 +184,7 @@ uniform float displacementLevel;`);
 
 /** How many faces a shape has along its width and height. */
 function segments({ shape, displaced }: Lay): [number, number] {
-  if (shape === 'sphere') return displaced ? [384, 192] : [128, 64];
+  if (shape === 'sphere') return displaced ? [320, 160] : [128, 64];
   return displaced ? [256, 256] : [1, 1];
 }
 
