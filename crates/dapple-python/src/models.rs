@@ -241,17 +241,16 @@ fn bake(
     map: &Map,
 ) -> core::result::Result<Map, SynthError> {
     Ok(match map {
-        Map::Value(raster) => {
-            Map::Value(bake_values(synthesizer, &texture.transfer(raster)?, atlas)?)
-        }
-        Map::Color(raster) => {
-            Map::Color(bake_colors(synthesizer, &texture.transfer(raster)?, atlas)?)
-        }
-        Map::Normal(raster) => {
-            let normals = texture.transfer(raster)?;
-            let y = NormalY::OpenGl;
-            Map::Normal(bake_normals(synthesizer, &normals, y, atlas, shading)?)
-        }
+        Map::Value(raster) => Map::Value(bake_values(synthesizer, texture, raster, atlas)?),
+        Map::Color(raster) => Map::Color(bake_colors(synthesizer, texture, raster, atlas)?),
+        Map::Normal(raster) => Map::Normal(bake_normals(
+            synthesizer,
+            texture,
+            raster,
+            NormalY::OpenGl,
+            atlas,
+            shading,
+        )?),
     })
 }
 

@@ -56,6 +56,7 @@ impl Matching {
             evenness: self.evenness.unwrap_or(default.evenness),
             axes: self.axes.unwrap_or(default.axes),
             center: default.center,
+            sources: default.sources,
         })
     }
 }

@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // The texture map: the triangles of the mesh, packed into a square with room for mip levels.
     let atlas = Atlas::by_area(ring.surface(), 1024)?;
-    let map = bake_colors(&ring, &texture.transfer(&stripes)?, &atlas)?;
+    let map = bake_colors(&ring, &texture, &stripes, &atlas)?;
     let png = encode_png(
         map.map(|color| color.to_srgb::<u8>()).view(),
         Transfer::Srgb,

@@ -164,23 +164,16 @@ impl Covered {
         };
         let (synthesizer, texture) = (&self.synthesizer, &self.texture);
         Ok(match map {
-            Map::Value(raster) => {
-                Map::Value(bake_values(synthesizer, &texture.transfer(raster)?, atlas)?)
-            }
-            Map::Color(raster) => {
-                Map::Color(bake_colors(synthesizer, &texture.transfer(raster)?, atlas)?)
-            }
-            Map::Normal(raster) => {
-                let normals = texture.transfer(raster)?;
-                let y = NormalY::OpenGl;
-                Map::Normal(bake_normals(
-                    synthesizer,
-                    &normals,
-                    y,
-                    atlas,
-                    &self.shading,
-                )?)
-            }
+            Map::Value(raster) => Map::Value(bake_values(synthesizer, texture, raster, atlas)?),
+            Map::Color(raster) => Map::Color(bake_colors(synthesizer, texture, raster, atlas)?),
+            Map::Normal(raster) => Map::Normal(bake_normals(
+                synthesizer,
+                texture,
+                raster,
+                NormalY::OpenGl,
+                atlas,
+                &self.shading,
+            )?),
         })
     }
 
