@@ -27,6 +27,8 @@ dapple::raster::named! {
     /// The layout of a mesh in a texture.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum AtlasKind {
+        /// Large pieces of the surface, each flattened as a whole.
+        Charts = "charts",
         /// Right triangles whose sizes follow the areas of the faces.
         Area = "area",
         /// Right triangles of one size, as in the paper.
@@ -65,7 +67,7 @@ pub(crate) struct Model {
 /// directions : (positions, vectors), each (n, 3): the direction of the example's down at these positions; in between
 ///     they are interpolated.
 /// down : the direction for pieces of the surface without any.
-/// atlas : the layout of faces: `"area"` (by their areas), `"uniform"`, or `"uv"` (`mesh.uv`, (m, 3, 2), v down).
+/// atlas : the layout of faces: `"charts"` (large pieces), `"area"` (triangles by their areas), `"uniform"`, or `"uv"` (`mesh.uv`, (m, 3, 2), v down).
 /// padding : the number of pixels around each piece of the texture that continue it.
 /// crease : the angle of an edge in degrees above which it is shaded as a crease.
 /// axes : how neighborhoods continue over the surface: `"followed"` or `"carried"`.
@@ -81,9 +83,9 @@ pub(crate) struct Model {
 /// ((64, 64), (2, 3, 2))
 #[pyfunction]
 #[pyo3(signature = (mesh, exemplar, *, texels = 1024, sites = 65536, directions = None, down = [0.0, -1.0, 0.0],
-    atlas = "area", padding = None, crease = None, axes = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
+    atlas = "charts", padding = None, crease = None, axes = None, seed = SeedArgument::default(), edges = "cut", levels = 3,
     coherence = None, evenness = None, paper = false, progress = None),
-    text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), atlas=\"area\", \
+    text_signature = "(mesh, exemplar, *, texels=1024, sites=65536, directions=None, down=(0.0, -1.0, 0.0), atlas=\"charts\", \
     padding=None, crease=30.0, axes=None, seed=0, edges=\"cut\", levels=3, coherence=None, evenness=None, paper=False, \
     progress=None)")]
 pub(crate) fn synthesize_on<'py>(
@@ -146,6 +148,8 @@ pub(crate) fn synthesize_on<'py>(
         let (repaired, repair) = mesh.repair();
         let surface = Surface::new(repaired)?;
         let atlas = match (atlas, padding) {
+            (AtlasKind::Charts, None) => Atlas::charts(&surface, texels)?,
+            (AtlasKind::Charts, Some(padding)) => Atlas::charts_padded(&surface, texels, padding)?,
             (AtlasKind::Area, None) => Atlas::by_area(&surface, texels)?,
             (AtlasKind::Area, Some(padding)) => Atlas::by_area_padded(&surface, texels, padding)?,
             (AtlasKind::Uniform, None) => Atlas::uniform(&surface, texels)?,

@@ -62,7 +62,7 @@ pub fn point_model(
 /// Every corner of every face has a texture coordinate of its own, and the normal of `shading`: those of its file, or of
 /// [`Mesh::corner_normals`]. More maps go into the model's [`material`](Model::material). Faces that have no place in the
 /// map show its first corner. Textures are shown without mipmaps in layouts of tiles, whose coarse levels mix faces that
-/// are far apart, and with them in the caller's own.
+/// are far apart, and with them in charts and the caller's own.
 ///
 /// # Errors
 ///

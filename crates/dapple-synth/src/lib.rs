@@ -60,7 +60,7 @@
 //! | 5.2 | several levels; figure 4 | [`Schedule::paper`], [`Part`], [`Shape`] |
 //! | 5 | the pixel whose neighborhood matches best | [`Candidates`], [`Matcher`] |
 //! | 6 | the finest points with colors, as a mesh | [`site_model`], [`point_model`] |
-//! | 6 | a texture map of right triangles | [`Atlas`], [`bake()`], [`textured_model`] |
+//! | 6 | a texture map of right triangles, or of charts | [`Atlas`], [`bake()`], [`textured_model`] |
 //!
 //! # What the paper leaves open
 //!
@@ -137,7 +137,7 @@ mod turns;
 mod usage;
 mod visit;
 
-pub use atlas::Atlas;
+pub use atlas::{Atlas, AtlasReport};
 pub use bake::bake;
 pub use bake_normals::bake_normals;
 pub use candidates::{Candidates, CoarserCenter};

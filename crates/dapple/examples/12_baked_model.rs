@@ -63,8 +63,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let (ring, texture) = synthesize(ring()?, &exemplar, &down, &sites, &Options::default())?;
 
-    // The texture map: the triangles of the mesh, packed into a square with room for mip levels.
-    let atlas = Atlas::by_area(ring.surface(), 1024)?;
+    // The texture map: a few pieces of the mesh, flattened and packed into a square with room for mip levels.
+    let atlas = Atlas::charts(ring.surface(), 1024)?;
     let map = bake_colors(&ring, &texture, &stripes, &atlas)?;
     let png = encode_png(
         map.map(|color| color.to_srgb::<u8>()).view(),

@@ -118,3 +118,37 @@ fn both_sides_of_a_sheet_get_one_texture_and_are_seen() {
     write_model(folder.path("hard.obj"), &cube.into()).unwrap();
     assert!(!cover(&folder, &[], "closed.glb").material.double_sided);
 }
+
+#[test]
+fn charts_are_the_default_and_share_vertices_and_the_report_tells_their_stretch() {
+    let folder = Folder::with_inputs("charts");
+    write_model(folder.path("hard.obj"), &cube().into()).unwrap();
+    let report = |name: &str| {
+        let text = std::fs::read_to_string(folder.path(name)).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+        report["report"]["atlas"].clone()
+    };
+    for output in ["out.glb", "out.obj"] {
+        let model = cover(&folder, &["--json"], output);
+        assert!(model.material.mipmaps, "{output} is shown with mipmaps");
+        let uvs = model.uvs.unwrap();
+        let mut places: Vec<_> = uvs
+            .iter()
+            .flatten()
+            .map(|uv| uv.to_array().map(f64::to_bits))
+            .collect();
+        places.sort_unstable();
+        places.dedup();
+        assert_eq!(places.len(), 24, "{output}: the corners of six squares");
+        let report = report("out.json");
+        assert_eq!(report["pieces"], 6, "{report}");
+        assert!(
+            (report["stretch"].as_f64().unwrap() - 1.0).abs() < 1e-6,
+            "{report}"
+        );
+        assert!(report["texels_used"].as_f64().unwrap() > 0.5, "{report}");
+        std::fs::remove_file(folder.path("out.json")).unwrap();
+    }
+    cover(&folder, &["--json", "--atlas", "uniform"], "tiles.glb");
+    assert_eq!(report("tiles.json")["pieces"], 12, "loose triangles");
+}
